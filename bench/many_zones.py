@@ -476,19 +476,22 @@ run = simulation.run()
 marks.append(time.process_time())
 np.save(folder + "/mascarin.npy", np.stack([run.hourly(name) for name in names]))
 parts = dict(zip(("import", "load", "weather", "compile", "run"), np.diff(marks)))
+# Of this program alone: the usage that a parent reads contains what the parent had when it started the child.
+status = dict(line.split(":", 1) for line in open("/proc/self/status"))
+parts["memory"] = int(status["VmHWM"].split()[0]) / 1024.0
 json.dump(parts, open(folder + "/parts.json", "w"))
 """
 
 
-def measured(words: list[str], folder: Path) -> tuple[float, float]:
-    """Processor time [s] and largest memory [MB] of a program."""
+def measured(words: list[str], folder: Path) -> float:
+    """Processor time of a program. [s]"""
     with (folder / "log.txt").open("w") as log:
         environment = os.environ | {"OMP_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
         process = subprocess.Popen(words, cwd=folder, stdout=log, stderr=log, env=environment)  # noqa: S603
         _, status, used = os.wait4(process.pid, 0)
     if status:
         raise SystemExit(f"{words[0]} failed:\n{(folder / 'log.txt').read_text()[-2000:]}")
-    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0
+    return used.ru_utime + used.ru_stime
 
 
 @dataclass(frozen=True)
@@ -498,7 +501,6 @@ class Result:
     rooms: int
     loads: bool
     ours: float
-    memory: float
     parts: dict[str, float]
     theirs: float
     difference: float
@@ -509,7 +511,7 @@ def compare(grid: Grid, loads: bool, days: int, weather: Path, energyplus: Path 
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "building.yaml").write_text(_yaml(description(grid, loads)))
-        ours, memory = measured([sys.executable, "-c", CHILD, str(folder), str(weather), str(days)], folder)
+        ours = measured([sys.executable, "-c", CHILD, str(folder), str(weather), str(days)], folder)
         parts = json.loads((folder / "parts.json").read_text())
         theirs = difference = float("nan")
         if energyplus is not None:
@@ -522,11 +524,11 @@ def compare(grid: Grid, loads: bool, days: int, weather: Path, energyplus: Path 
                 str(folder / "out"),
                 str(folder / "in.epJSON"),
             ]
-            theirs, _ = measured(words, folder)
+            theirs = measured(words, folder)
             air = _hourly(folder / "out" / "eplusout.eso", grid.rooms)
             mine = np.load(folder / "mascarin.npy")
             difference = float(np.sqrt(np.mean((mine - air[:, : mine.shape[1]]) ** 2)))
-    return Result(len(grid.rooms), loads, ours, memory, parts, theirs, difference)
+    return Result(len(grid.rooms), loads, ours, parts, theirs, difference)
 
 
 def _yaml(parts: dict[str, Any]) -> str:
@@ -587,7 +589,7 @@ def main() -> None:
                     f"{found.ours:.1f} s",
                     f"{ready:.1f} s",
                     f"{found.parts['run']:.2f} s",
-                    f"{found.memory:.0f} MB",
+                    f"{found.parts['memory']:.0f} MB",
                     f"{found.theirs:.1f} s",
                     f"{found.theirs / found.ours:.1f}",
                     f"{found.difference:.2f} K",
