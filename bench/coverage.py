@@ -43,7 +43,7 @@ CORRELATED = 0.05  # K, standard deviation of the error with a correlation time 
 CORRELATION = 3.0  # h
 
 
-#: Coefficients of a flat roof by direction of the wind, c V^m: up to this angle to the axis of the building [deg], c, m.
+#: Coefficients of a flat roof by direction of the wind, c V^m: up to this angle to its axis [deg], c, m.
 #: Emmel, Abadie and Mendes 2007, doi:10.1016/j.enbuild.2006.08.001.
 ROOF = ((22.5, 5.11, 0.78), (67.5, 4.60, 0.79), (90.0, 3.67, 0.85))
 #: Column of the simulated experiment with these coefficients. No alternative of the study names them.

@@ -139,8 +139,8 @@ def test_tied_parameters_of_an_alternative_are_one_parameter(folder: Path) -> No
     text = (folder / "study.yaml").read_text(encoding="utf-8").split("alternatives:")[0]
     free = (
         "alternatives:\n  outside convection:\n    free:\n      changes:\n"
-        "        surfaces.wall.outside.convection: {kind: power, upward: &law {c: {value: 4, range: [1, 8]}}, "
-        "downward: *law}\n"
+        "        surfaces.wall.outside.convection:\n"
+        "          {kind: power, upward: &law {c: {value: 4, range: [1, 8]}}, downward: *law}\n"
         "      parameters:\n        surfaces.wall.outside.convection.*.c: {tie: value, prior: 1.5}\n"
     )
     path = folder / "tied.yaml"
