@@ -133,3 +133,21 @@ def test_parameters_of_a_replaced_law_are_not_compared(folder: Path) -> None:
     assert not comparable("surfaces.wall.outside.convection.coefficient", (), windy, forms)
     assert comparable("surfaces.wall.outside.absorptance", (), windy, forms)
     assert comparable("surfaces.wall.outside.convection.coefficient", windy, windy, forms)
+
+
+def test_tied_parameters_of_an_alternative_are_one_parameter(folder: Path) -> None:
+    text = (folder / "study.yaml").read_text(encoding="utf-8").split("alternatives:")[0]
+    free = (
+        "alternatives:\n  outside convection:\n    free:\n      changes:\n"
+        "        surfaces.wall.outside.convection:\n"
+        "          {kind: power, upward: &law {c: {value: 4, range: [1, 8]}}, downward: *law}\n"
+        "      parameters:\n        surfaces.wall.outside.convection.*.c: {tie: value, prior: 1.5}\n"
+    )
+    path = folder / "tied.yaml"
+    path.write_text(text + free, encoding="utf-8")
+    study = Study.from_yaml(path)
+    variant = study.variant_of((("outside convection", "free"),))
+    found = {p.path: p for p in study.problem(variant).parameters}
+    law = found["surfaces.wall.outside.convection.*.c"]
+    assert (law.nominal, law.lower, law.upper, law.prior) == (4.0, 1.0, 8.0, (4.0, 1.5))
+    assert not any(path.endswith("ward.c") for path in found)

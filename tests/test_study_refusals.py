@@ -79,6 +79,22 @@ CASES = {
         "alternatives:",
         ("alternatives.outside", "surfaces.roof*.outside.convection", "nothing in the building that matches"),
     ),
+    "a parameter of an alternative that does not exist": Refused(
+        "identification:\n  starts",
+        "alternatives: {outside: {first: {changes: {surfaces.wall.outside.convection: 20}, "
+        "parameters: {surfaces.wall.outside.convection.wind: {}}}}}\n"
+        "identification:\n  starts",
+        "alternatives:",
+        ("alternatives.outside", "surfaces.wall.outside.convection.wind"),
+    ),
+    "a tie of one number in an alternative": Refused(
+        "identification:\n  starts",
+        "alternatives: {outside: {first: {changes: {surfaces.wall.outside.convection: 20}, "
+        "parameters: {surfaces.wall.outside.convection.coefficient: {tie: true}}}}}\n"
+        "identification:\n  starts",
+        "alternatives:",
+        ("alternatives.outside", "found a tie of one number", "leave tie out"),
+    ),
     "errors that last longer than the identification": Refused(
         "  starts: 2",
         "  independent: 5d",

@@ -212,6 +212,10 @@ def _runs(study: Setup) -> None:
             study.whole(name)
             if variant.identify and file.identification is not None:
                 study.problem(name)
+    for part, forms in study.forms.parts.items():
+        for form in forms:
+            with blame("alternatives", part):
+                study.problem(study.variant_of(study.forms.of({part: form})))
 
 
 def _require_validation_days(study: Setup) -> None:

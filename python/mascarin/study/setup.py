@@ -258,7 +258,10 @@ class Setup:
         if variant is None:
             return self.building
         if variant in self._further:
-            return self.building.replace(self._further[variant].changes)
+            combined = self._further[variant]
+            with self.places.blame("alternatives"):
+                building = self.building.replace(combined.changes)
+                return with_ties(building, ties_of(combined.parameters))
         own = self.plan.variants[variant]
         with self.places.blame("variants", variant, "changes"):
             building = self.building.replace(own.changes)
