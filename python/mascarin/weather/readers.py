@@ -18,7 +18,7 @@ from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash
 from mascarin.weather.kept import Kept, kept
-from mascarin.weather.shipped import COMPRESSED, content
+from mascarin.weather.shipped import COMPRESSED, PACKED, content
 from mascarin.weather.timezones import fixed_zone, zone_name
 
 _HEADER = 8
@@ -116,7 +116,7 @@ def read_epw(path: Path) -> Year:
         Header or rows are broken; the line is named.
     """
     found = file_hash(path)  # refuses what is no file
-    where = path.name.removesuffix(COMPRESSED)
+    where = path.name.removesuffix(PACKED).removesuffix(COMPRESSED)
     kept_year = kept((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
     return _unpacked(kept_year, where)
 
