@@ -1,6 +1,6 @@
 """Pack EPW files for the package: ``python packaging/climates.py FILE.epw ...``.
 
-Values of a column are alike and values of a line are not, so that columns compress a third better than lines. The
+Values of a column are alike and those of a line are not: columns compress a third better than lines. The
 bytes that `mascarin.weather.shipped.content` reads from the packed file are those of the EPW file.
 """
 
