@@ -11,8 +11,10 @@ import pandas as pd
 import pytest
 
 from mascarin import cli
-from mascarin.study import Study
+from mascarin.study import Study, model_runs
 from mascarin.study.forms import comparable
+from mascarin.study.model_runs import ModelRuns
+from mascarin.study.storage import Workspace
 from study_support import BUILDING, STUDY, TRUTH, logger_table
 
 OFFSET = 0.25  # K, added to one sensor
@@ -151,3 +153,23 @@ def test_tied_parameters_of_an_alternative_are_one_parameter(folder: Path) -> No
     law = found["surfaces.wall.outside.convection.*.c"]
     assert (law.nominal, law.lower, law.upper, law.prior) == (4.0, 1.0, 8.0, (4.0, 1.5))
     assert not any(path.endswith("ward.c") for path in found)
+
+
+def test_a_finished_calibration_is_not_searched_again(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = Study.from_yaml(folder / "study.yaml")
+    with Workspace(tmp_path, study.inputs()) as workspace, study.keeping(workspace):
+        first = ModelRuns(study, workspace, False).plain()
+
+        def searched(*_: Any, **__: Any) -> Any:
+            raise AssertionError("the calibration was kept")
+
+        monkeypatch.setattr(model_runs, "identify", searched)
+        again = ModelRuns(study, workspace, False).plain()
+    np.testing.assert_array_equal(again.x, first.x)
+    assert (again.cost, again.warnings) == (first.cost, first.warnings)
+    np.testing.assert_array_equal(again.trace.x, first.trace.x)
+    np.testing.assert_array_equal([again.low, again.high], [first.low, first.high])
+    for path, estimate in zip(first.problem.paths, first.x, strict=True):
+        assert again.building.parameter(path).value == estimate

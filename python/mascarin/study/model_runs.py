@@ -177,15 +177,23 @@ class ModelRuns:
                 plan.model_copy(update={"starts": 1}),
                 _TOLERANCE,
             )
+        simulation = setup.short(variant)
         with reporting(self._progress, f"calibration ({label})") as report:
-            self._fits[variant] = identify(
-                setup.short(variant),
-                stated,
-                plan,
-                record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
-                progress=_searching(report),
-                tolerance=tolerance,
-            )
+
+            def make() -> Calibration:
+                return identify(
+                    simulation,
+                    stated,
+                    plan,
+                    record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
+                    progress=_searching(report),
+                    tolerance=tolerance,
+                )
+
+            # The record has the evaluations; the search through them and the intervals take seconds as well.
+            what = (stated.fingerprint(), stated.parameters, plan.model_dump_json(), tolerance)
+            key = ("calibration", label, *what)
+            self._fits[variant] = kept(setup.workspace, key, make, (stated, simulation.building))
         return self._fits[variant]
 
     def _variant(self, name: str, variant: Variant) -> ModelRun:
