@@ -227,7 +227,7 @@ def dominated(points: Any) -> float:
                     }
                 }
             },
-            "even in a room of 26 degC (metabolic rate above 4 met; PMV above 2); expected",
+            "room of 26 degC (relative air speed above 1 m/s; metabolic rate above 4 met; PMV above 2); ",
         ),
         (
             {

@@ -20,9 +20,9 @@ DOCS: Final = Path(__file__).resolve().parents[1]
 STUDY: Final = EXAMPLES / "reunion_house" / "design.yaml"
 #: Each picture: what the description of its drawing begins with.
 PICTURES: Final = {
-    "design-ranking.svg": r"Difference from the best design, all climates",
+    "design-ranking.svg": r"Difference from the best design, golden",
     "design-map.svg": r"discomfort, K h, tampa",
-    "design-cycling.svg": r"living_ceiling\.pcm, golden",
+    "design-cycling.svg": r"living_ceiling\.pcm, tampa",
     "design-fraction.svg": r"design \d+, living_ceiling\.pcm",
 }
 #: Space around a drawing [px].
@@ -61,7 +61,7 @@ def _style(page: str, content: str) -> str:
     sheet = re.sub(r"/\*.*?\*/", "", sheet, flags=re.DOTALL)
     screen = sheet.split("@media print")[0]
     dark = re.search(r"@media \(prefers-color-scheme: dark\)\s*\{\s*:root\s*\{(.*?)\}", screen, re.DOTALL)
-    light = re.search(r":root\s*\{(.*?)\}", screen, re.DOTALL)
+    light = re.search(r":root\s*\{([^{}]*--paper[^{}]*)\}", screen)
     if light is None or dark is None:
         raise SystemExit("the style sheet of the report has no colors for light and dark pages")
     classes = {name for names in re.findall(r'class="([^"]*)"', content) for name in names.split()}
