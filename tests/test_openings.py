@@ -234,7 +234,8 @@ def test_vapour_travels_with_the_air() -> None:
 
 def test_derivatives_of_a_controlled_network() -> None:
     """Of a temperature and a flow, by every number: in reverse as forward, and as central differences."""
-    building = controlled(indoor={"open": 22, "close": 19}).replace({"vents.door.height": 2.0})
+    times = {"minimum_open_time": 80, "minimum_closed_time": 50}  # no whole steps
+    building = controlled(indoor={"open": 22, "close": 19}, **times).replace({"vents.door.height": 2.0})
     simulation = Simulation(
         building,
         weather(25),

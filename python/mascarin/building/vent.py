@@ -292,6 +292,11 @@ class VentControl(Part):
         return self
 
     @property
+    def by_temperature(self) -> bool:
+        """Whether a temperature is among its conditions."""
+        return any(band is not None for band in (self.indoor, self.outdoor, self.difference))
+
+    @property
     def conditions(self) -> Iterator[tuple[str, _Band]]:
         """Its conditions by name."""
         for name in ("indoor", "outdoor", "difference", "wind", "rain"):
