@@ -380,9 +380,18 @@ SECTIONS: dict[str, dict[str, Any]] = {
     },
     "controls": {
         "warmth": {"zone": "room", "indoor": _band(24.2, 23.8, 0.3)},
-        "coolness": {"zone": "attic", "difference": _band(0.2, -0.1, 0.08)},
+        "coolness": {
+            "zone": "attic",
+            "difference": _band(0.2, -0.1, 0.08),
+            "minimum_open_time": {"value": 20, "range": [0, 600]},
+        },
         "mild": {"zone": "room", "outdoor": _band(22, 21, 2)},
-        "calm": {"zone": "attic", "wind": _band(3.5, 4.2, 0.6)},
+        "calm": {
+            "zone": "attic",
+            "wind": _band(3.5, 4.2, 0.6),
+            "minimum_open_time": {"value": 30, "range": [10, 60]},
+            "minimum_closed_time": {"value": 40, "range": [0, 600]},
+        },
         "dry": {"zone": "attic", "rain": {"column": "T_out", **_band(25, 26, 0.9)}},
     },
     "humidity": {

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+import mascarin as mc
 from design_support import written
 from mascarin import cli
 from mascarin.design import DesignResults, read_design, run_design
@@ -226,7 +227,19 @@ def dominated(points: Any) -> float:
                     }
                 }
             },
-            "validity",
+            "room of 26 degC (relative air speed above 1 m/s; metabolic rate above 4 met; PMV above 2); ",
+        ),
+        (
+            {
+                "objectives": {
+                    "p": {
+                        "kind": "comfort",
+                        "zones": ["room"],
+                        "comfort": {"index": "set", "band": [22, 26], "humidity": "simulated"},
+                    }
+                }
+            },
+            "expected the section 'humidity:' in the building",
         ),
         (
             {"variables": {"t": {"path": "constructions.ceiling.layers.wax.thickness", "values": [0.01]}}},
@@ -286,3 +299,30 @@ def test_the_command_says_what_it_would_run(capsys: pytest.CaptureFixture[str], 
     assert cli.main(["design", "nowhere", "-o", str(tmp_path / "out")]) == 2
     assert "reunion-house" in capsys.readouterr().err
     assert DESIGNS["reunion-house"].is_file()
+
+
+def test_comfort_of_the_simulated_humidity(tmp_path: Path) -> None:
+    """Degree-hours outside of Givoni's zone are those of single runs, with the humidity of each room."""
+    settings = {"index": "givoni", "humidity": "simulated"}
+    objective = {"kind": "comfort", "zones": ["room"], "comfort": settings}
+    variables = {"roof": {"path": "surfaces.ceiling.outside.absorptance", "values": [0.3, 0.7]}}
+    file = written(
+        tmp_path, objectives={"moist": objective}, variables=variables, uncertainty=None,
+        climates={"tampa": {"epw": "shipped:tampa", "start": "07-01", "end": "07-02"}},
+    )  # fmt: skip
+    humid = {"zones": {"room": {"gains": {"people": {"power": 200}}}}, "materials": {"board": "gypsum"}}
+    with (tmp_path / "building.yaml").open("a", encoding="utf-8") as building:
+        building.write(f"humidity: {json.dumps(humid)}\n")
+    found = run_design(read_design(file), tmp_path / "out")
+    site = found.inputs.sites[0]
+    kinds = ("air_temperature", "mean_radiant_temperature", "relative_humidity")
+    for design, value in zip(found.designs, found.values("moist"), strict=True):
+        absorptance = variables["roof"]["values"][int(design[0])]
+        run = mc.simulate(
+            site.building.replace({"surfaces.ceiling.outside.absorptance": absorptance}), site.climate,
+            start=site.start, end=site.end, step="1h", outputs=[f"room.{kind}" for kind in kinds],
+        )  # fmt: skip
+        alone = run.comfort("room", site.climate, index="givoni").degree_hours
+        dry = run.comfort("room", site.climate, index="givoni", humidity=50).degree_hours
+        assert value == pytest.approx(alone, rel=1e-12)
+        assert abs(alone - dry) > 1.0

@@ -33,8 +33,15 @@ def ratio(vapour: float) -> float:
     return 0.621945 * vapour / (PRESSURE - vapour)
 
 
-def climate(dew_point: Any = 10.0, *, air: float = WARM, hours: int = 48, minutes: int = 60) -> mc.Climate:
-    """Weather without sun, sky and wind, as warm as the room."""
+def climate(
+    dew_point: Any = 10.0,
+    *,
+    air: float = WARM,
+    hours: int = 48,
+    minutes: int = 60,
+    points: Any = None,
+) -> mc.Climate:
+    """Weather without sun, sky and wind, as warm as the room; ``points`` is one more column of means."""
     rows = hours * 60 // minutes + 1
     table = pd.DataFrame(
         {
@@ -49,9 +56,12 @@ def climate(dew_point: Any = 10.0, *, air: float = WARM, hours: int = 48, minute
         index=pd.date_range("2001-01-01", periods=rows, freq=f"{minutes}min", tz="UTC"),
     )
     names = [name for name in table.columns if table[name].notna().all()]
+    extra = [] if points is None else ["points"]
     return mc.Climate.from_table(
-        table[names], timezone="UTC", columns={name: name for name in names}, instant=names, check_sun=False
-    )
+        table[names] if points is None else table[names].assign(points=points),
+        timezone="UTC", columns={name: name for name in names}, extra=extra, instant=names, mean=extra,
+        check_sun=False,
+    )  # fmt: skip
 
 
 def room(humidity: dict[str, Any] | None = None, **changes: Any) -> mc.Building:
@@ -175,6 +185,105 @@ def test_drying_to_a_set_point_takes_away_what_is_too_much() -> None:
     assert found["room.latent_cooling_load"].to_numpy()[-1] == pytest.approx(40.0, rel=1e-9)
     rest = ratio(saturation(10.0)) + 60.0 / LATENT / flow
     assert found["room.humidity_ratio"].to_numpy()[-1] == pytest.approx(rest, rel=1e-6)
+
+
+#: A set point of 0.6, and 0.5 from 8 to 16 h.
+BY_DAY = [("00:00", 0.6), ("08:00", 0.5), ("16:00", 0.6)]
+STEPS = {"kind": "fraction", "days": {"all": [{"at": at, "value": value} for at, value in BY_DAY]}}
+
+
+@pytest.mark.parametrize("point", [{"schedule": "points"}, {"column": "points", "unit": "%"}])
+def test_drying_to_a_set_point_that_steps(point: dict[str, Any]) -> None:
+    """Latent load with a steady source: that of the set point, and vapour of the air where it steps down.
+
+    Down, the room follows within the step on a straight line: ``M (w_1 - w_2)`` more is taken away. Up,
+    nothing is dried until the source has brought the room to the new set point, after
+    ``ln((w_e - w_2)/(w_e - w_1))/n``.
+    """
+    damp = {"gains": {"people": {"power": 100.0}}, "drying": {"relative_humidity": point}}
+    plain = room().to_dict() | {"schedules": {"points": STEPS} if "schedule" in point else {}}
+    plain["humidity"] = {"initial": 0.6, "zones": {"room": damp}}
+    hours = np.arange(25)
+    weather = climate(hours=24, points=np.where((hours >= 8) & (hours < 16), 50.0, 60.0))
+    names = ("room.latent_cooling_load", "room.relative_humidity")
+    found = run(mc.Building.from_dict(plain), weather, *names)
+    load, humidity = (found[name].to_numpy() for name in names)
+
+    dry = 1.2 * VOLUME
+    flow = dry * CHANGES / 3600.0
+    outside = ratio(saturation(10.0))
+    high, low = (ratio(share * saturation(WARM)) for share in (0.6, 0.5))
+    steady = {w: 100.0 - LATENT * flow * (w - outside) for w in (high, low)}
+    # Rows are the ends of steps of 15 min.
+    assert load[2:33] == pytest.approx(np.full(31, steady[high]), rel=1e-9)
+    mean = 0.5 * (steady[high] + steady[low])
+    assert load[33] == pytest.approx(mean + LATENT * dry * (high - low) / 900.0, rel=1e-9)
+    assert load[34:65] == pytest.approx(np.full(31, steady[low]), rel=1e-9)
+    assert humidity[[32, 33, 64]] == pytest.approx([0.6, 0.5, 0.5], abs=1e-12)
+    end = outside + 100.0 / LATENT / flow
+    rising = math.log((end - low) / (end - high)) / CHANGES * 4.0
+    reached = 64 + math.ceil(rising)
+    assert not load[65:reached].any()
+    assert 0.0 < load[reached] <= steady[high]
+    assert load[reached + 1 : 97] == pytest.approx(np.full(96 - reached, steady[high]), rel=1e-9)
+    assert found.vapour.relative_residual < 1e-12
+
+
+def test_humidifying_by_a_schedule_of_humidity_ratios() -> None:
+    """To 10 g/kg by day and 5 g/kg, below that of the outdoor air, by night: nothing is added then."""
+    profile = [{"at": "00:00", "value": 0.005}, {"at": "08:00", "value": 0.010}]
+    plain = room().to_dict() | {"schedules": {"points": {"kind": "fraction", "days": {"all": profile}}}}
+    plain["humidity"] = {"zones": {"room": {"humidifying": {"humidity_ratio": {"schedule": "points"}}}}}
+    names = ("room.latent_heating_load", "room.humidity_ratio")
+    found = run(mc.Building.from_dict(plain), climate(hours=24), *names)
+    load = found["room.latent_heating_load"].to_numpy()
+    assert not load[1:33].any()
+    flow = 1.2 * VOLUME * CHANGES / 3600.0
+    expected = LATENT * flow * (0.010 - ratio(saturation(10.0)))
+    assert load[34:97] == pytest.approx(np.full(63, expected), rel=1e-9)
+    assert found["room.humidity_ratio"].to_numpy()[33:97] == pytest.approx(0.010, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("drying", "humidifying", "words"),
+    [
+        ({"relative_humidity": {"schedule": "point"}}, None, "Did you mean 'points'"),
+        ({"relative_humidity": {"schedule": "warm"}}, None, "a schedule of kind fraction"),
+        ({"relative_humidity": {"schedule": "nought"}}, None, "'nought' with 0\n  expected: values above 0"),
+        ({"humidity_ratio": {"schedule": "points"}}, None, "'points' with 0.6\n  expected: values"),
+        ({"relative_humidity": {"schedule": "points", "column": "points"}}, None, "schedule and column"),
+        ({"relative_humidity": {"constant": 0.6, "unit": "%"}}, None, "'unit' without a column"),
+        ({"relative_humidity": {"schedule": "points"}}, {"relative_humidity": 0.55},
+         "0.55, above 0.5 of drying, on monday at 08:00"),
+        ({"relative_humidity": 0.55}, {"relative_humidity": {"schedule": "points"}},
+         "0.6, above 0.55 of drying, on monday at 00:00"),
+        ({"relative_humidity": 0.5}, {"relative_humidity": 0.6}, "0.6, above 0.5 of drying\n"),
+    ],
+)  # fmt: skip
+def test_set_points_that_cannot_be_are_refused(drying: Any, humidifying: Any, words: str) -> None:
+    plain = room().to_dict()
+    plain["schedules"] = {
+        "points": STEPS,
+        "warm": {"kind": "temperature", "value": 20},
+        "nought": {"kind": "fraction", "value": 0},
+    }
+    plain["humidity"] = {"zones": {"room": {"drying": drying, "humidifying": humidifying}}}
+    with pytest.raises(InputError) as caught:
+        mc.Building.from_dict(plain)
+    assert words in str(caught.value)
+
+
+def test_measured_set_points_that_cannot_be_are_refused() -> None:
+    """Columns are read over the period of the run: above 100 %, and humidifying above drying."""
+    drying = {"relative_humidity": {"column": "points"}}
+    damp = room({"zones": {"room": {"drying": drying, "humidifying": {"relative_humidity": 0.55}}}})
+    names = ["room.relative_humidity"]
+    with pytest.raises(InputError, match=r"(?s)points.*60.*1"):
+        run(damp, climate(hours=24, points=60.0), *names)
+    hours = np.arange(25)
+    crossing = climate(hours=24, points=np.where(hours == 5, 0.5, 0.6))
+    with pytest.raises(InputError, match=r"humidifying to 0.55 above drying to 0.5 .* 2001-01-01 05:00"):
+        run(damp, crossing, *names)
 
 
 def test_a_coil_dries_in_proportion_to_its_sensible_load() -> None:

@@ -12,6 +12,7 @@ import mascarin as mc
 from mascarin import examples
 from mascarin.building import Building
 from mascarin.building.air import density
+from mascarin.ensemble import sweep
 from mascarin.errors import InputError
 from mascarin.simulation.simulation import Simulation
 from test_simulation_derivatives import both_ways, misses
@@ -170,6 +171,39 @@ def test_rain_and_wind_close() -> None:
     assert not found[25:].any()
 
 
+def test_minimum_times() -> None:
+    """Outdoor air above and below both limits in turn: open for 3 h and closed for 2 h at least.
+
+    It opens in a warm hour, may close in the third hour after it, which is cold, and may open two hours
+    later, in a cold one: it opens in the next. Members of an ensemble have the bits of single runs.
+    """
+    hour = np.arange(25)
+    climate = weather(25, air_temperature=np.where(hour % 2 == 1, 21.0, 19.0))
+    band = {"open": 20, "close": 20}
+    times = {"minimum_open_time": {"value": 180, "range": [0, 400]}, "minimum_closed_time": 120}
+    building = controlled(indoor=None, outdoor=band, **times)
+    outputs = ["night.open", "a.air_temperature"]
+    settings: dict[str, Any] = {"step": "1h", "scheme": "backward-euler"}
+    found = run(building, climate, outputs, **settings)
+    # The values of a step are those at its end; the record has none for the end of the last hour.
+    states = found["night.open"][1:25]
+    np.testing.assert_array_equal(states, [float(k % 6 < 3) for k in range(24)])
+    path = "controls.night.minimum_open_time"
+    in_turn = building.replace({path: None, "controls.night.minimum_closed_time": 0})
+    states = run(in_turn, climate, outputs, **settings)["night.open"][1:25]
+    np.testing.assert_array_equal(states, [1.0, 0.0] * 12)
+    minutes = [0.0, 59.9, 60.1, 180.0, 240.0, 400.0]
+    every = sweep(building, climate, {path: minutes}, outputs=outputs, initial=20.0, **settings)
+    for member, time in enumerate(minutes):
+        alone = run(building.replace({path: time}), climate, outputs, **settings)
+        for name in outputs:
+            assert every[name].to_numpy()[member].tobytes() == alone[name].to_numpy().tobytes(), (time, name)
+    said = "outdoor 20 and 20, wind 5 and 7, open for at least 180 min, closed for at least 120 min"
+    assert said in "\n".join(building.check())
+    with pytest.raises(InputError, match=f"{path}: found 1600 min, longer than the run of 1500 min"):
+        run(building.replace({path: 1600}), climate, outputs, **settings)
+
+
 def test_controls_of_single_openings_and_schedules() -> None:
     """An opening without a network obeys as well; a schedule multiplies."""
     plain = controlled().to_dict()
@@ -200,7 +234,8 @@ def test_vapour_travels_with_the_air() -> None:
 
 def test_derivatives_of_a_controlled_network() -> None:
     """Of a temperature and a flow, by every number: in reverse as forward, and as central differences."""
-    building = controlled(indoor={"open": 22, "close": 19}).replace({"vents.door.height": 2.0})
+    times = {"minimum_open_time": 80, "minimum_closed_time": 50}  # no whole steps
+    building = controlled(indoor={"open": 22, "close": 19}, **times).replace({"vents.door.height": 2.0})
     simulation = Simulation(
         building,
         weather(25),
@@ -268,6 +303,8 @@ def test_a_wall_with_corners_is_as_steep_as_they_say() -> None:
         ({"controls.night.indoor": {"open": 20, "close": 22}}, "'open' at least as large as 'close'"),
         ({"controls.night.wind": {"open": 8, "close": 6}}, "'open' at most as large as 'close'"),
         ({"controls.night": {"zone": "a"}}, "a control without conditions"),
+        ({"controls.night.minimum_open_time": -5}, "minimum_open_time"),
+        ({"controls.night.minimum_closed_time": 2e4}, "10080"),
         ({"surfaces.north.tilt": 20}, "the correlation holds for vertical surfaces"),
     ],
 )

@@ -154,7 +154,12 @@ def _vents(building: Description) -> Iterator[str]:
         yield f"vent {name}: {vent.area:g} m2 {ends} at {vent.elevation:g} m{wind}{steered}"
     for name, control in building.controls.items():
         bands = ", ".join(f"{key} {band.open:g} and {band.close:g}" for key, band in control.conditions)
-        yield f"control {name} in {control.zone} opens and closes at {bands}"
+        times = "".join(
+            f", {which} for at least {time:g} min"
+            for which, time in (("open", control.minimum_open_time), ("closed", control.minimum_closed_time))
+            if time is not None
+        )
+        yield f"control {name} in {control.zone} opens and closes at {bands}{times}"
 
 
 def _controlled(control: str | None) -> str:

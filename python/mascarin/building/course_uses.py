@@ -53,6 +53,9 @@ def _of_humidity(building: Description) -> Iterator[Use]:
         for which, plant in zone.plants.items():
             if plant.schedule is not None:
                 yield plant.schedule, (*at, which, "schedule"), "fraction"
+            key, setpoint = plant.setpoint
+            if setpoint.schedule is not None:
+                yield setpoint.schedule, (*at, which, key, "schedule"), "fraction"
 
 
 def _of_units(building: Description) -> Iterator[Use]:
@@ -103,6 +106,10 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
         for key, source in vapour.gains.items():
             if source.course is not None:
                 yield source.course, ("humidity", "zones", name, "gains", key, "column")
+        for which, plant in vapour.plants.items():
+            key, setpoint = plant.setpoint
+            if setpoint.measured is not None:
+                yield setpoint.measured, ("humidity", "zones", name, which, key, "column")
 
 
 def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:

@@ -10,7 +10,7 @@ from pydantic import AfterValidator
 
 from mascarin.building.number import problem
 
-CourseKind = Literal["temperature", "power", "flow", "vapour", "rain"]
+CourseKind = Literal["temperature", "power", "flow", "vapour", "rain", "relative_humidity", "humidity_ratio"]
 
 
 def _named(columns: str | tuple[str, ...]) -> str | tuple[str, ...]:
@@ -36,6 +36,8 @@ _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "flow": FLOW_UNITS,
     "vapour": VAPOUR_UNITS,
     "rain": {"mm/h": 1.0},
+    "relative_humidity": {"-": 1.0, "%": 0.01},
+    "humidity_ratio": {"kg/kg": 1.0, "g/kg": 1e-3},
 }
 
 

@@ -8,10 +8,11 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.courses import ColumnCourse, CourseKind
 from mascarin.building.driven import Driven
 from mascarin.building.names import MaterialName, Name, ScheduleName, SurfaceName, ZoneName
 from mascarin.building.number import Number, Remark, problem
-from mascarin.building.part import Part
+from mascarin.building.part import Part, Shorthand
 from mascarin.building.sorption import Sorption
 
 LEWIS: Final = (
@@ -70,17 +71,101 @@ class VapourGain(Driven):
         return self
 
 
+class HumiditySetPoint(Part):
+    """A humidity that the air is brought to: a number, a schedule or a measured column."""
+
+    #: What a column holds, its usual unit, and the number in words.
+    KIND: ClassVar[CourseKind]
+    USUAL: ClassVar[str]
+    WORDS: ClassVar[tuple[float, str]]
+
+    constant: Number | None = None
+    schedule: ScheduleName | None = Field(None, description="Schedule of kind fraction with its values")
+    column: str | None = Field(None, description="Measured column with its values")
+
+    @model_validator(mode="after")
+    def _one(self) -> HumiditySetPoint:
+        given = [key for key in ("constant", "schedule", "column") if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise problem(
+                " and ".join(given) or "neither",
+                "a number, {schedule: name} or {column: name}",
+                "Write for instance 'relative_humidity: 0.6'.",
+            )
+        if self.column is None and getattr(self, "unit", None) is not None:
+            raise problem("'unit' without a column", "none", "Remove 'unit:'.")
+        return self
+
+    @property
+    def measured(self) -> ColumnCourse | None:
+        """Course of the column; None without one."""
+        if self.column is None:
+            return None
+        return ColumnCourse(self.KIND, (self.column,), getattr(self, "unit", None) or self.USUAL)
+
+    @property
+    def course(self) -> str | None:
+        """Name of the schedule or of the course of the column; None for a number."""
+        return self.schedule if self.measured is None else self.measured.name
+
+    @property
+    def words(self) -> str:
+        """The value, or where it comes from."""
+        factor, unit = self.WORDS
+        if self.constant is not None:
+            return f"{factor * float(self.constant):g} {unit}"
+        return f"schedule {self.schedule}" if self.schedule is not None else f"column {self.column}"
+
+
+class RelativeHumiditySetPoint(HumiditySetPoint):
+    """A relative humidity that the air is brought to.
+
+    Examples
+    --------
+    >>> RelativeHumiditySetPoint(constant=0.6).words
+    '60 % relative humidity'
+    """
+
+    KIND: ClassVar = "relative_humidity"
+    USUAL: ClassVar = "-"
+    WORDS: ClassVar = (100.0, "% relative humidity")
+
+    constant: q.RelativeHumidity | None = None
+    unit: Literal["-", "%"] | None = Field(None, description="Unit of the column; none: -")
+
+
+class HumidityRatioSetPoint(HumiditySetPoint):
+    """A humidity ratio that the air is brought to.
+
+    Examples
+    --------
+    >>> HumidityRatioSetPoint(constant=0.007).words
+    '7 g/kg'
+    """
+
+    KIND: ClassVar = "humidity_ratio"
+    USUAL: ClassVar = "kg/kg"
+    WORDS: ClassVar = (1000.0, "g/kg")
+
+    constant: q.HumidityRatio | None = None
+    unit: Literal["kg/kg", "g/kg"] | None = Field(None, description="Unit of the column; none: kg/kg")
+
+
 class Humidistat(Part):
     """Ideal drying or humidifying to a set point; its latent heat is counted as a load.
 
     Examples
     --------
-    >>> Humidistat(relative_humidity=0.6)
-    Humidistat(relative_humidity=0.6)
+    >>> Humidistat(relative_humidity=0.6).words
+    '60 % relative humidity'
     """
 
-    relative_humidity: q.RelativeHumidity | None = None
-    humidity_ratio: q.HumidityRatio | None = None
+    relative_humidity: Annotated[RelativeHumiditySetPoint, Shorthand(number="constant")] | None = Field(
+        None, description="Set point of the relative humidity: a number, {schedule: name} or {column: name}"
+    )
+    humidity_ratio: Annotated[HumidityRatioSetPoint, Shorthand(number="constant")] | None = Field(
+        None, description="Set point of the humidity ratio: a number, {schedule: name} or {column: name}"
+    )
     capacity: q.LatentCapacity | None = None
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the available fraction of the capacity; none: always 1"
@@ -98,11 +183,18 @@ class Humidistat(Part):
         return self
 
     @property
+    def setpoint(self) -> tuple[str, HumiditySetPoint]:
+        """The set point and its key."""
+        if self.relative_humidity is not None:
+            return "relative_humidity", self.relative_humidity
+        if self.humidity_ratio is None:
+            raise TypeError("a humidistat has a set point")
+        return "humidity_ratio", self.humidity_ratio
+
+    @property
     def words(self) -> str:
         """The set point in words."""
-        if self.relative_humidity is not None:
-            return f"{100 * self.relative_humidity:g} % relative humidity"
-        return f"{1000 * float(self.humidity_ratio or 0.0):g} g/kg"
+        return self.setpoint[1].words
 
 
 class CoolingCoil(Part):

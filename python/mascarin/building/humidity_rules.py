@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mascarin.building.humidity import CoolingCoil, Humidity, ZoneHumidity
+from mascarin.building.humidity import CoolingCoil, Humidistat, Humidity, ZoneHumidity
+from mascarin.building.leaves import leaves
 from mascarin.building.material import Resistance
+from mascarin.building.number import quantity_of
 from mascarin.building.part import fault
+from mascarin.building.set_points import first_crossing
 from mascarin.building.vapour_sides import vapour_sides
 from mascarin.errors import did_you_mean
 
@@ -74,18 +77,43 @@ def _plants_can_act(building: Description, name: str, zone: ZoneHumidity) -> Fau
             "cooling of the zone",
             f"Add 'zones.{name}.cooling:', or dry to a set point: 'drying: {{relative_humidity: 0.6}}'.",
         )
+    for which, plant in zone.plants.items():
+        yield from _schedules_are_humidities(building, (*at, which), plant)
     dry, wet = zone.plants.get("drying"), zone.plants.get("humidifying")
-    if dry is None or wet is None:
+    if dry is None or wet is None or dry.setpoint[0] != wet.setpoint[0]:
         return
-    for key in ("relative_humidity", "humidity_ratio"):
-        high, low = getattr(dry, key), getattr(wet, key)
-        if high is not None and low is not None and low > high:
-            yield fault(
-                (*at, "humidifying", key),
-                f"{float(low):g}, above {float(high):g} of drying",
-                "a set point of humidifying that is not above that of drying",
-                "Exchange the two, or leave one out.",
-            )
+    key, high, low = dry.setpoint[0], dry.setpoint[1], wet.setpoint[1]
+    found = first_crossing(building, (low.constant, low.schedule), (high.constant, high.schedule))
+    if found is not None:
+        when, least, most = found
+        always = low.constant is not None and high.constant is not None
+        yield fault(
+            (*at, "humidifying", key),
+            f"{least:g}, above {most:g} of drying{'' if always else f', on {when}'}",
+            "a set point of humidifying that is not above that of drying",
+            "Exchange the two, or leave one out." if always else "Lower the one or raise the other.",
+        )
+
+
+def _schedules_are_humidities(building: Description, at: tuple[str, ...], plant: Humidistat) -> Faults:
+    """Values of schedules that are no humidity of the kind, or dry the air to nothing."""
+    key, setpoint = plant.setpoint
+    if setpoint.schedule is None:
+        return
+    schedule = building.schedules[setpoint.schedule]
+    quantity = quantity_of(type(setpoint).model_fields["constant"])
+    if schedule.kind != "fraction" or quantity is None:
+        return  # the kind is compared with the use of all schedules
+    most, drying = quantity.limits.upper, at[-1] == "drying"
+    values = [float(number) for _, number, _ in leaves(schedule)]
+    wrong = [value for value in values if value > most or (drying and value <= 0.0)]
+    if wrong:
+        yield fault(
+            (*at, key, "schedule"),
+            f"'{setpoint.schedule}' with {wrong[0]:g}",
+            f"values {'above' if drying else 'from'} 0, up to {most:g} [{quantity.unit}]",
+            "Correct them. To turn the plant off, give its capacity a schedule: 'schedule:' beside it.",
+        )
 
 
 def humidity_lines(building: Description) -> Iterator[str]:

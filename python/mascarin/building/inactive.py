@@ -301,6 +301,9 @@ def _in_air(building: Description) -> Reasons:
             yield f"openings.{name}.height", "the discharge is 0"
         if opening.height == 0.0:
             yield f"openings.{name}.discharge", "the height is 0"
+    for name, control in building.controls.items():
+        if control.minimum_open_time is not None and not control.by_temperature:
+            yield f"controls.{name}.minimum_open_time", "wind and rain close at once"
 
 
 def _all_of(path: str, part: Any, reason: str) -> Reasons:

@@ -208,5 +208,7 @@ def _aliases(building: Description, path: str) -> Iterator[str]:
             yield f"{path}.constant"
         case ["zones", _, "heating" | "cooling", "setpoint"]:
             yield f"{path}.temperature"
+        case ["humidity", "zones", _, "drying" | "humidifying", "relative_humidity" | "humidity_ratio"]:
+            yield f"{path}.constant"
         case ["surfaces", _, _, "ground", "temperature"]:
             yield f"{path.removesuffix('temperature')}mean"

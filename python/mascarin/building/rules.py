@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import date
 from typing import TYPE_CHECKING
 
 from mascarin.building.air_rules import air_faults
@@ -14,7 +13,7 @@ from mascarin.building.derived import shade_outlines
 from mascarin.building.humidity_rules import humidity_faults
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
-from mascarin.building.schedule import DAYS, Piece
+from mascarin.building.set_points import first_crossing
 from mascarin.building.surface import NoLongwave, Side
 from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
     from mascarin.building.description import Description
-    from mascarin.building.zone import IdealLoads
 
 Faults = Iterator["InitErrorDetails"]
 
@@ -343,55 +341,13 @@ def _set_points_apart(building: Description) -> Faults:
     for name, zone in building.zones.items():
         if len(zone.loads) < 2:
             continue
-        both = [zone.loads[which] for which in ("heating", "cooling")]
-        last = next(_crossing_days(building, both), None)
-        if last is not None:
-            day, minute, warm, cold = last
+        points = [zone.loads[which].setpoint for which in ("heating", "cooling")]
+        found = first_crossing(building, *((point.temperature, point.schedule) for point in points))
+        if found is not None:
+            when, warm, cold = found
             yield fault(
                 ("zones", name, "heating", "setpoint"),
-                f"heating to {warm:g} degC, above cooling to {cold:g} degC, on {day} at "
-                f"{int(minute // 60):02d}:{int(minute % 60):02d}",
+                f"heating to {warm:g} degC, above cooling to {cold:g} degC, on {when}",
                 "a heating set point at or below the cooling set point at all times",
                 "Lower the one or raise the other.",
             )
-
-
-def _crossing_days(
-    building: Description, both: list[IdealLoads]
-) -> Iterator[tuple[str, float, float, float]]:
-    """Days with a crossing of heating and cooling: name of the day, minute, both set points."""
-    used = [building.schedules[one.setpoint.schedule] for one in both if one.setpoint.schedule is not None]
-    ends = sorted({season.until for one in used for season in one.seasons or ()}) or ["12-31"]
-    for end in ends:
-        heating, cooling = (_week(building, one, date.fromisoformat(f"2000-{end}")) for one in both)
-        season = "" if len(ends) == 1 else f" before {end}"
-        for (day, heats), (_, cools) in zip(heating, cooling, strict=True):
-            for minute, warm, cold in _crossings(heats, cools):
-                yield f"{day}{season}", minute, warm, cold
-
-
-def _week(building: Description, loads: IdealLoads, day: date) -> list[tuple[str, list[Piece]]]:
-    """Pieces of the set point on each day of the week of a season, and on holidays; empty for a column."""
-    if loads.setpoint.column is not None:
-        return [(name, []) for name in (*DAYS, "holidays")]
-    if loads.setpoint.schedule is None:
-        value = float(loads.setpoint.temperature or 0.0)
-        return [(name, [(0.0, 1440.0, value, value)]) for name in (*DAYS, "holidays")]
-    schedule = building.schedules[loads.setpoint.schedule]
-    season = schedule.season(day)
-    days = [(name, schedule.pieces(weekday, season=season)) for weekday, name in enumerate(DAYS)]
-    return [*days, ("holidays", schedule.pieces(0, holiday=True, season=season))]
-
-
-def _crossings(heating: list[Piece], cooling: list[Piece]) -> Iterator[tuple[float, float, float]]:
-    """Minutes of the day at which heating lies above cooling, with both set points."""
-    for start, end, first, last in heating:
-        for other_start, other_end, other_first, other_last in cooling:
-            low, high = max(start, other_start), min(end, other_end)
-            for minute in (low, high) if low < high else ():
-                warm = first + (last - first) * (minute - start) / (end - start)
-                cold = other_first + (other_last - other_first) * (minute - other_start) / (
-                    other_end - other_start
-                )
-                if warm > cold + 1e-9:
-                    yield minute, warm, cold

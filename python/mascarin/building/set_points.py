@@ -1,13 +1,19 @@
-"""Constant set points of heating and cooling in a zone: equal ones are one parameter, others do not cross."""
+"""Two set points of a zone: equal constant ones are one parameter, and they never cross."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from datetime import date
 from typing import TYPE_CHECKING
+
+from mascarin.building.schedule import DAYS, Piece
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
     from mascarin.building.number import Number
+
+#: A set point: a number, or the name of a schedule; neither for a measured column.
+Given = tuple[float | None, str | None]
 
 
 def tied_set_points(building: Description) -> dict[str, str]:
@@ -78,3 +84,63 @@ def _constant(building: Description) -> Iterator[tuple[str, str, Number, Number]
                 warm,
                 cold,
             )
+
+
+def first_crossing(building: Description, low: Given, high: Given) -> tuple[str, float, float] | None:
+    """First time of a week at which the lower of two set points is above the other one.
+
+    Parameters
+    ----------
+    building : Description
+        The building.
+    low, high : (float or None, str or None)
+        The set points: a number, or the name of a schedule; neither for a measured column, which is compared
+        over the period of a run.
+
+    Returns
+    -------
+    (str, float, float) or None
+        Day and time in words, and both set points; None where they never cross. [unit of both]
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> first_crossing(box(), (26.0, None), (20.0, None))
+    ('monday at 00:00', 26.0, 20.0)
+    """
+    used = [building.schedules[name] for _, name in (low, high) if name is not None]
+    ends = sorted({season.until for one in used for season in one.seasons or ()}) or ["12-31"]
+    for end in ends:
+        weeks = [_week(building, one, date.fromisoformat(f"2000-{end}")) for one in (low, high)]
+        season = "" if len(ends) == 1 else f" before {end}"
+        for (day, below), (_, above) in zip(*weeks, strict=True):
+            for minute, first, second in _crossings(below, above):
+                clock = f"{int(minute // 60):02d}:{int(minute % 60):02d}"
+                return f"{day}{season} at {clock}", first, second
+    return None
+
+
+def _week(building: Description, given: Given, day: date) -> list[tuple[str, list[Piece]]]:
+    """Pieces of a set point on each day of the week of a season, and on holidays; empty for a column."""
+    number, name = given
+    if name is None:
+        always = [] if number is None else [(0.0, 1440.0, float(number), float(number))]
+        return [(day_name, always) for day_name in (*DAYS, "holidays")]
+    schedule = building.schedules[name]
+    season = schedule.season(day)
+    days = [(day_name, schedule.pieces(weekday, season=season)) for weekday, day_name in enumerate(DAYS)]
+    return [*days, ("holidays", schedule.pieces(0, holiday=True, season=season))]
+
+
+def _crossings(low: list[Piece], high: list[Piece]) -> Iterator[tuple[float, float, float]]:
+    """Minutes of the day at which the first set point is above the second, with both."""
+    for start, end, first, last in low:
+        for other_start, other_end, other_first, other_last in high:
+            begin, finish = max(start, other_start), min(end, other_end)
+            for minute in (begin, finish) if begin < finish else ():
+                below = first + (last - first) * (minute - start) / (end - start)
+                above = other_first + (other_last - other_first) * (minute - other_start) / (
+                    other_end - other_start
+                )
+                if below > above + 1e-9:
+                    yield minute, below, above

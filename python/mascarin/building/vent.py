@@ -257,7 +257,7 @@ class RainBand(_Band):
 class VentControl(Part):
     """What opens and closes openings: they open where all conditions let them, and close where one does not.
 
-    A control decides at the beginning of each step.
+    A control decides at the beginning of each step, and keeps its state for the minimum times.
 
     Examples
     --------
@@ -274,6 +274,12 @@ class VentControl(Part):
     )
     wind: WindBand | None = Field(None, description="Wind speed at the mast below limits")
     rain: RainBand | None = Field(None, description="Rain below limits")
+    minimum_open_time: q.MinimumTime | None = Field(
+        None, description="Time for which it stays open, unless wind or rain close it; none: 0"
+    )
+    minimum_closed_time: q.MinimumTime | None = Field(
+        None, description="Time for which it stays closed; none: 0"
+    )
 
     @model_validator(mode="after")
     def _conditioned(self) -> VentControl:
@@ -284,6 +290,11 @@ class VentControl(Part):
                 "Add 'indoor: {open: 24, close: 22}', for example.",
             )
         return self
+
+    @property
+    def by_temperature(self) -> bool:
+        """Whether a temperature is among its conditions."""
+        return any(band is not None for band in (self.indoor, self.outdoor, self.difference))
 
     @property
     def conditions(self) -> Iterator[tuple[str, _Band]]:

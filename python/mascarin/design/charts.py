@@ -87,11 +87,19 @@ def heat_map(
 ) -> Any:
     """Values over two variables, dark where they are good; the best cell has a frame."""
     width = max(460.0, 90.0 + 26.0 * len(columns))
-    height = 138.0 + 22.0 * len(rows)
     names = list(columns)
+    # Room for the inclined names, and for the label below them.
+    bottom = 30.0 + 5.0 * max((len(name) for name in names), default=0)
+    height = 26.0 + bottom + 22.0 * len(rows)
     x = Axis(0.0, float(len(names)), (), ())
     chart = Chart(
-        x, Axis(0.0, float(len(rows))), width=width, height=height, y_label=labels[1], left=60.0, bottom=112.0
+        x,
+        Axis(0.0, float(len(rows))),
+        width=width,
+        height=height,
+        y_label=labels[1],
+        left=60.0,
+        bottom=bottom,
     )
     good = np.where(np.isfinite(values), values if least else -values, np.nan)
     low, high = (np.nanmin(good), np.nanmax(good)) if np.isfinite(good).any() else (0.0, 1.0)
@@ -104,12 +112,12 @@ def heat_map(
                 shade = 0.06 + 0.86 * (high - good[i, j]) / span
                 _cell(chart, i, j, "heat", shade)
     for j, name in enumerate(names):
-        place = f"rotate(-60 {chart.px(j + 0.62):.1f} {height - 102.0:.1f})"
+        place = f"rotate(-60 {chart.px(j + 0.62):.1f} {height - bottom + 10.0:.1f})"
         chart.svg.add(
             "text",
             name,
             x=chart.px(j + 0.62),
-            y=height - 102.0,
+            y=height - bottom + 10.0,
             class_="t tick",
             text_anchor="end",
             transform=place,

@@ -290,14 +290,19 @@ def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, fau
                 hours = objective.comfort.occupied(times)
                 room = np.full(len(times), 26.0)
                 around = Surroundings.of(site.climate, times)
-                tried = objective.comfort.discomfort(room, room, hours, around)
+                settings = objective.comfort
+                if settings.humidity == "simulated":
+                    # Not known before the run: that of the outdoor air.
+                    settings = settings.model_copy(update={"humidity": "outdoor"})
+                tried = settings.discomfort(room, room, hours, around)
+                reasons = "; ".join(why for why, time in tried.reasons.items() if float(time) > 0.0)
                 if float(tried.undefined_hours) > 0.5 * float(hours.sum()):
                     raise InputError(
                         f"found no value of {objective.comfort.index} in "
                         f"{float(tried.undefined_hours):.0f} of {float(hours.sum()):.0f} h in climate "
                         f"'{site.name}', even in a room of 26 degC "
-                        f"({'; '.join(map(str, tried.reasons))}); expected conditions inside its "
-                        "validity. Choose another index, or kind: degree_hours with a limit"
+                        f"({reasons}); expected conditions inside its validity. Choose another index, or "
+                        "kind: degree_hours with a limit"
                     )
 
 

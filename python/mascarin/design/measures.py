@@ -195,7 +195,9 @@ class Assessed:
             air, radiant = (
                 run[f"{zone}.{kind}"].to_numpy() for kind in ("air_temperature", "mean_radiant_temperature")
             )
-            found = self.settings.discomfort(air, radiant, hours, around)
+            simulated = self.settings.humidity == "simulated"
+            humidity = 100.0 * run[f"{zone}.relative_humidity"].to_numpy() if simulated else None
+            found = self.settings.discomfort(air, radiant, hours, around, humidity)
             total += found.undefined_hours if self.key == "undefined" else self._degrees(found)
         return np.asarray(total / len(self.zones), dtype=np.float64)
 

@@ -182,17 +182,6 @@ class Comfort(_OfZones):
     comfort: ComfortSettings = Field(description="Index with its limits, as in `comfort:` of a study")
     side: Literal["both", "hot", "cold"] = Field("both", description="Which discomfort counts")
 
-    @model_validator(mode="after")
-    def _dry(self) -> Self:
-        if self.comfort.humidity == "simulated":
-            insist(
-                fault(
-                    ("comfort", "humidity"), "simulated", "a number in percent, or outdoor",
-                    "Designs keep no humidity: give a relative humidity, such as 70.",
-                )
-            )  # fmt: skip
-        return self
-
     @property
     def unit(self) -> str:
         """Unit of the value."""
@@ -205,9 +194,20 @@ class Comfort(_OfZones):
             f"{self.comfort.index_used.title}, limits {self.comfort.limits}, mean of {', '.join(self.zones)}"
         )
 
+    def check(self, building: Building) -> None:
+        """Refuse a simulated humidity of a building without one."""
+        super().check(building)
+        if self.comfort.humidity == "simulated" and building.humidity is None:
+            raise InputError(
+                "found humidity: simulated, and a building without humidity; expected the section "
+                "'humidity:' in the building. Add it, or give a relative humidity in percent, such as 70, or "
+                "'outdoor'"
+            )
+
     def outputs(self) -> tuple[str, ...]:
-        """Temperatures of the air and of the surfaces."""
-        kinds = ("air_temperature", "mean_radiant_temperature")
+        """Temperatures of the air and of the surfaces, and the humidity where it is simulated."""
+        humid = ("relative_humidity",) if self.comfort.humidity == "simulated" else ()
+        kinds = ("air_temperature", "mean_radiant_temperature", *humid)
         return tuple(f"{zone}.{kind}" for zone in self.zones for kind in kinds)
 
     def measures(self, climate: Climate) -> Measures:

@@ -30,6 +30,8 @@ _UNITS: Final = {
     "flow": "m3/s",
     "vapour": "kg/s",
     "rain": "mm/h",
+    "relative_humidity": "-",
+    "humidity_ratio": "kg/kg",
 }
 _COLUMN_UNITS: Final = {TEMPERATURES: "degC", IRRADIANCES: "W/m2", COEFFICIENTS: "W/(m2 K)"}
 

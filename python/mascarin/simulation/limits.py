@@ -1,8 +1,9 @@
-"""Checks of parameter vectors: limits of each parameter, and heating set points below cooling ones."""
+"""Checks of parameter vectors: limits, set points that do not cross, times of controls within the run."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -75,7 +76,7 @@ def require_set_points_apart(
     channels: Sequence[str],
     times: Times,
 ) -> None:
-    """Refuse heating above cooling.
+    """Refuse heating above cooling, and humidifying by a schedule or a column above drying.
 
     Parameters
     ----------
@@ -98,31 +99,101 @@ def require_set_points_apart(
         Naming the zone, the member, the time and both set points.
     """
 
-    def set_point(zone: str, which: str) -> Array:
-        """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
-        point = building.zones[zone].loads[which].setpoint
-        if point.temperature is not None:
-            return vectors[:, [positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
-        place = len(CHANNELS) + list(channels).index(f"schedule {point.course}")
+    def set_point(path: str, course: str | None) -> Array:
+        """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC] or [-]"""
+        if course is None:
+            return vectors[:, [positions[path]]]
+        place = len(CHANNELS) + list(channels).index(f"schedule {course}")
         return forcing[None, :, -1, place]
 
-    for name, zone in building.zones.items():
-        if zone.heating is None or zone.cooling is None:
-            continue
-        heating, cooling = set_point(name, "heating"), set_point(name, "cooling")
-        found = _first_above(heating, cooling + 1e-9)
+    for pair in _pairs(building):
+        (low, high) = (set_point(path, course) for path, course in pair.points)
+        found = _first_above(low, high + 1e-9)
         if found is None:
             continue
         member, step = found
-        warm, cold = (
-            float(np.broadcast_to(x, (len(vectors), len(forcing)))[member, step]) for x in (heating, cooling)
-        )
+        shape = (len(vectors), len(forcing))
+        first, second = (float(np.broadcast_to(x, shape)[member, step]) for x in (low, high))
         raise InputError(
-            f"zones.{name}: found heating to {warm:g} degC above cooling to {cold:g} degC at the end "
-            f"of the step from {times.index[step]:%Y-%m-%d %H:%M}"
-            f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a heating set point at or "
-            "below the cooling set point at all times: lower the one or raise the other"
+            f"{pair.where}: found {pair.low} to {first:g}{pair.unit} above {pair.high} to "
+            f"{second:g}{pair.unit} at the end of the step from {times.index[step]:%Y-%m-%d %H:%M}"
+            f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a set point of {pair.low} at or "
+            f"below that of {pair.high} at all times: lower the one or raise the other"
         )
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two set points that must not cross: path of the number, and name of the course that takes its place."""
+
+    where: str
+    low: str
+    high: str
+    unit: str
+    points: tuple[tuple[str, str | None], tuple[str, str | None]]
+
+
+def _pairs(building: Building) -> Iterator[_Pair]:
+    for name, zone in building.zones.items():
+        if zone.heating is not None and zone.cooling is not None:
+            at = f"zones.{name}"
+            yield _Pair(
+                at, "heating", "cooling", " degC",
+                (
+                    (f"{at}.heating.setpoint.temperature", zone.heating.setpoint.course),
+                    (f"{at}.cooling.setpoint.temperature", zone.cooling.setpoint.course),
+                ),
+            )  # fmt: skip
+    for name, vapour in building.humidity.zones.items() if building.humidity is not None else ():
+        wet, dry = vapour.plants.get("humidifying"), vapour.plants.get("drying")
+        if wet is None or dry is None or wet.setpoint[0] != dry.setpoint[0]:
+            continue
+        key, low, high = wet.setpoint[0], wet.setpoint[1].course, dry.setpoint[1].course
+        # Ranges of two constant ones may overlap: drying decides there.
+        if low is not None or high is not None:
+            at = f"humidity.zones.{name}"
+            yield _Pair(
+                at, "humidifying", "drying", "" if key == "relative_humidity" else " kg/kg",
+                ((f"{at}.humidifying.{key}.constant", low), (f"{at}.drying.{key}.constant", high)),
+            )  # fmt: skip
+
+
+def require_control_times(
+    building: Building, vectors: Array, *, positions: Mapping[str, int], seconds: float
+) -> None:
+    """Refuse controls of openings whose minimum times are longer than the run.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    vectors : ndarray, shape (M, P)
+        Parameter vectors. [unit of each]
+    positions : mapping of str to int
+        Position of each parameter in a vector.
+    seconds : float
+        Length of the run. [s]
+
+    Raises
+    ------
+    InputError
+        Naming the control, the member and both times.
+    """
+    for name in building.controls:
+        for key in ("minimum_open_time", "minimum_closed_time"):
+            path = f"controls.{name}.{key}"
+            if path not in positions:
+                continue
+            minutes = vectors[:, positions[path]]
+            too_long = np.flatnonzero(60.0 * minutes > seconds)
+            if len(too_long):
+                member = int(too_long[0])
+                whose = f" (member {member})" if len(vectors) > 1 else ""
+                raise InputError(
+                    f"{path}: found {minutes[member]:g} min{whose}, longer than the run of "
+                    f"{seconds / 60.0:g} min; expected a time within the run. Shorten it (in min), or "
+                    "simulate a longer period"
+                )
 
 
 def _first_above(high: Array, low: Array) -> tuple[int, int] | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
-from mascarin.simulation.limits import Limits, require_set_points_apart
+from mascarin.simulation.limits import Limits, require_control_times, require_set_points_apart
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -291,6 +291,9 @@ class VectorRuns:
             self.building, vectors, self.compiled.forcing, positions=self._positions,
             channels=self.channels, times=self.times,
         )  # fmt: skip
+        if self.building.controls:
+            seconds = self.times.last - self.times.first
+            require_control_times(self.building, vectors, positions=self._positions, seconds=seconds)
 
     @cached_property
     def _limits(self) -> Limits:

@@ -89,7 +89,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                self.stepper.control_vents(state, weather.row(step, 0));
+                self.stepper.control_vents(state, weather.row(step, 0), dt);
                 self.stepper.begin_known_step(state);
                 let plan = self.stepper.model.plan;
                 let controlled =
@@ -131,7 +131,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
             || {
                 self.stepper.begin_known_step(state);
                 self.stepper.conditions_now(now);
-                self.stepper.control_vents(state, now.row);
+                self.stepper.control_vents(state, now.row, 0.0);
                 self.stepper.drive_vents(state);
                 self.stage(state, StagePlace::instant(), &solution.stages[0]);
                 self.stepper.end_known_balance(state);

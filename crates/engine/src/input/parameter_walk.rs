@@ -206,7 +206,8 @@ walk!(WindPressure by variant {
     LowRise { side_ratio } plain {},
     Table {} plain { coefficients },
 });
-walk!(VentControl { indoor, outdoor, difference, wind, rain } plain { name, zone });
+walk!(VentControl { indoor, outdoor, difference, wind, rain, minimum_open_time, minimum_closed_time }
+    plain { name, zone });
 walk!(Band { open, close } plain {});
 walk!(ChannelBand { band } plain { channel });
 
@@ -253,6 +254,8 @@ walk!(HumidityControl { setpoint, capacity } plain { schedule });
 walk!(HumiditySetPoint by variant {
     Relative { humidity } plain {},
     Ratio { ratio } plain {},
+    RelativeScheduled {} plain { channel },
+    RatioScheduled {} plain { channel },
 });
 walk!(Buffer { sorption, resistance_factor, thickness, coating, depth, deep } plain { surface, side });
 walk!(Sorption by variant {

@@ -61,6 +61,9 @@ const AS_KELVIN: f64 = 2500.0;
 /// A relative change of a moisture content counts as this change of a temperature [K]: with 0.01 K, a content is periodic within 0.1 %.
 const CONTENT_AS_KELVIN: f64 = 10.0;
 
+/// Time since controls have closed at the start of a run: no time that they have to stay closed is as long [s].
+const LONG_AGO: f64 = 1e12;
+
 /// Everything that passes from step to step.
 #[derive(Debug, Clone)]
 pub struct State<S> {
@@ -81,6 +84,8 @@ pub struct State<S> {
     pub vapour: Vec<S>,
     /// Whether each control of openings lets them open: 1 or 0.
     pub opened: Vec<S>,
+    /// Time since each control has opened or closed [s].
+    pub unchanged: Vec<S>,
 }
 
 impl<S: Real> State<S> {
@@ -103,6 +108,7 @@ impl<S: Real> State<S> {
             load: vec![S::zero(); plan.zones.len()],
             vapour: vapour_at(model, &air),
             opened: vec![S::zero(); plan.description.controls.len()],
+            unchanged: vec![S::constant(LONG_AGO); plan.description.controls.len()],
             cells,
             surfaces: surfaces.into(),
             air,
@@ -156,9 +162,9 @@ impl<S: Real> State<S> {
 
     /// All but the memory.
     #[inline(always)]
-    fn plain(&self) -> [&[S]; 7] {
-        let Self { cells, enthalpy, surfaces, air, load, vapour, opened, .. } = self;
-        [cells, enthalpy, surfaces, air, load, vapour, opened]
+    fn plain(&self) -> [&[S]; 8] {
+        let Self { cells, enthalpy, surfaces, air, load, vapour, opened, unchanged, .. } = self;
+        [cells, enthalpy, surfaces, air, load, vapour, opened, unchanged]
     }
 
     /// All its numbers, one after the other.
@@ -174,8 +180,8 @@ impl<S: Real> State<S> {
     /// Changes each number by one of others, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
-        let Self { cells, enthalpy, memory, surfaces, air, load, vapour, opened } = self;
-        for values in [&mut cells[..], enthalpy, surfaces, air, load, vapour, opened] {
+        let Self { cells, enthalpy, memory, surfaces, air, load, vapour, opened, unchanged } = self;
+        for values in [&mut cells[..], enthalpy, surfaces, air, load, vapour, opened, unchanged] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (mine, &theirs) in values.iter_mut().zip(own) {
@@ -215,6 +221,7 @@ impl<S: Real> State<S> {
         self.load.copy_from_slice(&other.load);
         self.vapour.copy_from_slice(&other.vapour);
         self.opened.copy_from_slice(&other.opened);
+        self.unchanged.copy_from_slice(&other.unchanged);
         self.memory.copy_from_slice(&other.memory);
     }
 
@@ -233,6 +240,7 @@ impl<S: Real> State<S> {
             (&mut self.load, &other.load),
             (&mut self.vapour, &other.vapour),
             (&mut self.opened, &other.opened),
+            (&mut self.unchanged, &other.unchanged),
         ];
         for (mine, theirs) in plain {
             for (mine, &theirs) in mine.iter_mut().zip(theirs) {
@@ -254,6 +262,7 @@ impl<S: Real> State<S> {
         blend(mask, &mut self.load, &other.load);
         blend(mask, &mut self.vapour, &other.vapour);
         blend(mask, &mut self.opened, &other.opened);
+        blend(mask, &mut self.unchanged, &other.unchanged);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
             a.take(mask, b);
         }

@@ -116,7 +116,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             #[inline(always)]
             || {
                 self.weather.set_instant(&self.model, now);
-                self.control_vents(state, now.row);
+                self.control_vents(state, now.row, 0.0);
                 self.drive_vents(state);
                 self.begin_step(state, 0.0);
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
@@ -142,7 +142,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         self.parts.begin(step);
         self.known.halved = false;
-        self.control_vents(state, weather.row(step, 0));
+        self.control_vents(state, weather.row(step, 0), dt);
         self.take_parts(state, weather, dt, ledger)
     }
 
@@ -159,7 +159,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         self.parts.begin_first();
         self.known.halved = true;
-        self.control_vents(state, weather.row(0, 0));
+        self.control_vents(state, weather.row(0, 0), dt);
         self.take_parts(state, weather, dt, ledger)
     }
 

@@ -1,7 +1,7 @@
 //! Air through openings that pressure drives, and the controls of openings.
 //!
-//! A control decides at the beginning of a step, from the temperatures there and the weather in the first stage; its decision holds for
-//! the step. The pressures and flows of a stage belong to the weather in the stage and to the temperatures of the airs at the beginning of
+//! A control decides at the beginning of a step, from the temperatures there, the weather in the first stage and the time since it last
+//! opened or closed; its decision holds for the step. The pressures and flows of a stage belong to the weather in the stage and to the temperatures of the airs at the beginning of
 //! the step, or of the part of it: a step stays as linear as it is without them, and its flows are of first order in its length. (Hensen
 //! 1999, A comparison of coupled and de-coupled solutions for temperature and air flow in a building, ASHRAE Trans. 105(2), 962-969, calls
 //! this ping-pong.) A flow that a temperature difference alone drives grows with the root of it: a flow that is too large for the heat in
@@ -17,13 +17,17 @@ use crate::step::stepper::Stepper;
 use crate::weather::conditions::Conditions;
 
 impl<S: Real> Stepper<'_, S> {
-    /// Lets the controls decide in a forcing row.
+    /// Lets the controls decide in a forcing row, for a length [s].
     #[inline(always)]
-    pub(crate) fn control_vents(&self, state: &mut State<S>, row: &[f64]) {
-        let State { opened, air, .. } = state;
+    pub(crate) fn control_vents(&self, state: &mut State<S>, row: &[f64], length: f64) {
+        let State { opened, unchanged, air, .. } = state;
         let (outdoor, wind) = (row[channel::AIR_TEMPERATURE], row[channel::WIND_SPEED]);
-        for (opened, control) in opened.iter_mut().zip(&self.model.coefficients.vents.controls) {
-            *opened = control.decide(*opened, air, outdoor, wind, row);
+        let states = opened.iter_mut().zip(unchanged);
+        for ((opened, unchanged), control) in states.zip(&self.model.coefficients.vents.controls) {
+            let before = *opened;
+            *opened = control.decide(before, *unchanged, air, outdoor, wind, row);
+            let changed = before.lt(*opened) | opened.lt(before);
+            *unchanged = S::select(changed, S::zero(), *unchanged) + S::constant(length);
         }
     }
 

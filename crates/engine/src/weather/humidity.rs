@@ -1,7 +1,7 @@
 //! Humidity of the outdoor air, sources of vapour and set points at one instant.
 
 use crate::building::coefficients::HumidityCoefficients;
-use crate::building::coefficients::humidity::{Control, Dryer, SetHumidity};
+use crate::building::coefficients::humidity::{Control, Dryer};
 use crate::input::forcing::channel;
 use crate::number::real::Real;
 use crate::physics::mechanical_air::Unit;
@@ -48,16 +48,16 @@ impl<S: Real> Plant<S> {
     fn of(control: Option<&Control<S>>, row: &[f64]) -> Self {
         let Some(control) = control else { return Self::none() };
         let (target, capacity) = control.at(row);
-        match target {
-            SetHumidity::Relative(target) => Self { target, relative: true, capacity },
-            SetHumidity::Ratio(target) => Self { target, relative: false, capacity },
-        }
+        Self { target, relative: control.relative, capacity }
     }
 
     fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
         let line = |a: S, b: S| (a + (b - a).scale(fraction)).max(S::zero());
-        (self.target, self.capacity) =
-            (line(first.target, second.target), line(first.capacity, second.capacity));
+        *self = Self {
+            target: line(first.target, second.target),
+            relative: first.relative,
+            capacity: line(first.capacity, second.capacity),
+        };
     }
 }
 

@@ -237,6 +237,8 @@ fn ventilated() -> Plan {
     let mut band =
         |open: f64, close: f64| Band { open: b.number("band", open), close: b.number("band", close) };
     let (indoor, difference) = (Some(band(22.0, 19.5)), Some(band(1.0, 0.2)));
+    let [minimum_open_time, minimum_closed_time] =
+        [("open", 40.0), ("closed", 20.0)].map(|(name, minutes)| Some(b.number(name, minutes)));
     b.description.controls.push(VentControl {
         name: "night".to_owned(),
         zone: 0,
@@ -245,6 +247,8 @@ fn ventilated() -> Plan {
         outdoor: None,
         wind: None,
         rain: None,
+        minimum_open_time,
+        minimum_closed_time,
     });
     let (power, radiative) = (b.number("heater.power", 600.0), b.number("heater.radiative", 0.2));
     let heater = Gain { name: "heater".to_owned(), power, radiative, schedule: None };
@@ -286,6 +290,58 @@ fn a_day_of_control() {
         let switched = open.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert!((2..48).contains(&switched), "{switched}");
     }
+}
+
+/// Outdoor air that is above and below both limits in turn, a step of 15 min each: the control opens for an hour at least, and at the end
+/// of it the air is warm, so that it closes a step later; it stays closed for two steps, and then the air is cold. Wind closes it at once.
+#[test]
+fn minimum_times() {
+    let mut b = zones(1);
+    let window = vent(&mut b, (0, None), 0.4, 1.0);
+    b.description.vents[window].control = Some(0);
+    let mut number = |name: &str, value: f64| b.number(name, value);
+    let outdoor = Band { open: number("opens", 20.0), close: number("closes", 20.0) };
+    let wind = Band { open: number("calm", 5.0), close: number("storm", 5.0) };
+    let (minimum_open_time, minimum_closed_time) = (Some(number("open", 60.0)), Some(number("closed", 30.0)));
+    b.description.controls.push(VentControl {
+        name: "outdoor".to_owned(),
+        zone: 0,
+        indoor: None,
+        outdoor: Some(outdoor),
+        difference: None,
+        wind: Some(wind),
+        rain: None,
+        minimum_open_time,
+        minimum_closed_time,
+    });
+    let plan = b.plan();
+    let (scheme, steps, dt) = (Scheme::BackwardEuler, 40, 900.0);
+    // The weather of a step is given with the time at its end.
+    let states = |storm: f64, numbers: &[f64]| -> Vec<bool> {
+        let rows = forcing(&plan, scheme, steps, dt, |time, row| {
+            let step = time / dt - 1.0;
+            row[channel::AIR_TEMPERATURE] = if step.rem_euclid(2.0) < 0.5 { 21.0 } else { 19.0 };
+            row[channel::WIND_SPEED] = if (step - storm).abs() < 0.5 { 8.0 } else { 2.0 };
+        });
+        let options = options(scheme, dt, vec![Probe::ControlOpen { control: 0 }]);
+        let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
+        let run = mascarin_engine::march::march(&plan, numbers, &drive, &options, &Watch::default()).unwrap();
+        // The first row is the start, at which it decides as in the first step.
+        assert_eq!(run.records[0], run.records[1]);
+        run.records[1..].iter().map(|&open: &f64| open > 0.5).collect()
+    };
+    let mut numbers = values(&plan);
+    let expected: Vec<bool> = (0..steps).map(|step| step % 8 < 5).collect();
+    assert_eq!(states(f64::INFINITY, &numbers), expected);
+    // Closed by wind in step 1, until a warm step after two steps; then as before.
+    let closed_by_wind: Vec<bool> =
+        (0..steps).map(|step| step == 0 || (step >= 4 && (step - 4) % 8 < 5)).collect();
+    assert_eq!(states(1.0, &numbers), closed_by_wind);
+    for name in ["open", "closed"] {
+        numbers[position(&plan, name)] = 0.0;
+    }
+    let in_turn: Vec<bool> = (0..steps).map(|step| step % 2 == 0).collect();
+    assert_eq!(states(f64::INFINITY, &numbers), in_turn);
 }
 
 /// A constant heater in constant weather: the heat that air carries away is that of the heater, `P = c V (T - T_o)`.
@@ -331,6 +387,7 @@ fn lanes_have_the_bits_of_single_runs() {
         .flat_map(|member| {
             let mut numbers = values(&plan);
             numbers[which] += 60.0 * f64::from(member);
+            numbers[position(&plan, "open")] += 20.0 * f64::from(member);
             numbers
         })
         .collect();
@@ -353,7 +410,10 @@ fn lanes_have_the_bits_of_single_runs() {
 #[test]
 fn derivatives() {
     let plan = ventilated();
-    let numbers = values(&plan);
+    let mut numbers = values(&plan);
+    for time in ["open", "closed"] {
+        numbers[position(&plan, time)] = 0.0;
+    }
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
         let rows = forcing(&plan, scheme, 72, 1200.0, day);
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();

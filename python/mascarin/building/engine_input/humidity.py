@@ -63,10 +63,12 @@ def _gain(gain: VapourGain, places: Places, ids: Ids) -> Json:
 
 
 def _control(plant: Humidistat, places: Places, ids: Ids) -> Json:
-    if plant.relative_humidity is not None:
-        point: Json = {"kind": "relative", "humidity": ids("relative_humidity")}
+    key, given = plant.setpoint
+    kind, number = ("relative", "humidity") if key == "relative_humidity" else ("ratio", "ratio")
+    if given.course is None:
+        point: Json = {"kind": kind, number: ids(f"{key}.constant")}
     else:
-        point = {"kind": "ratio", "ratio": ids("humidity_ratio")}
+        point = {"kind": f"{kind}_scheduled", "channel": places[given.course]}
     capacity = None if plant.capacity is None else ids("capacity")
     return {"setpoint": point, "capacity": capacity, **schedule_of(plant, places)}
 

@@ -76,4 +76,7 @@ def _control(building: Description, places: Places, named: tuple[str, VentContro
             written[condition] = {"channel": places[control.rain.course.name], "band": band}
         else:
             written[condition] = band
+    for key in ("minimum_open_time", "minimum_closed_time"):
+        if getattr(control, key) is not None:
+            written[key] = own(key)
     return written

@@ -255,3 +255,7 @@ ControlSpeed = Annotated[Number, Quantity("m/s", "Limit of a control", _OWN, Lim
 ControlRain = Annotated[
     Number, Quantity("mm/h", "Limit of a control", _OWN, Limits(at_least=0, at_most=1000))
 ]
+MinimumTime = Annotated[
+    Number,
+    Quantity("min", "Time for which a control keeps its state", _OWN, Limits(at_least=0, at_most=10080)),
+]

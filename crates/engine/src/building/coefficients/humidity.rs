@@ -6,7 +6,7 @@ use super::zone::ZoneCoefficients;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::input::description::{Drying, HumidityControl, HumiditySetPoint, ZoneHumidity};
-use crate::input::forcing::{Schedule, scheduled};
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::AIR_SPECIFIC_HEAT;
@@ -72,18 +72,19 @@ pub enum Dryer<S> {
 /// A set point and a capacity.
 #[derive(Debug, Clone)]
 pub struct Control<S> {
+    /// Whether the set point is a relative humidity.
+    pub(crate) relative: bool,
     target: SetHumidity<S>,
     capacity: S,
     schedule: Schedule,
 }
 
-/// A set point of humidity.
+/// A set point of humidity: relative humidity [-] or humidity ratio [kg/kg].
 #[derive(Debug, Clone, Copy)]
-pub enum SetHumidity<S> {
-    /// Relative humidity [-].
-    Relative(S),
-    /// [kg/kg].
-    Ratio(S),
+enum SetHumidity<S> {
+    Constant(S),
+    /// Of a channel of the forcing.
+    Scheduled(usize),
 }
 
 /// A surface that takes up vapour.
@@ -164,21 +165,30 @@ impl<S: Real> VapourZone<S> {
 
 impl<S: Real> Control<S> {
     fn new(control: &HumidityControl, values: &Values<'_, S>) -> Self {
-        let target = match control.setpoint {
-            HumiditySetPoint::Relative { humidity } => SetHumidity::Relative(values.get(humidity)),
-            HumiditySetPoint::Ratio { ratio } => SetHumidity::Ratio(values.get(ratio)),
+        let constant = |id| SetHumidity::Constant(values.get(id));
+        let of_channel = |channel| SetHumidity::Scheduled(CLIMATE_CHANNELS + channel);
+        let (relative, target) = match control.setpoint {
+            HumiditySetPoint::Relative { humidity } => (true, constant(humidity)),
+            HumiditySetPoint::Ratio { ratio } => (false, constant(ratio)),
+            HumiditySetPoint::RelativeScheduled { channel } => (true, of_channel(channel)),
+            HumiditySetPoint::RatioScheduled { channel } => (false, of_channel(channel)),
         };
         let given = |id| values.get(id).scale(1.0 / LATENT_HEAT);
         Self {
+            relative,
             target,
             capacity: control.capacity.map_or_else(|| S::constant(UNLIMITED), given),
             schedule: Schedule::new(control.schedule),
         }
     }
 
-    /// Set point and capacity [kg/s] in a forcing row.
+    /// Set point [-] or [kg/kg], and capacity [kg/s], in a forcing row.
     #[inline(always)]
-    pub(crate) fn at(&self, row: &[f64]) -> (SetHumidity<S>, S) {
-        (self.target, scheduled(self.capacity, self.schedule, row))
+    pub(crate) fn at(&self, row: &[f64]) -> (S, S) {
+        let target = match self.target {
+            SetHumidity::Constant(target) => target,
+            SetHumidity::Scheduled(channel) => S::constant(row[channel]),
+        };
+        (target, scheduled(self.capacity, self.schedule, row))
     }
 }

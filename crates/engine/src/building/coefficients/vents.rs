@@ -13,6 +13,9 @@ use crate::physics::vents::{self, HALF_PLACE};
 /// Temperature that the density of the site belongs to [K]: that of the standard atmosphere at sea level.
 const OF_DENSITY: f64 = 288.15;
 
+/// Round-off of a time that steps add up to [s].
+const SLACK: f64 = 1e-3;
+
 /// All of them; empty in a building without.
 #[derive(Debug, Clone)]
 pub struct Vents<S> {
@@ -112,12 +115,16 @@ pub(crate) struct Control<S> {
     difference: Option<Limits<S>>,
     wind: Option<Limits<S>>,
     rain: Option<(usize, Limits<S>)>,
+    /// Times for which it stays open and closed [s].
+    minimum_open: S,
+    minimum_closed: S,
 }
 
 impl<S: Real> Control<S> {
     fn new(control: &VentControl, values: &Values<'_, S>) -> Self {
         let band = |band: &Band| [values.get(band.open), values.get(band.close)];
         let of = |given: &Option<Band>| given.as_ref().map(band);
+        let seconds = |id| values.get_or(id, 0.0).scale(60.0);
         Self {
             zone: control.zone,
             indoor: of(&control.indoor),
@@ -125,27 +132,39 @@ impl<S: Real> Control<S> {
             difference: of(&control.difference),
             wind: of(&control.wind),
             rain: control.rain.as_ref().map(|rain| (CLIMATE_CHANNELS + rain.channel, band(&rain.band))),
+            minimum_open: seconds(control.minimum_open_time),
+            minimum_closed: seconds(control.minimum_closed_time),
         }
     }
 
-    /// 1 where it opens or stays open, else 0, after it was in a state, with the airs of the zones and the outdoor air [degC] and the
-    /// wind at the mast [m/s] of a forcing row.
-    pub(crate) fn decide(&self, before: S, air: &[S], outdoor: f64, wind: f64, row: &[f64]) -> S {
+    /// 1 where it opens or stays open, else 0, after it was in a state for a time [s], with the airs of the zones and the outdoor air
+    /// [degC] and the wind at the mast [m/s] of a forcing row. Wind and rain close it at once.
+    pub(crate) fn decide(
+        &self,
+        before: S,
+        unchanged: S,
+        air: &[S],
+        outdoor: f64,
+        wind: f64,
+        row: &[f64],
+    ) -> S {
         let was_open = S::constant(0.5).lt(before);
-        let mut open = S::one();
-        let mut require = |holds: S::Mask| open = S::select(holds, open, S::zero());
+        let mut warm = S::one();
         let (indoor, outdoor) = (air[self.zone], S::constant(outdoor));
         let above = [(self.indoor, indoor), (self.outdoor, outdoor), (self.difference, indoor - outdoor)];
         for (limits, value) in above {
             if let Some([opens, closes]) = limits {
-                require(S::select(was_open, closes, opens).lt(value));
+                warm = S::select(S::select(was_open, closes, opens).lt(value), warm, S::zero());
             }
         }
+        let stays =
+            unchanged.lt(S::select(was_open, self.minimum_open, self.minimum_closed) - S::constant(SLACK));
+        let mut open = S::select(stays, before, warm);
         let rain = self.rain.map(|(channel, limits)| (limits, row[channel]));
         for (limits, value) in self.wind.map(|limits| (limits, wind)).into_iter().chain(rain) {
             let [opens, closes] = limits;
             // At the limit itself it is open: no rain is 0.
-            require(!S::select(was_open, closes, opens).lt(S::constant(value)));
+            open = S::select(S::select(was_open, closes, opens).lt(S::constant(value)), S::zero(), open);
         }
         open
     }
@@ -184,9 +203,11 @@ mod tests {
             difference: Some([2.0, 1.0]),
             wind: Some([6.0, 8.0]),
             rain: Some((0, [0.0, 0.2])),
+            minimum_open: 0.0,
+            minimum_closed: 0.0,
         };
         let decide = |before: f64, air: f64, outdoor: f64, wind: f64, rain: f64| {
-            control.decide(before, &[air], outdoor, wind, &[rain])
+            control.decide(before, 0.0, &[air], outdoor, wind, &[rain])
         };
         assert_eq!((decide(0.0, 23.0, 18.0, 3.0, 0.0), decide(1.0, 23.0, 18.0, 3.0, 0.0)), (0.0, 1.0));
         assert_eq!((decide(0.0, 24.5, 23.0, 3.0, 0.0), decide(1.0, 24.5, 23.0, 3.0, 0.0)), (0.0, 1.0));

@@ -2,7 +2,9 @@
 
 use super::numbers::{check_count, check_rising};
 use super::{Checked, check_index, check_schedule, refuse};
-use crate::input::description::{Buffer, Description, Drying, Facing, Humidity, HumidityControl, Sorption};
+use crate::input::description::{
+    Buffer, Description, Drying, Facing, Humidity, HumidityControl, HumiditySetPoint, Sorption,
+};
 
 /// Zones, sources, set points, surfaces that take up vapour.
 pub(super) fn check_humidity(description: &Description, humidity: &Humidity) -> Checked {
@@ -35,6 +37,12 @@ pub(super) fn check_humidity(description: &Description, humidity: &Humidity) -> 
 }
 
 fn check_control(description: &Description, place: &str, control: &HumidityControl) -> Checked {
+    let (HumiditySetPoint::RelativeScheduled { channel } | HumiditySetPoint::RatioScheduled { channel }) =
+        control.setpoint
+    else {
+        return check_schedule(description, place, control.schedule);
+    };
+    check_schedule(description, place, Some(channel))?;
     check_schedule(description, place, control.schedule)
 }
 

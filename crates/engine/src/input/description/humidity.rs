@@ -102,6 +102,16 @@ pub enum HumiditySetPoint {
         /// [kg/kg].
         ratio: ParamId,
     },
+    /// Relative humidity that a channel gives.
+    RelativeScheduled {
+        /// Index into [`Description::channels`](super::Description::channels) [-].
+        channel: usize,
+    },
+    /// Humidity ratio that a channel gives.
+    RatioScheduled {
+        /// Index into [`Description::channels`](super::Description::channels) [kg/kg].
+        channel: usize,
+    },
 }
 
 /// A surface in a zone that takes up vapour: one layer behind it, or two.

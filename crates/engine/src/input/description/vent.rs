@@ -98,6 +98,12 @@ pub struct VentControl {
     /// A channel, such as rain, below limits.
     #[serde(default)]
     pub rain: Option<ChannelBand>,
+    /// Time for which it stays open once it has opened, wind and rain apart [min]. None: 0.
+    #[serde(default)]
+    pub minimum_open_time: Option<ParamId>,
+    /// Time for which it stays closed once it has closed [min]. None: 0.
+    #[serde(default)]
+    pub minimum_closed_time: Option<ParamId>,
 }
 
 /// Limits of a condition.

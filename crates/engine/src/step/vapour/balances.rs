@@ -103,7 +103,8 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         for (stage, &weight) in tableau.weights.iter().enumerate() {
             let ratio = if stage > 0 { tableau.ratio } else { 0.0 };
             self.assemble(humidity, &state.vapour, (stage, ratio, tableau.diagonal * length));
-            self.solve(humidity, &state.load, stage);
+            self.limit(humidity, state, (stage, tableau.nodes[stage]));
+            self.solve(stage);
             self.finish_stage(humidity, &state.vapour, (ratio, tableau.diagonal * length));
             self.count((stage, weight * length), &mut step);
             if stage == 0 {
@@ -161,15 +162,24 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         }
     }
 
+    /// Set points and capacities in a stage at a node of the step.
+    #[inline(always)]
+    fn limit(&mut self, humidity: &HumidityCoefficients<S>, state: &State<S>, (stage, node): (usize, f64)) {
+        for (z, (limits, zone)) in self.limits.iter_mut().zip(&humidity.zones).enumerate() {
+            let at =
+                |flows: &StageFlows<S>| Limits::new(zone, &flows.zones[z], flows.pressure, state.load[z]);
+            *limits = at(&self.flows[stage]);
+            if let Some(end) = self.flows.last().filter(|_| node < 1.0) {
+                *limits = limits.on_the_way(&at(end), state.vapour[z], node);
+            }
+        }
+    }
+
     /// Humidity ratios, and what plants and saturation take away: an active-set method (Hintermueller, Ito & Kunisch 2002,
     /// doi:10.1137/S1052623401383558), which ends after a few solutions for an M-matrix.
     #[inline(always)]
-    fn solve(&mut self, humidity: &HumidityCoefficients<S>, load: &[S], stage: usize) {
+    fn solve(&mut self, stage: usize) {
         self.modes.fill(Mode::idle());
-        let flows = &self.flows[stage];
-        for (z, (limits, zone)) in self.limits.iter_mut().zip(&humidity.zones).enumerate() {
-            *limits = Limits::new(zone, &flows.zones[z], flows.pressure, load[z]);
-        }
         for _ in 0..MAX_SOLUTIONS {
             self.solve_in_modes(stage);
             let mut changed = S::Mask::splat(false);
