@@ -115,6 +115,11 @@ impl GlassPlan {
         }
     }
 
+    /// Whether no pane stores heat.
+    pub(crate) fn stores_nothing(&self) -> bool {
+        !self.sites.iter().any(|site| matches!(site, Site::Middle(_)))
+    }
+
     /// The panes among what has a site, and the blind.
     #[inline(always)]
     pub(crate) fn split<'a, T>(&self, all: &'a mut [T]) -> (&'a mut [T], Option<&'a mut T>) {
@@ -310,6 +315,11 @@ impl<S: Real> Glass<S> {
     /// Number of gaps whose conductance depends on temperature.
     pub fn filled_gaps(&self) -> usize {
         self.gaps.len()
+    }
+
+    /// The gap and its link, where there is one gap, whose conductance depends on temperature, and no blind.
+    pub(crate) fn only_gap(&self) -> Option<&(usize, GasGap<S>)> {
+        if let ([gap], None) = (&self.gaps[..], &self.blind) { Some(gap) } else { None }
     }
 
     /// Convective conductances of the gaps at predicted temperatures [W/(m2 K)].

@@ -2,7 +2,7 @@
 
 use super::glazing::GlassPlan;
 use super::ids::SurfaceId;
-use crate::input::description::{Construction, Description, Material};
+use crate::input::description::{Construction, Description, Material, Zone, ZoneLongwave};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct WallPlan {
     pub window: Option<usize>,
     /// Whether its surfaces are eliminated each with its own zone, see the module `thick_walls`.
     pub thick: bool,
+    /// Whether the front of a zone eliminates it, see [`eliminated_in_front`](Self::eliminated_in_front).
+    pub in_front: bool,
 }
 
 /// How a surface takes part in the solution.
@@ -100,6 +102,7 @@ impl WallPlan {
             glass: None,
             window: None,
             thick: false,
+            in_front: false,
         }
     }
 
@@ -113,7 +116,14 @@ impl WallPlan {
             glass: Some(glass),
             window: None,
             thick: false,
+            in_front: false,
         }
+    }
+
+    /// Whether a wall with exactly one surface in a zone is eliminated with the zone's own surfaces: walls of constant properties,
+    /// and windows of zones whose exact long-wave exchange is eliminated in each iteration anyway.
+    pub(crate) fn eliminated_in_front(&self, zone: &Zone) -> bool {
+        !self.nonlinear || (self.glass.is_some() && matches!(zone.longwave, ZoneLongwave::Radiosity))
     }
 
     /// Number of cells.

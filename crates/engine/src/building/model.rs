@@ -33,6 +33,13 @@ impl<'a, S: Real> Model<'a, S> {
         wall.first_cell..wall.first_cell + wall.len()
     }
 
+    /// Whether ideal loads are found by the responses of the building to each: where there is one load, and where loads are partly
+    /// radiated. (With derivatives they always are.)
+    pub(crate) fn loads_by_responses(&self) -> bool {
+        let radiated = self.coefficients.zones.iter().any(|zone| zone.radiated_loads.is_some());
+        self.plan.ideal_loads.len() == 1 || radiated
+    }
+
     /// Law of convection at a surface; none where no heat passes it, or where the surface is held at a temperature.
     pub(crate) fn convection(&self, surface: SurfaceId) -> Option<&SurfaceConvection<S>> {
         convection_law(&self.coefficients, surface)
@@ -90,6 +97,9 @@ pub(crate) struct Parts {
     /// Walls whose properties depend on temperature, and the cells of each.
     pub(crate) nonlinear_walls: Vec<usize>,
     pub(crate) nonlinear_cells: Vec<Range<usize>>,
+    /// Those of these walls that zone fronts eliminate, all of them windows, and the others.
+    pub(crate) front_windows: Vec<usize>,
+    pub(crate) coupled_walls: Vec<usize>,
     /// Surfaces whose laws are linearised or change with the wind: all of them, and those that no zone front eliminates.
     pub(crate) surfaces: VariableSurfaces,
     pub(crate) other_surfaces: VariableSurfaces,
@@ -121,28 +131,23 @@ impl VariableSurfaces {
     }
 }
 
-/// Whether a wall has constant properties and exactly one surface in a zone, or is thick: the fronts of zones eliminate it.
-pub(crate) fn in_fronts(plan: &Plan, wall: usize) -> bool {
-    let roles = SurfaceId::pair(wall).map(|surface| plan.surfaces[surface].role);
-    let inside = roles.iter().filter(|role| matches!(role, SurfaceRole::Zone { .. })).count();
-    !plan.walls[wall].nonlinear && (inside == 1 || plan.walls[wall].thick)
-}
-
 impl Parts {
     fn new<S: Real>(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
         let (nonlinear_walls, linear_walls): (Vec<_>, Vec<_>) =
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
         let exterior = |surface: SurfaceId| plan.surfaces[surface].role == SurfaceRole::Exterior;
-        let linear = || linear_walls.iter().copied();
+        let (linear, nonlinear) = (|| linear_walls.iter().copied(), || nonlinear_walls.iter().copied());
         let cells = nonlinear_walls.iter().map(|&wall| &plan.walls[wall]);
         let mut parts = Self {
             thick_walls: linear().filter(|&wall| plan.walls[wall].thick).collect(),
-            shared_walls: linear().filter(|&wall| !in_fronts(plan, wall)).collect(),
+            shared_walls: linear().filter(|&wall| !plan.walls[wall].in_front).collect(),
             detached_walls: linear()
                 .filter(|&wall| SurfaceId::pair(wall).into_iter().all(exterior))
                 .collect(),
             zone_surfaces: linear().flat_map(SurfaceId::pair).filter(|&surface| !exterior(surface)).collect(),
             nonlinear_cells: cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect(),
+            front_windows: nonlinear().filter(|&wall| plan.walls[wall].in_front).collect(),
+            coupled_walls: nonlinear().filter(|&wall| !plan.walls[wall].in_front).collect(),
             linear_walls,
             nonlinear_walls,
             surfaces: VariableSurfaces::default(),
@@ -163,15 +168,16 @@ impl Parts {
         };
         parts.linearised = plan.surfaces.ids().filter(linearised).collect();
         parts.other_surfaces =
-            parts.surfaces.filter(|surface| exterior(surface) && !in_fronts(plan, surface.wall()));
+            parts.surfaces.filter(|surface| exterior(surface) && !plan.walls[surface.wall()].in_front);
         parts
     }
 
     /// Sorts a surface by its laws.
     fn sort<S: Real>(&mut self, plan: &Plan, coefficients: &Coefficients<S>, surface: SurfaceId) {
-        // The exterior surface of a nonlinear wall is eliminated with its wall, in every iteration.
+        // The exterior surface of a wall that is nonlinear itself is eliminated with its wall, in every iteration.
         let of_linear_wall = matches!(plan.surfaces[surface].role, SurfaceRole::Zone { .. })
             || !plan.walls[surface.wall()].nonlinear;
+        self.nonlinear_balances |= plan.walls[surface.wall()].in_front && !of_linear_wall;
         match convection_law(coefficients, surface) {
             Some(law) if law.constant().is_some() => {}
             Some(law) if law.straight() => {

@@ -1,7 +1,7 @@
 //! The numbering of the unknowns of the coupled system: surfaces in contact with zones, and the air of each zone.
 //!
 //! First come, zone by zone, the surfaces that exchange heat with their own zone only: surfaces of walls of constant
-//! properties whose other surface is in contact with no zone. Of all others, the unknown with the fewest neighbours comes next
+//! properties, and of most windows, whose other surface is in contact with no zone. Of all others, the unknown with the fewest neighbours comes next
 //! (minimum degree; Tinney & Walker 1967, doi:10.1109/PROC.1967.6011; George & Liu 1989, doi:10.1137/1031001), which keeps the
 //! factors sparse: unknowns of different zones are coupled only by the walls and the air paths between the zones.
 //!
@@ -39,7 +39,7 @@ pub(crate) fn number_unknowns(
     let (mut surfaces, mut zones) = find_unknowns(description);
     // Positions and order, if the work on the coupled system and on the fronts is not more than allowed; and that work.
     let arrange = |thick: Vec<bool>, most_work: usize| {
-        let groups = groups(walls, &surfaces, &zones, &thick);
+        let groups = groups(description, walls, &surfaces, &thick);
         let neighbours = neighbours(description, &surfaces, &zones, &thick);
         let of_fronts = work_of_fronts(&zones, &groups);
         let (elimination, groups) = order(&neighbours, &groups, most_work.saturating_sub(of_fronts))?;
@@ -160,8 +160,8 @@ fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>)
     (surfaces, zones)
 }
 
-/// Group of the surfaces of constant walls that exchange heat with their own zone only; those of thick walls come last in
-/// their zone.
+/// Group of the surfaces of constant walls and windows that exchange heat with their own zone only; in each zone, windows come
+/// after the other walls and thick walls last.
 const OWN: usize = 0;
 /// Group of the other surfaces of constant walls.
 const CONSTANT: usize = 1;
@@ -170,24 +170,22 @@ const CHANGING: usize = 2;
 
 /// Group of each unknown, and the place among the groups of the first kind.
 fn groups(
+    description: &Description,
     walls: &[WallPlan],
     surfaces: &[SurfacePlan],
-    zones: &[ZonePlan],
     thick: &[bool],
 ) -> Vec<(usize, usize)> {
-    let unknowns = zones.iter().map(|zone| zone.surfaces.len() + 1).sum();
-    let mut groups = vec![(CHANGING, 0); unknowns];
+    let in_zones = surfaces.iter().filter(|surface| surface.role != SurfaceRole::Exterior).count();
+    let mut groups = vec![(CHANGING, 0); in_zones + description.zones.len()];
     for pair in surfaces.chunks_exact(2) {
         let between_zones = pair.iter().all(|surface| matches!(surface.role, SurfaceRole::Zone { .. }));
         for surface in pair {
-            if let SurfaceRole::Zone { zone, row } = surface.role
-                && !walls[surface.wall].nonlinear
-            {
-                groups[row] = match (between_zones, thick[surface.wall]) {
-                    (false, _) => (OWN, 2 * zone),
-                    (true, true) => (OWN, 2 * zone + 1),
-                    (true, false) => (CONSTANT, 0),
-                };
+            let SurfaceRole::Zone { zone, row } = surface.role else { continue };
+            let wall = &walls[surface.wall];
+            if !between_zones && wall.eliminated_in_front(&description.zones[zone]) {
+                groups[row] = (OWN, 3 * zone + usize::from(wall.nonlinear));
+            } else if between_zones && !wall.nonlinear {
+                groups[row] = if thick[surface.wall] { (OWN, 3 * zone + 2) } else { (CONSTANT, 0) };
             }
         }
     }

@@ -106,6 +106,11 @@ impl Pattern {
         self.columns.len()
     }
 
+    /// Place behind the stored entries, for what belongs to none of them.
+    pub(crate) fn nowhere(&self) -> usize {
+        self.columns.len()
+    }
+
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> &RowPattern {
         &self.rows[row]

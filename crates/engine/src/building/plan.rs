@@ -39,8 +39,8 @@ pub struct Plan {
     pub(crate) vents: Option<VentPlan>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
-    /// Number of the first rows of the coupled system: surfaces of walls of constant properties whose other surface is in no
-    /// zone, zone by zone.
+    /// Number of the first rows of the coupled system: surfaces of walls of constant properties and of windows whose other surface
+    /// is in no zone, zone by zone.
     pub own_rows: usize,
     /// The matrix of the later rows, counted from the first of them: the other surfaces in contact with zones and the air of the
     /// zones.
@@ -78,6 +78,11 @@ impl Plan {
         let Order { own_rows, pattern, constant_rows, thick } = order;
         for (wall, thick) in walls.iter_mut().zip(thick) {
             wall.thick = thick;
+        }
+        for surface in &surfaces {
+            if let SurfaceRole::Zone { row, .. } = surface.role {
+                walls[surface.wall].in_front |= row < own_rows;
+            }
         }
         let conditioned = |zone: &Zone| zone.heating.is_some() || zone.cooling.is_some();
         let ideal_loads = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();

@@ -20,10 +20,41 @@ use crate::physics::solar::{SkyVisibility, Sunlight};
 pub struct SolarGeometry {
     /// Surfaces outdoors with obstacles in front of them.
     receivers: BySurface<Option<Shaded>>,
-    /// By window, in the order of the plan: the beam where it is traced, and the place of its first fraction.
-    tracers: Vec<Option<(usize, BeamTracer)>>,
+    /// By window, in the order of the plan: the beam where it is traced.
+    tracers: Vec<Option<Traced>>,
     /// Number of fractions at an instant.
     size: usize,
+}
+
+/// A beam that is traced.
+#[derive(Debug, Clone)]
+struct Traced {
+    tracer: BeamTracer,
+    /// Place of its first fraction.
+    first: usize,
+    /// The same of an earlier window that has the same fractions.
+    same_as: Option<usize>,
+}
+
+impl Traced {
+    /// Places of its fractions.
+    fn places(&self) -> core::ops::Range<usize> {
+        self.first..self.first + self.tracer.len()
+    }
+}
+
+/// Finds, for each beam, the first one that is alike.
+fn find_alike(tracers: &mut [Option<Traced>]) {
+    let mut different: Vec<usize> = Vec::new();
+    for k in 0..tracers.len() {
+        let (before, rest) = tracers.split_at_mut(k);
+        let Some(traced) = &mut rest[0] else { continue };
+        let mut known = different.iter().filter_map(|&k| before[k].as_ref());
+        traced.same_as = known.find(|other| other.tracer.alike(&traced.tracer)).map(|other| other.first);
+        if traced.same_as.is_none() {
+            different.push(k);
+        }
+    }
 }
 
 /// A surface outdoors with obstacles in front of it.
@@ -74,7 +105,7 @@ impl SolarGeometry {
                 })
             })
             .collect();
-        let tracers = windows
+        let mut tracers: Vec<Option<Traced>> = windows
             .iter()
             .map(|&w| {
                 let zone = zones.iter().position(|zone| zone.surfaces.contains(&(SurfaceId::inside(w))))?;
@@ -91,9 +122,10 @@ impl SolarGeometry {
                     Some(shaded) => shaded.receiver.clone(),
                     None => drawn.receiver(description, outside)?,
                 };
-                Some((first, BeamTracer::new(receiver, targets)))
+                Some(Traced { tracer: BeamTracer::new(receiver, targets), first, same_as: None })
             })
             .collect();
+        find_alike(&mut tracers);
         Self { receivers, tracers, size }
     }
 
@@ -109,8 +141,12 @@ impl SolarGeometry {
                 fractions[place] = shaded.receiver.sunlit_fraction(light.direction);
             }
         }
-        for (first, tracer) in self.tracers.iter().flatten() {
-            tracer.trace(light.direction, &mut fractions[*first..first + tracer.len()]);
+        for traced in self.tracers.iter().flatten() {
+            if let Some(same) = traced.same_as {
+                fractions.copy_within(same..same + traced.tracer.len(), traced.first);
+            } else {
+                traced.tracer.trace(light.direction, &mut fractions[traced.places()]);
+            }
         }
         fractions.into_boxed_slice()
     }
@@ -158,8 +194,7 @@ impl SolarGeometry {
     /// Fractions of the beam through a window that end on each surface of its zone [-]; none where it is not traced.
     #[must_use]
     pub fn beam_fractions<'a>(&self, window: usize, fractions: &'a [f64]) -> Option<&'a [f64]> {
-        let (first, tracer) = self.tracers[window].as_ref()?;
-        fractions.get(*first..first + tracer.len())
+        fractions.get(self.tracers[window].as_ref()?.places())
     }
 }
 

@@ -10,7 +10,7 @@ use super::shading::Receiver;
 use super::surface::PlaneSurface;
 
 /// A surface of a zone on which a beam may end.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Target {
     /// Normal into the zone.
     normal: Vertex,
@@ -43,6 +43,17 @@ impl BeamTracer {
     /// The beam through a window onto targets in the coordinates of its plane.
     pub(crate) fn new(window: Receiver, targets: Vec<Target>) -> Self {
         Self { window, targets }
+    }
+
+    /// Whether the fractions of another window are always the same: it is the same seen from a corner of its own, as in a room of
+    /// the same form, and no obstacle is in front of either.
+    pub(crate) fn alike(&self, other: &Self) -> bool {
+        let (mine, theirs) = (&self.window, &other.window);
+        !mine.obstructed()
+            && !theirs.obstructed()
+            && mine.surface.plane.parallel(&theirs.surface.plane)
+            && mine.surface.pieces == theirs.surface.pieces
+            && self.targets == other.targets
     }
 
     /// Number of surfaces.
@@ -134,6 +145,32 @@ mod tests {
         // comes from x > 2 + z: the integral of (1.5 - z) from 0.2 m to 1.5 m, 0.845 m2 of the window's 6 m2.
         tracer.trace(towards([1.0, -1.0, 1.0]), &mut fractions);
         assert!((fractions[1] - 0.845 / 6.0).abs() < 1e-12, "{fractions:?}");
+    }
+
+    /// A room at another place, in coordinates that are exact: the same fractions. A lower window, a wall that is missing and an
+    /// overhang are seen.
+    #[test]
+    fn windows_of_rooms_of_one_form_are_alike() {
+        let moved = |vertices: &[Vertex; 4], x: f64| vertices.map(|[a, y, z]| [a + x, y, z]);
+        let room = |x: f64, lower: f64| {
+            let window = PlaneSurface::of(&WINDOW.map(|[a, y, z]| [a + x, y, z - lower]));
+            let surfaces = [moved(&FLOOR, x), moved(&NORTH, x)].map(|vertices| PlaneSurface::of(&vertices));
+            let targets = surfaces.iter().map(|surface| Target::new(&window, surface, -1.0)).collect();
+            BeamTracer::new(Receiver::new(window, &[], &[]), targets)
+        };
+        let (first, second) = (room(0.0, 0.0), room(64.0, 0.0));
+        assert!(first.alike(&second) && !first.alike(&room(0.0, 0.125)));
+        let [mut one, mut other] = [[0.0; 2]; 2];
+        first.trace(towards([0.3, -1.0, 0.4]), &mut one);
+        second.trace(towards([0.3, -1.0, 0.4]), &mut other);
+        assert_eq!(one, other);
+        let without_wall =
+            BeamTracer::new(first.window.clone(), vec![first.targets[0].clone(), Target::NONE]);
+        assert!(!first.alike(&without_wall));
+        let overhang =
+            PlaneSurface::of(&[[-9.0, 0.0, 2.7], [9.0, 0.0, 2.7], [9.0, -1.0, 2.7], [-9.0, -1.0, 2.7]]);
+        let shaded = Receiver::new(first.window.surface.clone(), &[overhang], &[]);
+        assert!(!first.alike(&BeamTracer::new(shaded, first.targets.clone())));
     }
 
     /// An overhang that shades the upper quarter of the window at 45 deg takes the far end of the patch: none is left beyond

@@ -55,6 +55,11 @@ impl PlaneAxes {
         Self { origin: self.origin, axes: [along, across.map(|x| -x), normal.map(|x| -x)] }
     }
 
+    /// Whether another plane has the same axes.
+    pub(crate) fn parallel(&self, other: &Self) -> bool {
+        self.axes == other.axes
+    }
+
     /// Unit normal.
     pub(crate) fn normal(&self) -> Vertex {
         self.axes[2]

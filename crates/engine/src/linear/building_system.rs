@@ -39,6 +39,9 @@ pub(crate) struct BuildingSystem<'a, S> {
     pub(crate) inverses: Vec<S>,
     pub(crate) coupled: CoupledSystem<'a, S>,
     pub(crate) zone_fronts: ZoneFronts<S>,
+    /// Nonlinear walls that are linearised and eliminated one by one, and those of them that are windows in zone fronts.
+    pub(crate) single_walls: Vec<usize>,
+    pub(super) single_windows: Vec<usize>,
     pub(crate) thick_walls: ThickWalls<S>,
 }
 
@@ -49,7 +52,13 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         let (plan, coefficients) = (model.plan, &model.coefficients);
         let walls: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
         let count = plan.walls.len();
+        let together = [together, together && !model.loads_by_responses()];
+        let zone_fronts = ZoneFronts::new(plan, coefficients, &laws.surfaces, together);
+        let windows_together = zone_fronts.windows_together(count);
+        let single = |walls: &[usize]| walls.iter().copied().filter(|&w| !windows_together[w]).collect();
         Self {
+            single_walls: single(&model.parts.nonlinear_walls),
+            single_windows: single(&model.parts.front_windows),
             step_maps: StepMaps::new(plan, coefficients, &walls, diagonal),
             walls,
             responses: vec![Response::none(); count],
@@ -58,7 +67,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             exterior: vec![ExteriorSurfaces::None; count],
             inverses: vec![S::zero(); count],
             coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
-            zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces, together),
+            zone_fronts,
             thick_walls: ThickWalls::new(model),
         }
     }
@@ -140,7 +149,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.assemble_nonlinear(inputs);
         self.coupled.solve_rest();
         self.resolve_airs(model, solution);
-        for &w in &model.parts.nonlinear_walls {
+        for &w in &model.parts.coupled_walls {
             self.resolve_wall(model, w, solution);
         }
         if again {
@@ -177,15 +186,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             round += S::one();
         }
         if S::zero().lt(round).any() {
-            self.resolve_airs(model, solution);
-            for &w in &model.parts.nonlinear_walls {
-                self.resolve_wall(model, w, solution);
-            }
-            self.zone_fronts.write(&self.coupled.right, &mut solution.surfaces);
-            for &w in &model.parts.shared_walls {
-                let surfaces = self.resolve_surfaces(model, w);
-                solution.surfaces.set_pair(w, surfaces);
-            }
+            self.resolve_all(model, solution);
         }
         lacked
     }
@@ -205,6 +206,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         if !model.parts.balances_stay() {
             self.zone_fronts.write_exterior_laws(laws);
         }
+        self.zone_fronts.write_windows(&solution.cells, &mut self.walls);
         if !model.plan.ideal_loads.is_empty() {
             self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
         }
@@ -232,6 +234,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         for &w in &parts.shared_walls {
             self.exterior[w] = self.eliminate_wall(inputs, w, matrix);
         }
+        if !self.single_windows.is_empty() {
+            self.zone_fronts.set_windows(&self.sources, &self.responses);
+        }
         let elimination = if matrix { Elimination::Full } else { Elimination::RightHandSide };
         self.zone_fronts.eliminate(iterate, elimination, parts.balances_stay(), &mut self.coupled);
         if matrix {
@@ -240,12 +245,12 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.coupled.keep_right();
     }
 
-    /// Assembles what changes from iteration to iteration: the nonlinear walls and all that acts on airs.
+    /// Assembles what changes from iteration to iteration: the nonlinear walls that no front eliminates, and all that acts on airs.
     #[inline(always)]
     pub(crate) fn assemble_nonlinear(&mut self, inputs: &StageInputs<'_, S>) {
         let model = inputs.model;
         self.coupled.begin();
-        for &w in &model.parts.nonlinear_walls {
+        for &w in &model.parts.coupled_walls {
             self.exterior[w] = self.eliminate_wall(inputs, w, true);
         }
         for zone in 0..model.plan.zones.len() {
@@ -380,83 +385,6 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         }
         self.coupled.right[row] += area * (source[e] + response.other(e) * offset);
         ExteriorSurfaces::One { side: o, line: Line { offset, slope } }
-    }
-
-    /// Airs from the solution of the coupled system.
-    #[inline(always)]
-    fn resolve_airs(&self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
-        for (zone, plan) in model.plan.zones.iter().enumerate() {
-            solution.air[zone] = self.coupled.right[plan.air_row];
-        }
-    }
-
-    /// Surfaces of the linear walls.
-    #[inline(always)]
-    fn resolve_linear_walls(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
-        self.coupled.solve_first();
-        let stays = model.parts.balances_stay();
-        self.zone_fronts.solve(stays, &mut self.coupled.right, &mut solution.surfaces);
-        for &w in &model.parts.shared_walls {
-            let surfaces = self.resolve_surfaces(model, w);
-            solution.surfaces.set_pair(w, surfaces);
-        }
-    }
-
-    /// Surfaces of a nonlinear wall and its cells.
-    #[inline(always)]
-    fn resolve_wall(&mut self, model: &Model<'_, S>, w: usize, solution: &mut Unknowns<S>) {
-        let surfaces = self.resolve_surfaces(model, w);
-        solution.surfaces.set_pair(w, surfaces);
-        self.walls[w].temperatures(surfaces, &mut solution.cells[model.cells(w)]);
-    }
-
-    /// All airs and surfaces, and the cells of nonlinear walls, from the solution of the coupled system.
-    #[inline(always)]
-    pub(crate) fn resolve_all(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
-        self.resolve_airs(model, solution);
-        for (w, wall) in model.plan.walls.iter().enumerate() {
-            if wall.nonlinear {
-                self.resolve_wall(model, w, solution);
-            } else {
-                let surfaces = self.resolve_surfaces(model, w);
-                solution.surfaces.set_pair(w, surfaces);
-            }
-        }
-    }
-
-    /// Both surfaces of a wall.
-    #[inline(always)]
-    fn resolve_surfaces(&self, model: &Model<'_, S>, w: usize) -> [S; 2] {
-        let of_zone = |surface: SurfaceId| self.coupled.right[model.plan.row(surface)];
-        match self.exterior[w] {
-            ExteriorSurfaces::Both(surfaces) => surfaces,
-            ExteriorSurfaces::None => SurfaceId::pair(w).map(of_zone),
-            ExteriorSurfaces::One { side: 0, line } => {
-                let inner = of_zone(SurfaceId::inside(w));
-                [line.at(inner), inner]
-            }
-            ExteriorSurfaces::One { line, .. } => {
-                let outer = of_zone(SurfaceId::outside(w));
-                [outer, line.at(outer)]
-            }
-        }
-    }
-
-    /// Solves the coupled system and the zone fronts for another right-hand side, with the factors already computed.
-    #[inline(always)]
-    pub(crate) fn solve_again(&self, right: &mut [S]) {
-        self.solve_without_thick_walls(right);
-        if !self.thick_walls.is_empty() {
-            self.thick_walls.complete(right, |right| self.solve_without_thick_walls(right));
-        }
-    }
-
-    /// The same without what the surfaces of thick walls add to each other: nearly the solution.
-    #[inline(always)]
-    pub(crate) fn solve_without_thick_walls(&self, right: &mut [S]) {
-        self.zone_fronts.forward(right);
-        self.coupled.solve_again(right);
-        self.zone_fronts.back(right);
     }
 }
 

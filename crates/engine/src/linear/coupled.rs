@@ -36,7 +36,8 @@ pub(crate) struct CoupledSystem<'a, S> {
 impl<'a, S: Real> CoupledSystem<'a, S> {
     pub(crate) fn new(pattern: &'a Pattern, before: usize, first: usize) -> Self {
         let size = pattern.size();
-        let (all, line) = (vec![S::zero(); pattern.entries()], vec![S::zero(); size]);
+        // One entry more, at `nowhere`.
+        let (all, line) = (vec![S::zero(); pattern.entries() + 1], vec![S::zero(); size]);
         let right = vec![S::zero(); before + size];
         Self { pattern, before, first, kept: all.clone(), matrix: all, kept_right: line, right }
     }
@@ -71,6 +72,14 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     #[inline(always)]
     pub(crate) fn add_at(&mut self, place: usize, value: S) {
         self.matrix[place] += value;
+    }
+
+    /// Adds some numbers to entries whose places are known.
+    #[inline(always)]
+    pub(crate) fn add_all(&mut self, places: &[usize], values: &[S]) {
+        for (&place, &value) in places.iter().zip(values) {
+            self.matrix[place] += value;
+        }
     }
 
     /// Adds a conductance between two unknowns.

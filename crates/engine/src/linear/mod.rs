@@ -9,9 +9,10 @@
 //! | `surface_balance` | balances of surfaces, exterior surfaces eliminated |
 //! | `zone_front` | the surfaces of one zone eliminated together, a small dense system |
 //! | `coupled` | what is left: airs and shared surfaces, a sparse system of known pattern |
-//! | `building_system`, `stage_matrix` | all of them together: assembly and solution, other right-hand sides and the transpose |
+//! | `building_system`, `building_solution`, `stage_matrix` | all of them together: assembly and solution, other right-hand sides and the transpose |
 //! | `product` | right-hand sides of any kind of number |
 
+pub(crate) mod building_solution;
 pub(crate) mod building_system;
 pub(crate) mod coupled;
 pub(crate) mod laws;

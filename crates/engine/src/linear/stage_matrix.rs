@@ -73,14 +73,14 @@ impl<'a> StageMatrix<'a> {
         }
         let Self { model, laws, conditions, zeros, system } = self;
         let inputs = StageInputs { model, conditions, laws, air: zeros, load: zeros, holding: &[], length };
+        for &w in &model.parts.nonlinear_walls {
+            system.walls[w].copy_values(&walls[w]);
+            system.responses[w] = system.walls[w].factor(&model.coefficients.walls[w], length);
+        }
         if !model.parts.balances_stay() || new {
             system.zone_fronts.copy_laws(&laws.surfaces);
             system.assemble_linear(&inputs, true, None);
             system.zone_fronts.write_exterior_surfaces(&mut system.exterior, &mut system.inverses);
-        }
-        for &w in &model.parts.nonlinear_walls {
-            system.walls[w].copy_values(&walls[w]);
-            system.responses[w] = system.walls[w].factor(&model.coefficients.walls[w], length);
         }
         system.assemble_nonlinear(&inputs);
         system.coupled.solve_rest();

@@ -232,6 +232,8 @@ pub trait Chunk<S: Real>: Real {
     fn first(self) -> S;
     /// Numbers by their places in a slice.
     fn gather(numbers: &[S], places: &[usize]) -> Self;
+    /// Writes to places of a slice.
+    fn scatter(self, numbers: &mut [S], places: &[usize]);
 }
 
 impl<S: Real> Chunk<S> for S {
@@ -262,6 +264,10 @@ impl<S: Real> Chunk<S> for S {
     #[inline(always)]
     fn gather(numbers: &[S], places: &[usize]) -> Self {
         numbers[places[0]]
+    }
+    #[inline(always)]
+    fn scatter(self, numbers: &mut [S], places: &[usize]) {
+        numbers[places[0]] = self;
     }
 }
 

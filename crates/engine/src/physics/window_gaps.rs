@@ -158,18 +158,12 @@ impl<S: Real> GasGap<S> {
     /// Tangent of the heat flow at two temperatures [degC], with a given conductance of the gas [W/(m2 K)].
     #[inline(always)]
     pub(crate) fn tangent(&self, convection: S, outer: S, inner: S) -> GapTangent<S> {
-        let emission = |temperature: S| {
-            let kelvin = temperature + S::constant(KELVIN);
-            let cube = (kelvin * kelvin * kelvin).scale(SIGMA) * self.exchange;
-            (cube * kelvin, cube.scale(4.0))
-        };
-        let ((out, left), (back, right)) = (emission(outer), emission(inner));
-        let (left, right) = (left.fixed(), right.fixed());
-        GapTangent {
-            left: convection + left,
-            right: convection + right,
-            offset: out - back - left * outer + right * inner,
-        }
+        radiating_tangent(self.exchange, convection, outer, inner)
+    }
+
+    /// Long-wave exchange factor of its two surfaces [-].
+    pub(crate) fn exchange(&self) -> S {
+        self.exchange
     }
 
     /// Nusselt number [-]. Inclination [deg] of the gap from the horizontal: heat flows upwards below 90 deg.
@@ -198,6 +192,27 @@ impl<S: Real> GasGap<S> {
         }
         nusselt
     }
+}
+
+/// Tangent of the heat flow between two temperatures [degC] by a given conductance of the gas [W/(m2 K)] and by radiation with
+/// a given exchange factor [-].
+#[inline(always)]
+pub(crate) fn radiating_tangent<S: Real>(exchange: S, convection: S, outer: S, inner: S) -> GapTangent<S> {
+    let ((out, left), (back, right)) = (emission(exchange, outer), emission(exchange, inner));
+    let (left, right) = (left.fixed(), right.fixed());
+    GapTangent {
+        left: convection + left,
+        right: convection + right,
+        offset: out - back - left * outer + right * inner,
+    }
+}
+
+/// Heat flow of the emission at a temperature [degC] across a gap [W/m2], and its slope [W/(m2 K)].
+#[inline(always)]
+fn emission<S: Real>(exchange: S, temperature: S) -> (S, S) {
+    let kelvin = temperature + S::constant(KELVIN);
+    let cube = (kelvin * kelvin * kelvin).scale(SIGMA) * exchange;
+    (cube * kelvin, cube.scale(4.0))
 }
 
 /// Exchange factor of two large grey plates, `1/(1/e1 + 1/e2 - 1)` [-].

@@ -43,6 +43,12 @@ impl<S: Real> Linearisation<S> {
         }
     }
 
+    /// Convective conductance of the only gap of a window, expected in a stage [W/(m2 K)].
+    #[inline(always)]
+    pub(crate) fn gap_convection(&self, stage: usize, w: usize) -> S {
+        self.gap_convection[stage][w][0]
+    }
+
     /// Convection that depends on the wind alone; zone fronts evaluate that of their surfaces, unless `all` is asked for.
     #[inline(always)]
     pub(crate) fn set_wind(&mut self, model: &Model<'_, S>, conditions: &Conditions<S>, all: bool) {

@@ -127,6 +127,8 @@ impl<'a, S: Real> StageSolver<'a, S> {
         self.linearisation.set_wind(stage.model, stage.conditions, false);
         self.nonlinear.begin(stage);
         let Self { linearisation, system, start, iterate, .. } = self;
+        let convection = |w: usize| linearisation.gap_convection(stage.index(), w);
+        system.zone_fronts.begin_windows(stage.conditions, convection);
         system.begin_stage(&inputs(stage, linearisation, start), iterate, stage.index(), &stage.state.cells);
     }
 
@@ -143,7 +145,8 @@ impl<'a, S: Real> StageSolver<'a, S> {
         self.counters.iterations += 1;
         let (model, conditions) = (stage.model, stage.conditions);
         let Self { linearisation, system, start, iterate, solution, .. } = self;
-        for &w in &model.parts.nonlinear_walls {
+        for k in 0..system.single_walls.len() {
+            let w = system.single_walls[k];
             linearisation.linearise_wall(stage, w, (iterate, outer), &mut system.walls[w]);
             system.condense(model, conditions, w, &start.enthalpy[model.cells(w)]);
         }

@@ -1,9 +1,12 @@
 //! Rooms of one shape, which a single run computes side by side and a pack of members one by one: the same bits.
 
-use crate::common::conditioned::ideal_load;
+use crate::common::conditioned::{ideal_load, number};
 use crate::common::{Builder, SCHEMES, facing, forcing, options, run, values, weather};
 use mascarin_engine::batch::ensemble;
-use mascarin_engine::description::{Convection, Facing, ParamId, ZoneLongwave};
+use mascarin_engine::description::{
+    Construction, Convection, Description, Facing, Gap, Gas, Glazing, Pane, PaneOptics, ParamId, Side,
+    ZoneLongwave,
+};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::Watch;
@@ -14,9 +17,62 @@ use mascarin_engine::probe::Probe;
 const ROOMS: usize = 17;
 const STEP: f64 = 900.0;
 
-/// A row of rooms with walls between them. Most have the same surfaces, whose areas and laws differ; those at the ends have
+/// A unit by U and g: windows of this kind are computed together.
+fn unit(d: &mut Description) -> Glazing {
+    Glazing::Simple {
+        u_value: number(d, "unit.u_value", 2.1),
+        solar_heat_gain: number(d, "unit.solar_heat_gain", 0.7),
+        transmittance: None,
+        panes: number(d, "unit.panes", 2.0),
+        category: number(d, "unit.category", 4.0),
+        surface_resistances: [number(d, "unit.outside_film", 0.04), number(d, "unit.inside_film", 0.13)],
+    }
+}
+
+/// Two panes that store heat: such a window is computed by itself, and with it those at its place in other rooms.
+fn heavy_panes(d: &mut Description) -> Glazing {
+    let pane = |d: &mut Description| Pane {
+        thickness: number(d, "pane.thickness", 0.006),
+        conductivity: number(d, "pane.conductivity", 1.0),
+        storage: Some([number(d, "pane.density", 2500.0), number(d, "pane.specific_heat", 750.0)]),
+        emissivity: [number(d, "pane.outside", 0.84), number(d, "pane.inside", 0.84)],
+        optics: Some(PaneOptics {
+            transmittance: number(d, "pane.transmittance", 0.8),
+            reflectance: [number(d, "pane.front", 0.08), number(d, "pane.back", 0.08)],
+            coated: false,
+        }),
+    };
+    let gap = Gap::Filled {
+        thickness: number(d, "gap.thickness", 0.012),
+        pressure: number(d, "gap.pressure", 101_325.0),
+        gas: Gas::Argon,
+    };
+    Glazing::Panes { panes: vec![pane(d), pane(d)], gaps: vec![gap], angular: None }
+}
+
+/// Gives the last surface of each room a glazing; that of one room heavy panes, where asked for.
+fn glaze(d: &mut Description, windows: &[usize], storing: bool) {
+    let height = number(d, "window.height", 1.5);
+    let first = d.constructions.len();
+    for glazing in [unit(d), heavy_panes(d)] {
+        d.constructions.push(Construction {
+            name: "glass".to_owned(),
+            layers: Vec::new(),
+            glazing: Some(glazing),
+            blind: None,
+        });
+    }
+    for (room, &window) in windows.iter().enumerate() {
+        let surface = &mut d.surfaces[window];
+        surface.construction = first + usize::from(storing && room == 4);
+        surface.cavity_height = Some(height);
+        (surface.outside.absorptance, surface.inside.absorptance) = (None, None);
+    }
+}
+
+/// A row of rooms with walls between them and a window each. Most have the same surfaces, whose areas and laws differ; those at the ends have
 /// one wall less between rooms, and the last one has a second wall to outdoors.
-fn row(loads: bool) -> Plan {
+fn row(loads: bool, storing: bool) -> Plan {
     let mut b = Builder::new();
     let concrete = b.solid("concrete", 1.4, 2200.0, 900.0);
     let board = b.solid("board", 0.2, 500.0, 1000.0);
@@ -25,7 +81,8 @@ fn row(loads: bool) -> Plan {
     let factor = b.number("factor", 1.0);
     let natural = |factor: ParamId| Convection::Tarp { factor, roughness: None, perimeter: None };
     let roughness = b.number("roughness", 1.67);
-    let mut between = None;
+    let (mut between, mut windows) = (None, Vec::new());
+    let absorbing = Some(b.number("inside.absorptance", 0.5));
     for room in 0..ROOMS {
         let x = room as f64;
         let zone = b.zone(&format!("room{room}"), 30.0 + x, 0.5, ZoneLongwave::Radiosity);
@@ -35,18 +92,29 @@ fn row(loads: bool) -> Plan {
             let outside = b.outdoors(Convection::Doe2 { factor, roughness }, 0.9, 0.6);
             // Rooms of one shape have different correlations at the same place.
             let law = if room % 3 == 1 { b.convection(3.0 + 0.1 * x) } else { natural(factor) };
-            let inside = b.inside(zone, law, 0.9);
+            let inside = Side { absorptance: absorbing, ..b.inside(zone, law, 0.9) };
             b.surface(&format!("{name}{room}"), heavy, [10.0 + 0.5 * x, tilt, 20.0 * x], outside, inside);
         }
-        let floor = b.inside(zone, natural(factor), 0.8);
+        let floor = Side { absorptance: absorbing, ..b.inside(zone, natural(factor), 0.8) };
         b.surface(&format!("floor{room}"), heavy, [12.0, 180.0, 0.0], facing(Facing::Adiabatic, None), floor);
         if let Some(before) = between {
-            let [outer, inner] = [before, zone].map(|zone| b.inside(zone, natural(factor), 0.9));
+            let [outer, inner] = [before, zone]
+                .map(|zone| Side { absorptance: absorbing, ..b.inside(zone, natural(factor), 0.9) });
             b.surface(&format!("between{room}"), light, [9.0, 90.0, 90.0], outer, inner);
         }
         between = Some(zone);
+        let outside = b.outdoors(Convection::Doe2 { factor, roughness }, 0.84, 0.0);
+        let inside = b.inside(zone, natural(factor), 0.84);
+        windows.push(b.surface(
+            &format!("window{room}"),
+            light,
+            [2.0 + 0.1 * x, 90.0, 180.0],
+            outside,
+            inside,
+        ));
     }
     let mut d = b.describe();
+    glaze(&mut d, &windows, storing);
     for room in 0..if loads { ROOMS } else { 0 } {
         d.zones[room].heating = Some(ideal_load(&mut d, &format!("heating{room}"), 21.0, 400.0));
         d.zones[room].cooling = Some(ideal_load(&mut d, &format!("cooling{room}"), 24.0, 9000.0));
@@ -57,8 +125,8 @@ fn row(loads: bool) -> Plan {
 /// The bits of a run are those of a member of an ensemble, and its energy balance closes.
 #[test]
 fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
-    for loads in [false, true] {
-        let plan = row(loads);
+    for (loads, storing) in [(false, false), (true, false), (true, true)] {
+        let plan = row(loads, storing);
         for scheme in SCHEMES {
             let rows = forcing(&plan, scheme, 96, STEP, weather);
             let probes =

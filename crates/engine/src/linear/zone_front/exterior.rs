@@ -31,6 +31,8 @@ pub(super) struct Exterior<S> {
     pub(super) responses: [Vec<S>; 5],
     /// Heat from sun, sky and ground and from the wall at surfaces of 0 degC [W/m2].
     pub(super) heat: Vec<S>,
+    /// Heat into the interior surface of each window [W] and into its exterior one [W/m2], without that from the window.
+    beside_windows: [Vec<S>; 2],
     /// Imposed temperature, else zero [degC].
     imposed: Vec<S>,
     /// Rise of the surface with heat, the interior surface held [m2 K/W]; zero where its temperature is imposed.
@@ -55,6 +57,7 @@ impl<S: Real> Exterior<S> {
             },
         );
         let mut all = Self::blank(laws, layout.stride);
+        all.beside_windows = [(); 2].map(|()| vec![S::zero(); layout.windows]);
         for (i, &surface) in surfaces.iter().enumerate() {
             (all.wall_area[i], all.emissivity[i]) =
                 (numbers.walls[surface.wall()].area, of(surface).emissivity);
@@ -79,6 +82,7 @@ impl<S: Real> Exterior<S> {
             // Places without a wall are not divided by zero.
             responses: [zeros(), zeros(), zeros(), vec![S::one(); stride], zeros()],
             heat: zeros(),
+            beside_windows: [Vec::new(), Vec::new()],
             imposed: zeros(),
             inverse: zeros(),
             line: [zeros(), zeros()],
@@ -93,6 +97,7 @@ impl<S: Real> Exterior<S> {
     }
 
     /// Sets the response of the wall at a place; e is its interior surface.
+    #[inline(always)]
     pub(super) fn set_response(&mut self, i: usize, e: usize, response: &Response<S>, fixed: bool) {
         let (o, area) = (1 - e, self.wall_area[i]);
         let (to_exterior, to_interior) = (response.other(o), area * response.other(e));
@@ -109,7 +114,7 @@ impl<S: Real> Exterior<S> {
         }
     }
 
-    /// Reads what drives a stage; adds the heat of the walls to that into the interior surfaces [W].
+    /// Reads what drives a stage; adds the heat of the walls to that into the interior surfaces [W], except that of windows.
     #[inline(always)]
     pub(super) fn begin(
         &mut self,
@@ -119,18 +124,61 @@ impl<S: Real> Exterior<S> {
         interior_heat: &mut [S],
     ) {
         self.laws.set_wind(conditions);
+        self.beside_windows[0].copy_from_slice(&interior_heat[layout.window_places()]);
         for ((heat, &area), interior) in interior_heat.iter_mut().zip(&self.wall_area).zip(&layout.walls) {
             *heat += area * sources[interior.wall()][interior.side()];
         }
         for (i, interior) in layout.walls.iter().enumerate().take(layout.exterior) {
             let at = &conditions.surfaces[interior.opposite()];
             let source = sources[interior.wall()];
-            self.heat[i] = source[interior.opposite().side()] + (at.solar + at.longwave);
+            let beside = at.solar + at.longwave;
+            self.heat[i] = source[interior.opposite().side()] + beside;
+            if let Some(k) = i.checked_sub(layout.exterior - layout.windows) {
+                self.beside_windows[1][k] = beside;
+            }
             self.laws.air[i] = at.temperature;
             if self.fixed[i] {
                 self.imposed[i] = at.temperature;
             }
         }
+    }
+
+    /// Takes over how windows at some places respond to their surfaces, and their heat into them, in an iteration.
+    #[inline(always)]
+    pub(super) fn set_windows(
+        &mut self,
+        (layout, places): (&Layout, &[usize]),
+        (sources, responses): (&[[S; 2]], &[Response<S>]),
+        interior_heat: &mut [S],
+    ) {
+        for &i in places {
+            let (interior, k) = (layout.walls[i], i - layout.window_places().start);
+            let (window, e) = (interior.wall(), interior.side());
+            self.set_response(i, e, &responses[window], self.fixed[i]);
+            interior_heat[i] = self.beside_windows[0][k] + self.wall_area[i] * sources[window][e];
+            self.heat[i] = sources[window][1 - e] + self.beside_windows[1][k];
+        }
+    }
+
+    /// The same for the windows of one register, which store nothing: heat into the other surface by the outside and by the inside
+    /// surface [W/(m2 K)], and into both of 0 degC [W/m2].
+    #[inline(always)]
+    pub(super) fn set_window_register<V: Chunk<S>>(
+        &mut self,
+        layout: &Layout,
+        start: usize,
+        ([by_outside, by_inside], sources): ([V; 2], [V; 2]),
+        interior_heat: &mut [S],
+    ) {
+        let (k, area): (_, V) = (start - layout.window_places().start, part!(self.wall_area, start));
+        let responses = [V::zero(), by_inside, area * by_outside, by_outside, V::zero()];
+        for (mine, response) in self.responses.iter_mut().zip(responses) {
+            response.store(&mut mine[start..start + S::CHUNK]);
+        }
+        let inside = part!(self.beside_windows[0], k) + area * sources[1];
+        inside.store(&mut interior_heat[start..start + S::CHUNK]);
+        let outside = sources[0] + part!(self.beside_windows[1], k);
+        outside.store(&mut self.heat[start..start + S::CHUNK]);
     }
 
     /// Holds the other surfaces of thick walls at the temperatures of an iterate.

@@ -13,6 +13,7 @@ use super::exterior::Exterior;
 use super::laws::Laws;
 use super::layout::Layout;
 use super::shape::{Shape, ZoneShape};
+use super::windows::Windows;
 
 /// The front of a zone, or of several zones of one shape.
 #[derive(Debug, Clone)]
@@ -25,9 +26,12 @@ pub(super) struct ZoneFront<S> {
     /// Heat into each surface from sun, gains and its wall at surfaces of 0 degC [W].
     pub(super) heat: Vec<S>,
     pub(super) exterior: Exterior<S>,
+    pub(super) windows: Windows<S>,
     pub(super) equations: Equations<S>,
     pub(super) factors: Factors<S>,
     pub(super) influence: Influence<S>,
+    /// Schur complements of zones side by side: as many entries as [`Layout::register_places`], then right-hand sides.
+    pub(super) schur: Vec<S>,
     /// Emissions of the unknowns while they are solved for, then temperatures of the exterior surfaces.
     pub(super) scratch: Vec<S>,
 }
@@ -83,6 +87,7 @@ impl<S: Real> ZoneFront<S> {
         numbers: &Coefficients<S>,
         laws: &BySurface<SurfaceLaws<S>>,
         (zones, members): (&[usize], usize),
+        windows_together: bool,
     ) -> Self {
         let shapes: Vec<_> = zones.iter().map(|&zone| ZoneShape::new(plan, numbers, zone)).collect();
         let (shape, step) = (&shapes[0], shapes.len());
@@ -95,7 +100,8 @@ impl<S: Real> ZoneFront<S> {
         let exterior = Exterior::new(numbers, laws, &layout);
         let interior = interior_laws(numbers, laws, &surfaces, (layout.stride, &shape.key));
         let (exact, exchange) = (shape.key.exact, shape.key.exchange);
-        let mut front = Self::blank(layout, interior, exterior);
+        let windows = Windows::new(plan, numbers, &layout, windows_together);
+        let mut front = Self { windows, ..Self::blank(layout, interior, exterior) };
         let of_zone = |lane: usize| &numbers.zones[zones[lane]];
         for (place, lane, i) in places() {
             let k = shapes[lane].order[i];
@@ -132,6 +138,8 @@ impl<S: Real> ZoneFront<S> {
             factors: Factors::new(&layout),
             influence: Influence::unknown(),
             scratch: zeros(),
+            schur: vec![S::zero(); layout.register_places.len() + layout.retained_rows.len()],
+            windows: Windows::none(),
             layout,
             laws,
             exterior,

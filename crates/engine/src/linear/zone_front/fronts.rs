@@ -7,8 +7,9 @@ use crate::linear::coupled::CoupledSystem;
 use crate::linear::laws::StageInputs;
 use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
 use crate::linear::unknowns::Unknowns;
-use crate::linear::wall::Response;
+use crate::linear::wall::{Response, WallSystem};
 use crate::number::real::{Chunk, ChunkTask, Real};
+use crate::weather::conditions::Conditions;
 
 use super::front::ZoneFront;
 use super::layout::Elimination;
@@ -43,12 +44,15 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
                 for laws in [&mut front.laws, &mut front.exterior.laws] {
                     laws.linearise::<V>(&iterate.surfaces);
                 }
+                let (layout, cells) = (&front.layout, &iterate.cells);
+                front.windows.condense::<V>((layout, cells), &mut front.exterior, &mut front.heat);
             }
             front.assemble::<V>(self.elimination);
         }
         for front in self.zone_fronts {
             if front.side_by_side() {
                 front.eliminate_side_by_side::<V>();
+                front.compute_schur_complements::<V>();
                 continue;
             }
             if self.elimination == Elimination::Full {
@@ -70,6 +74,7 @@ pub(super) struct Solve<'r, S: Real> {
     pub(super) constant: bool,
     pub(super) unknowns: &'r mut [S],
     pub(super) surfaces: &'r mut [S],
+    pub(super) cells: &'r mut [S],
 }
 
 impl<S: Real> ChunkTask<S> for Solve<'_, S> {
@@ -77,7 +82,7 @@ impl<S: Real> ChunkTask<S> for Solve<'_, S> {
     #[inline(always)]
     fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
-            front.solve::<V>(self.constant, self.unknowns, self.surfaces);
+            front.solve::<V>(self.constant, self.unknowns, (self.surfaces, self.cells));
         }
     }
 }
@@ -87,6 +92,7 @@ pub(super) struct Write<'r, S: Real> {
     pub(super) zone_fronts: &'r mut [ZoneFront<S>],
     pub(super) unknowns: &'r [S],
     pub(super) surfaces: &'r mut [S],
+    pub(super) cells: &'r mut [S],
 }
 
 impl<S: Real> ChunkTask<S> for Write<'_, S> {
@@ -94,23 +100,24 @@ impl<S: Real> ChunkTask<S> for Write<'_, S> {
     #[inline(always)]
     fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
-            front.write::<V>(self.unknowns, self.surfaces);
+            front.write::<V>(self.unknowns, (self.surfaces, self.cells));
         }
     }
 }
 
 // Large functions, not inlined: one copy only, inlining multiplies compile time.
 impl<S: Real> ZoneFronts<S> {
-    /// The fronts of all zones; zones of one shape `together` side by side, or each alone.
+    /// The fronts of all zones; zones of one shape and their windows `together` side by side, or each alone.
     pub(crate) fn new(
         plan: &Plan,
         numbers: &Coefficients<S>,
         laws: &BySurface<SurfaceLaws<S>>,
-        together: bool,
+        [together, windows_together]: [bool; 2],
     ) -> Self {
         let groups = group_zones(plan, numbers, together);
-        let front =
-            |(zones, members): &(Vec<usize>, usize)| ZoneFront::new(plan, numbers, laws, (zones, *members));
+        let front = |(zones, members): &(Vec<usize>, usize)| {
+            ZoneFront::new(plan, numbers, laws, (zones, *members), windows_together)
+        };
         Self { zone_fronts: groups.iter().map(front).collect() }
     }
 
@@ -142,6 +149,41 @@ impl<S: Real> ZoneFronts<S> {
         );
     }
 
+    /// Whether each wall is a window that is computed together with others here.
+    pub(crate) fn windows_together(&self, walls: usize) -> Vec<bool> {
+        let mut together = vec![false; walls];
+        let windows = self.zone_fronts.iter().flat_map(|front| front.windows.walls());
+        windows.for_each(|wall| together[wall] = true);
+        together
+    }
+
+    /// Reads what stays in a stage at these windows; `convection`: expected conductance of the gas in a wall [W/(m2 K)].
+    #[inline(always)]
+    pub(crate) fn begin_windows(&mut self, conditions: &Conditions<S>, convection: impl Fn(usize) -> S) {
+        self.zone_fronts.iter_mut().for_each(|front| front.windows.begin(conditions, &convection));
+    }
+
+    /// Writes these windows as they were linearised and solved to the walls.
+    #[inline(always)]
+    pub(crate) fn write_windows(&self, cells: &[S], walls: &mut [WallSystem<S>]) {
+        self.zone_fronts.iter().for_each(|front| front.windows.write_walls(cells, walls));
+    }
+
+    /// Takes over the other windows as they are linearised in an iteration: their heat into surfaces of 0 degC [W/m2], and how it follows
+    /// the surfaces.
+    #[inline(never)]
+    pub(crate) fn set_windows(&mut self, sources: &[[S; 2]], responses: &[Response<S>]) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                for front in &mut self.zone_fronts {
+                    let places = (&front.layout, front.windows.singles());
+                    front.exterior.set_windows(places, (sources, responses), &mut front.heat);
+                }
+            },
+        );
+    }
+
     /// Eliminates the surfaces of all fronts and adds the Schur complement to the coupled system. Nonlinear laws are taken along
     /// their tangents at an iterate; without one as they are. `constant`: the matrix changes only with the stage length.
     #[inline(never)]
@@ -168,21 +210,31 @@ impl<S: Real> ZoneFronts<S> {
         );
     }
 
-    /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces are those of the building.
+    /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces and cells are those of the building.
     #[inline(never)]
-    pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+    pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], solution: &mut Unknowns<S>) {
+        let Unknowns { surfaces, cells, .. } = solution;
         S::vectorised(
             #[inline(always)]
-            || S::in_chunks(Solve { zone_fronts: &mut self.zone_fronts, constant, unknowns, surfaces }),
+            || {
+                S::in_chunks(Solve {
+                    zone_fronts: &mut self.zone_fronts,
+                    constant,
+                    unknowns,
+                    surfaces,
+                    cells,
+                });
+            },
         );
     }
 
-    /// Surfaces of the building from a solution of all unknowns that was found with the factors.
+    /// Surfaces and cells of the building from a solution of all unknowns that was found with the factors.
     #[inline(never)]
-    pub(crate) fn write(&mut self, unknowns: &[S], surfaces: &mut [S]) {
+    pub(crate) fn write(&mut self, unknowns: &[S], solution: &mut Unknowns<S>) {
+        let Unknowns { surfaces, cells, .. } = solution;
         S::vectorised(
             #[inline(always)]
-            || S::in_chunks(Write { zone_fronts: &mut self.zone_fronts, unknowns, surfaces }),
+            || S::in_chunks(Write { zone_fronts: &mut self.zone_fronts, unknowns, surfaces, cells }),
         );
     }
 

@@ -30,10 +30,15 @@ pub(super) struct Layout {
     /// Places of the diagonal of each retained row, of its entry in the column of the air, and of that of the air in its column;
     /// zone by zone.
     pub(super) air_places: Vec<[usize; 3]>,
-    /// The eliminated surfaces, those of thick walls last.
+    /// For zones side by side the same entry by entry, of all zones: first those of `places`, then the diagonals of the retained
+    /// surfaces. What belongs to no entry goes nowhere, and so does a zone that stands here again.
+    pub(super) register_places: Vec<usize>,
+    /// The eliminated surfaces: those of windows after those of other walls, those of thick walls last.
     pub(super) walls: Vec<SurfaceId>,
-    /// Number of eliminated surfaces whose wall is not thick: its other surface is exterior.
+    /// Number of eliminated surfaces whose wall is not thick: its other surface is exterior. And how many of them, the last ones,
+    /// are those of windows.
     pub(super) exterior: usize,
+    pub(super) windows: usize,
 }
 
 impl Layout {
@@ -56,6 +61,13 @@ impl Layout {
             places(&plan.pattern, plan.own_rows, &rows)
         };
         let by_zone: Vec<_> = (0..step).map(of_zones).collect();
+        let nowhere = plan.pattern.nowhere();
+        let entries = (0..count * count).chain((0..count - 1).map(|i| i * count + i));
+        let of_lane = |k: usize, lane: usize| if lane < members { by_zone[lane][k] } else { None };
+        let register_places: Vec<usize> = entries
+            .flat_map(|k| (0..step).map(move |lane| (k, lane)))
+            .map(|(k, lane)| of_lane(k, lane).unwrap_or(nowhere))
+            .collect();
         let retained =
             (key.eliminated * step..(key.surfaces + 1) * step).map(|place| row(place % step, place / step));
         let eliminated = &surfaces[..key.eliminated * step];
@@ -73,7 +85,9 @@ impl Layout {
             retained_rows: retained.collect(),
             air_places: by_zone.iter().flat_map(|places| air_places(places, count)).collect(),
             places: by_zone.concat(),
+            register_places,
             exterior: key.exterior * step,
+            windows: key.windows * step,
             walls: eliminated.to_vec(),
         }
     }
@@ -82,6 +96,12 @@ impl Layout {
     #[inline(always)]
     pub(super) fn step(&self) -> usize {
         self.zones.len()
+    }
+
+    /// Places of the windows.
+    #[inline(always)]
+    pub(super) fn window_places(&self) -> core::ops::Range<usize> {
+        self.exterior - self.windows..self.exterior
     }
 
     /// Numbers in a matrix.

@@ -10,7 +10,7 @@
 //! and the temperature of its air. Surfaces are then coupled by exchange areas, which never change and are symmetric: only
 //! the diagonal is assembled, and half of the elimination is saved. A zone without long-wave exchange has `E = T`.
 //!
-//! Zones of one shape are computed side by side in one front ([`side_by_side`]).
+//! Zones of one shape are computed side by side in one front ([`side_by_side`]), and with them their windows ([`windows`]).
 //!
 //! All arrays are in the order of the front, so that neighbours are computed together ([`Chunk`](crate::number::real::Chunk)).
 
@@ -32,6 +32,7 @@ mod layout;
 mod shape;
 mod side_by_side;
 mod solve;
+mod windows;
 
 pub(crate) use fronts::ZoneFronts;
 pub(crate) use layout::Elimination;

@@ -16,6 +16,8 @@ pub(super) struct Shape {
     pub(super) surfaces: usize,
     pub(super) eliminated: usize,
     pub(super) exterior: usize,
+    /// Windows among these, the last of them.
+    pub(super) windows: usize,
     /// Whether surfaces exchange long-wave radiation, and with the fourth power of their temperature.
     pub(super) exchange: bool,
     pub(super) exact: bool,
@@ -35,12 +37,13 @@ impl ZoneShape {
         let mut order: Vec<usize> = (0..of_plan.surfaces.len()).collect();
         order.sort_by_key(|&i| of_plan.surface_rows[i]);
         let eliminated = order.iter().filter(|&&i| of_plan.surface_rows[i] < plan.own_rows).count();
-        let thick = |&&i: &&usize| plan.walls[of_plan.surfaces[i].wall()].thick;
+        let wall = |i: usize| &plan.walls[of_plan.surfaces[i].wall()];
         let exchange = !of_zone.exchange.is_empty();
         let key = Shape {
             surfaces: order.len(),
             eliminated,
-            exterior: eliminated - order[..eliminated].iter().filter(thick).count(),
+            exterior: order[..eliminated].iter().filter(|&&i| !wall(i).thick).count(),
+            windows: order[..eliminated].iter().filter(|&&i| wall(i).nonlinear).count(),
             exchange,
             exact: matches!(of_zone.emission, Emission::Exact) && exchange,
         };

@@ -7,6 +7,7 @@
 //!
 //! A front of zones that differ less in number than a register has places holds the first one again in the others.
 
+use crate::linear::coupled::CoupledSystem;
 use crate::number::real::{Chunk, Real};
 
 use super::front::ZoneFront;
@@ -77,6 +78,64 @@ impl<S: Real> ZoneFront<S> {
                 let below: V = register!(air, i);
                 below.store(&mut factors.below[i * S::CHUNK..]);
                 subtract::<S, V>(air, below * inverse, row, i + 1..columns);
+            }
+        }
+    }
+
+    /// Computes the Schur complements of all zones, for [`Self::add_schur_complements`]: the sums of
+    /// [`ZoneFront::add_schur_complement`], in the same order.
+    #[inline(always)]
+    pub(super) fn compute_schur_complements<V: Chunk<S>>(&mut self) {
+        let Self { layout, laws, equations, factors, schur, .. } = self;
+        let [surfaces, eliminated] = [layout.surfaces, layout.eliminated].map(|count| count / S::CHUNK);
+        let (count, retained) = (surfaces - eliminated + 1, surfaces - eliminated);
+        let (entries, rest) = schur.split_at_mut(count * count * S::CHUNK);
+        let (diagonals, right_sides) = rest.split_at_mut(retained * S::CHUNK);
+        let mut of_air = V::zero();
+        for i in eliminated..=surfaces {
+            let row = &factors.rows[i * layout.stride..(i + 1) * layout.stride];
+            let entries = &mut entries[(i - eliminated) * count * S::CHUNK..][..count * S::CHUNK];
+            let mut right: V = register!(row, surfaces + 1);
+            for (j, place) in (eliminated..surfaces).zip(entries.chunks_exact_mut(S::CHUNK)) {
+                // Between surfaces only the upper triangle is stored.
+                let entry: V = if i <= j || i == surfaces {
+                    register!(row, j)
+                } else {
+                    register!(factors.rows[j * layout.stride..], i)
+                };
+                let mut by_temperature = entry * register!(laws.emission[1], j);
+                if i == surfaces {
+                    let to_air: V = register!(equations.to_air, j);
+                    by_temperature = -to_air + by_temperature;
+                }
+                by_temperature.store(place);
+                right = right - entry * register!(laws.emission[0], j);
+            }
+            let mut of_column: V = register!(row, surfaces);
+            if i < surfaces {
+                let to_air: V = register!(equations.to_air, i);
+                of_air += to_air;
+                of_column += -to_air;
+                to_air.store(&mut diagonals[(i - eliminated) * S::CHUNK..]);
+                right += register!(equations.right, i);
+            } else {
+                of_column = of_air + of_column;
+            }
+            of_column.store(&mut entries[retained * S::CHUNK..]);
+            right.store(&mut right_sides[(i - eliminated) * S::CHUNK..]);
+        }
+    }
+
+    /// Adds them to the coupled system.
+    #[inline(always)]
+    pub(super) fn add_schur_complements(&self, coupled: &mut CoupledSystem<'_, S>) {
+        let (places, members) = (&self.layout.register_places, self.layout.members);
+        let (entries, right_sides) = self.schur.split_at(places.len());
+        coupled.add_all(places, entries);
+        let rows = self.layout.retained_rows.chunks_exact(S::CHUNK);
+        for (rows, sides) in rows.zip(right_sides.chunks_exact(S::CHUNK)) {
+            for (&row, &right) in rows.iter().zip(sides).take(members) {
+                coupled.right[row] += right;
             }
         }
     }

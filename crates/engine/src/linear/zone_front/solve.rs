@@ -72,51 +72,34 @@ impl<S: Real> ZoneFront<S> {
             return;
         }
         if self.side_by_side() {
-            for lane in 0..self.layout.members {
-                self.add_schur_complement_of(lane, S::CHUNK, constant, coupled);
-            }
-        } else {
-            self.add_schur_complement_of(0, 1, constant, coupled);
+            return self.add_schur_complements(coupled);
         }
-    }
-
-    /// The same of one of `step` zones side by side.
-    // Inlined: for a single zone the number of zones is then a constant.
-    #[inline(always)]
-    fn add_schur_complement_of(
-        &self,
-        lane: usize,
-        step: usize,
-        constant: bool,
-        coupled: &mut CoupledSystem<'_, S>,
-    ) {
         let (layout, emission) = (&self.layout, &self.laws.emission);
-        let [surfaces, eliminated] = [layout.surfaces / step, layout.eliminated / step];
-        let entry = |i: usize, j: usize| self.factors.rows[i * layout.stride + j * step + lane];
+        let (surfaces, eliminated) = (layout.surfaces, layout.eliminated);
+        let entry = |i: usize, j: usize| self.entry(i, j);
         let count = surfaces - eliminated + 1;
-        let places = layout.places[lane * count * count..].chunks_exact(count);
-        let air_places = &layout.air_places[lane * count..][..count];
-        let air_diagonal = air_places[count - 1][0];
-        let rows = places.zip(air_places);
+        let places = layout.places.chunks_exact(count);
+        let air_diagonal = layout.air_places[count - 1][0];
+        let rows = places.zip(&layout.air_places);
         for (i, (places, &[diagonal, to_air_place, from_air_place])) in (eliminated..).zip(rows) {
-            let row = layout.retained_rows[(i - eliminated) * step + lane];
+            let row = layout.retained_rows[i - eliminated];
             let mut right = entry(i, surfaces + 1);
             for (j, place) in (eliminated..surfaces).zip(places) {
                 // Between surfaces only the upper triangle is stored.
                 let entry = if i <= j || i == surfaces { entry(i, j) } else { entry(j, i) };
                 if let Some(place) = *place {
-                    coupled.add_at(place, entry * emission[1][j * step + lane]);
+                    coupled.add_at(place, entry * emission[1][j]);
                 }
-                right = right - entry * emission[0][j * step + lane];
+                right = right - entry * emission[0][j];
             }
             coupled.add_at(to_air_place, entry(i, surfaces));
             if i < surfaces {
-                let to_air = self.equations.to_air[i * step + lane];
+                let to_air = self.equations.to_air[i];
                 coupled.add_at(diagonal, to_air);
                 coupled.add_at(air_diagonal, to_air);
                 coupled.add_at(to_air_place, -to_air);
                 coupled.add_at(from_air_place, -to_air);
-                right += self.equations.right[i * step + lane];
+                right += self.equations.right[i];
             }
             if !constant {
                 coupled.right[row] += right;
@@ -133,7 +116,12 @@ impl<S: Real> ZoneFront<S> {
     /// Temperatures of the eliminated surfaces and of the exterior surfaces of their walls, once the retained unknowns are
     /// known.
     #[inline(always)]
-    pub(super) fn solve<V: Chunk<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+    pub(super) fn solve<V: Chunk<S>>(
+        &mut self,
+        constant: bool,
+        unknowns: &mut [S],
+        building: (&mut [S], &mut [S]),
+    ) {
         if self.side_by_side() {
             self.solve_side_by_side::<V>(unknowns);
         } else if constant {
@@ -153,7 +141,7 @@ impl<S: Real> ZoneFront<S> {
             let row = first_rows[0];
             unknowns[row..row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
         }
-        self.write_surfaces::<V>(surfaces);
+        self.write_surfaces::<V>(building);
     }
 
     /// Temperatures of the eliminated surfaces in place of their right-hand sides, where the matrix is constant.
@@ -198,7 +186,7 @@ impl<S: Real> ZoneFront<S> {
 
     /// Takes the eliminated surfaces from a solution of all unknowns.
     #[inline(always)]
-    pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], surfaces: &mut [S]) {
+    pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], building: (&mut [S], &mut [S])) {
         let Layout { eliminated, ref first_rows, .. } = self.layout;
         if self.side_by_side() {
             for (lane, &row) in first_rows.iter().enumerate() {
@@ -211,12 +199,13 @@ impl<S: Real> ZoneFront<S> {
             let row = first_rows[0];
             self.equations.right[..eliminated].copy_from_slice(&unknowns[row..row + eliminated]);
         }
-        self.write_surfaces::<V>(surfaces);
+        self.write_surfaces::<V>(building);
     }
 
-    /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building.
+    /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building, and the cells of
+    /// windows to its cells.
     #[inline(always)]
-    fn write_surfaces<V: Chunk<S>>(&mut self, surfaces: &mut [S]) {
+    fn write_surfaces<V: Chunk<S>>(&mut self, (surfaces, cells): (&mut [S], &mut [S])) {
         let interior = &self.equations.right;
         for start in (0..self.layout.eliminated).step_by(S::CHUNK) {
             let exterior: V = self.exterior.temperatures(part!(interior, start), start);
@@ -229,6 +218,7 @@ impl<S: Real> ZoneFront<S> {
         for (&surface, &interior) in thick.iter().zip(&interior[walls.len()..]) {
             surfaces[surface.index()] = interior;
         }
+        self.windows.write_cells::<V>([&self.equations.right, &self.scratch], cells);
     }
 
     /// Eliminates the surfaces from another right-hand side; `place` is the position of an unknown of the front in it.

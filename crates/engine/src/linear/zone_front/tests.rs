@@ -38,8 +38,10 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
         first_rows: vec![0],
         air_places: air_places(&places, retained_rows.len()),
         places,
+        register_places: Vec::new(),
         retained_rows,
         exterior: eliminated,
+        windows: 0,
         walls: ids[..eliminated].to_vec(),
     };
     let stride = layout.stride;
@@ -105,7 +107,8 @@ fn solve<S: Real>(
     coupled.begin();
     coupled.solve_rest();
     let mut surfaces = vec![S::zero(); 2 * zone_fronts[0].layout.eliminated];
-    S::in_chunks(Solve { zone_fronts, constant, unknowns: &mut coupled.right, surfaces: &mut surfaces });
+    let unknowns = &mut coupled.right;
+    S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces: &mut surfaces, cells: &mut [] });
     let exterior = surfaces.chunks_exact(2).map(|pair| pair[0]);
     coupled.right.iter().copied().chain(exterior).collect()
 }

@@ -56,6 +56,14 @@ macro_rules! chunk {
                 );
                 $make
             }
+            #[inline(always)]
+            fn scatter(self, numbers: &mut [f64], places: &[usize]) {
+                let $value = self;
+                let values = $take;
+                for (value, &place) in values.into_iter().zip(&places[..WIDTH]) {
+                    numbers[place] = value;
+                }
+            }
         }
     };
 }

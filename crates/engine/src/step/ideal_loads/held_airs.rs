@@ -24,6 +24,7 @@ use crate::linear::building_system::BuildingSystem;
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::limits::{CLOSE, Limits, TOLERANCE};
+use crate::step::ideal_loads::rises::Change;
 
 /// Conductance that holds an air, over the largest of those that act on it [-].
 const STIFFNESS: f64 = 1e3;
@@ -217,6 +218,15 @@ impl<S: Real> HeldAirs<S> {
         S::select(S::zero().lt(air.carried), air.change * (air.slope - S::one()) / air.carried, S::zero())
     }
 
+    /// How the loads were changed after the last sweep.
+    #[inline(always)]
+    pub(super) fn write_changes(&self, active: S::Mask, changes: &mut [Change<S>]) {
+        for (air, change) in self.airs.iter().zip(changes) {
+            let tells = air.conductance.scale(TELLING).lt(air.change.abs()) & active;
+            *change = Change { load: air.change, tells, conductance: air.conductance };
+        }
+    }
+
     /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right. In other
     /// active lanes (with `all`, in every active one) loads end, begin, or reach their capacity, and after the first
     /// sweeps they get the heat that they lack; later [`Self::supply`] gives it.
@@ -286,7 +296,7 @@ impl<S: Real> HeldAirs<S> {
             for (air, &zone) in self.airs.iter().zip(zones) {
                 self.rise[row(zone)] = air.left / air.air_slope;
             }
-            system.solve_again(&mut self.rise);
+            system.solve_airs_alone(&mut self.rise);
             // The step along this direction that leaves the least heat.
             let (mut along, mut square) = (S::zero(), S::constant(f64::MIN_POSITIVE));
             for (air, &zone) in self.airs.iter().zip(zones) {
@@ -347,7 +357,7 @@ impl<S: Real> HeldAirs<S> {
             *supplied = held.missing_at(air[zone]);
             self.rise[model.plan.zones[zone].air_row] = *supplied;
         }
-        system.solve_again(&mut self.rise);
+        system.solve_for_airs(&mut self.rise);
         for (value, &rise) in system.coupled.right.iter_mut().zip(&self.rise) {
             *value += rise;
         }

@@ -11,6 +11,7 @@ use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::held_airs::HeldAirs;
 use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::responses::Response;
+use crate::step::ideal_loads::rises::{Change, Rises};
 
 /// What the guess of the next step is made from.
 #[derive(Debug, Clone)]
@@ -19,6 +20,7 @@ pub(crate) struct LoadHistory<S> {
     outdoor: [S; 2],
     earlier: Vec<S>,
     slopes: Vec<S>,
+    rises: Vec<S>,
 }
 
 impl LoadHistory<f64> {
@@ -27,7 +29,7 @@ impl LoadHistory<f64> {
         if let Some(first) = &self.first {
             first.write(numbers);
         }
-        for values in [&self.outdoor[..], &self.earlier, &self.slopes] {
+        for values in [&self.outdoor[..], &self.earlier, &self.slopes, &self.rises] {
             numbers.extend_from_slice(values);
         }
     }
@@ -37,7 +39,7 @@ impl LoadHistory<f64> {
         if let Some(first) = &mut self.first {
             numbers = first.read(numbers)?;
         }
-        for values in [&mut self.outdoor[..], &mut self.earlier, &mut self.slopes] {
+        for values in [&mut self.outdoor[..], &mut self.earlier, &mut self.slopes, &mut self.rises] {
             let (own, rest) = numbers.split_at_checked(values.len())?;
             values.copy_from_slice(own);
             numbers = rest;
@@ -56,6 +58,9 @@ pub(crate) struct IdealLoads<S: Real> {
     pub(crate) responses: Vec<Response<S>>,
     /// The airs that the last stage holds, where there are many.
     pub(super) held: Option<HeldAirs<S>>,
+    /// There: how surfaces follow the loads, and the changes of the loads after the last sweep.
+    rises: Option<Rises<S>>,
+    changes: Vec<Change<S>>,
     /// Iterate about which each stage was last linearised, and its solution.
     iterates: Vec<Unknowns<S>>,
     solved: Vec<Unknowns<S>>,
@@ -85,14 +90,15 @@ impl<S: Real> IdealLoads<S> {
         let kept = if count == 0 { 0 } else { stages };
         // Numbers with derivatives take the responses: slopes of loads follow from them without iteration.
         // Airs are held by heat to them; loads that are partly radiated need the responses as well.
-        let radiated = model.coefficients.zones.iter().any(|zone| zone.radiated_loads.is_some());
-        let direct = S::DERIVATIVES || count == 1 || radiated;
+        let direct = S::DERIVATIVES || model.loads_by_responses();
         let few = if direct { count } else { 0 };
         Self {
             zones: zones.clone(),
             limits: vec![nothing; count],
             responses: vec![Response::new(unknowns, rows, stages); few],
             held: (!direct).then(|| HeldAirs::new(count, rows)),
+            rises: (!direct && count > 0).then(|| Rises::new(model, zones, stages)),
+            changes: vec![Change::none(); if direct { 0 } else { count }],
             iterates: vec![unknowns.clone(); kept],
             solved: vec![unknowns.clone(); kept],
             first: unknowns.clone(),
@@ -136,6 +142,7 @@ impl<S: Real> IdealLoads<S> {
             outdoor: self.outdoor,
             earlier: self.earlier.clone(),
             slopes: self.held.as_ref().map(HeldAirs::slopes).unwrap_or_default(),
+            rises: self.rises.as_ref().map(Rises::numbers).unwrap_or_default(),
         }
     }
 
@@ -148,6 +155,9 @@ impl<S: Real> IdealLoads<S> {
         self.earlier.clone_from(&history.earlier);
         if let Some(held) = &mut self.held {
             held.set_slopes(&history.slopes);
+        }
+        if let Some(rises) = &mut self.rises {
+            rises.set_numbers(&history.rises);
         }
     }
 
@@ -210,11 +220,34 @@ impl<S: Real> IdealLoads<S> {
         self.solved[0].view()
     }
 
-    /// Keeps the iterate about which a stage was linearised (by exchange, the other is overwritten later) and its solution.
+    /// Keeps the iterate about which a stage was linearised (by exchange, the other is overwritten later) and its solution, of cells
+    /// only some.
     #[inline(always)]
-    pub(super) fn keep(&mut self, stage: usize, iterate: &mut Unknowns<S>, solved: &Unknowns<S>) {
+    pub(super) fn keep(
+        &mut self,
+        stage: usize,
+        cells: &[Range<usize>],
+        iterate: &mut Unknowns<S>,
+        solved: &Unknowns<S>,
+    ) {
         core::mem::swap(&mut self.iterates[stage], iterate);
-        self.solved[stage].copy_from(solved);
+        self.solved[stage].copy_some(cells, &solved.view());
+    }
+
+    /// Begins a sweep after another one, in active lanes: notes how the loads were changed in between.
+    #[inline(always)]
+    pub(super) fn begin_again(&mut self, active: S::Mask) {
+        if let Some(held) = &self.held {
+            held.write_changes(active, &mut self.changes);
+        }
+    }
+
+    /// Learns from the second solution of a stage how surfaces follow the loads.
+    #[inline(always)]
+    pub(super) fn learn(&mut self, stage: usize, solved: &Unknowns<S>) {
+        if let Some(rises) = &mut self.rises {
+            rises.learn(stage, &self.changes, [&self.solved[stage], solved]);
+        }
     }
 
     /// The iterate of a stage, and its solution corrected by the changes of the loads since; only some cells are corrected.
@@ -232,6 +265,9 @@ impl<S: Real> IdealLoads<S> {
             for (p, &zone) in self.zones.iter().enumerate() {
                 solved.air[zone] += held.first_rise(p);
             }
+        }
+        if let Some(rises) = &self.rises {
+            rises.shift(stage, &self.changes, solved);
         }
         for (response, &change) in self.responses.iter().zip(&self.correction) {
             let rises = &response.stages[stage];

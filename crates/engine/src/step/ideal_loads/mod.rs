@@ -20,5 +20,6 @@ mod held_airs;
 mod limits;
 pub(crate) mod loads;
 pub(crate) mod responses;
+mod rises;
 mod search;
 mod sweeps;

@@ -159,6 +159,7 @@ impl<S: Real> Stepper<'_, S> {
         if again {
             self.solver.start.begin(&self.model, state);
             self.known.restart();
+            self.ideal_loads.begin_again(active);
         }
         for (index, &weight) in weights.iter().enumerate() {
             if index > 0 {
@@ -208,7 +209,11 @@ impl<S: Real> Stepper<'_, S> {
                 let loads = (index, &solver.start.load[..]);
                 ideal_loads.respond(model, &solver.system, loads, (length_of_stage, tableau.ratio));
             }
-            ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
+            if number == 1 {
+                ideal_loads.learn(index, &solver.solution);
+            }
+            let cells = &model.parts.nonlinear_cells;
+            ideal_loads.keep(index, cells, &mut solver.iterate, &solver.solution);
             if self.residuals.is_some() {
                 self.record_residual_of_sweep(state, length_of_stage, index);
             }
