@@ -18,7 +18,10 @@ use super::shape::group_zones;
 /// The fronts of all zones.
 #[derive(Debug, Clone)]
 pub(crate) struct ZoneFronts<S> {
-    zone_fronts: Vec<ZoneFront<S>>,
+    all: Vec<ZoneFront<S>>,
+    /// Whether some zones are computed side by side, and some windows together.
+    side_by_side: bool,
+    windows_together: bool,
 }
 
 /// The elimination of all fronts.
@@ -44,15 +47,12 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
                 for laws in [&mut front.laws, &mut front.exterior.laws] {
                     laws.linearise::<V>(&iterate.surfaces);
                 }
-                let (layout, cells) = (&front.layout, &iterate.cells);
-                front.windows.condense::<V>((layout, cells), &mut front.exterior, &mut front.heat);
             }
             front.assemble::<V>(self.elimination);
         }
         for front in self.zone_fronts {
             if front.side_by_side() {
                 front.eliminate_side_by_side::<V>();
-                front.compute_schur_complements::<V>();
                 continue;
             }
             if self.elimination == Elimination::Full {
@@ -68,13 +68,60 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
     }
 }
 
+/// Windows that are computed together, linearised and eliminated.
+// A task of its own, as are the two below: buildings without them keep the code of the others as it is.
+struct Condense<'r, S: Real> {
+    zone_fronts: &'r mut [ZoneFront<S>],
+    cells: &'r [S],
+}
+
+impl<S: Real> ChunkTask<S> for Condense<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) {
+        for ZoneFront { windows, layout, exterior, heat, .. } in self.zone_fronts {
+            windows.condense::<V>((layout, self.cells), exterior, heat);
+        }
+    }
+}
+
+/// Schur complements of zones side by side.
+struct SchurComplements<'r, S: Real> {
+    zone_fronts: &'r mut [ZoneFront<S>],
+}
+
+impl<S: Real> ChunkTask<S> for SchurComplements<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) {
+        for front in self.zone_fronts.iter_mut().filter(|front| front.side_by_side()) {
+            front.compute_schur_complements::<V>();
+        }
+    }
+}
+
+/// Cells of the windows that are computed together, from the surfaces.
+struct WriteWindows<'r, S: Real> {
+    zone_fronts: &'r [ZoneFront<S>],
+    cells: &'r mut [S],
+}
+
+impl<S: Real> ChunkTask<S> for WriteWindows<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) {
+        for front in self.zone_fronts {
+            front.windows.write_cells::<V>([&front.equations.right, &front.scratch], self.cells);
+        }
+    }
+}
+
 /// Solution for all eliminated surfaces.
 pub(super) struct Solve<'r, S: Real> {
     pub(super) zone_fronts: &'r mut [ZoneFront<S>],
     pub(super) constant: bool,
     pub(super) unknowns: &'r mut [S],
     pub(super) surfaces: &'r mut [S],
-    pub(super) cells: &'r mut [S],
 }
 
 impl<S: Real> ChunkTask<S> for Solve<'_, S> {
@@ -82,7 +129,7 @@ impl<S: Real> ChunkTask<S> for Solve<'_, S> {
     #[inline(always)]
     fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
-            front.solve::<V>(self.constant, self.unknowns, (self.surfaces, self.cells));
+            front.solve::<V>(self.constant, self.unknowns, self.surfaces);
         }
     }
 }
@@ -92,7 +139,6 @@ pub(super) struct Write<'r, S: Real> {
     pub(super) zone_fronts: &'r mut [ZoneFront<S>],
     pub(super) unknowns: &'r [S],
     pub(super) surfaces: &'r mut [S],
-    pub(super) cells: &'r mut [S],
 }
 
 impl<S: Real> ChunkTask<S> for Write<'_, S> {
@@ -100,7 +146,7 @@ impl<S: Real> ChunkTask<S> for Write<'_, S> {
     #[inline(always)]
     fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
-            front.write::<V>(self.unknowns, (self.surfaces, self.cells));
+            front.write::<V>(self.unknowns, self.surfaces);
         }
     }
 }
@@ -118,12 +164,17 @@ impl<S: Real> ZoneFronts<S> {
         let front = |(zones, members): &(Vec<usize>, usize)| {
             ZoneFront::new(plan, numbers, laws, (zones, *members), windows_together)
         };
-        Self { zone_fronts: groups.iter().map(front).collect() }
+        let zone_fronts: Vec<_> = groups.iter().map(front).collect();
+        Self {
+            side_by_side: zone_fronts.iter().any(ZoneFront::side_by_side),
+            windows_together: zone_fronts.iter().any(|front| front.windows.walls().next().is_some()),
+            all: zone_fronts,
+        }
     }
 
     /// Sets how the heat from the walls follows their surfaces.
     pub(crate) fn set_responses(&mut self, responses: &[Response<S>]) {
-        for front in &mut self.zone_fronts {
+        for front in &mut self.all {
             front.exterior.set_responses(&front.layout, responses);
         }
     }
@@ -142,7 +193,7 @@ impl<S: Real> ZoneFronts<S> {
                     }
                     radiant
                 };
-                for front in &mut self.zone_fronts {
+                for front in &mut self.all {
                     front.begin(conditions, radiant, sources);
                 }
             },
@@ -152,7 +203,7 @@ impl<S: Real> ZoneFronts<S> {
     /// Whether each wall is a window that is computed together with others here.
     pub(crate) fn windows_together(&self, walls: usize) -> Vec<bool> {
         let mut together = vec![false; walls];
-        let windows = self.zone_fronts.iter().flat_map(|front| front.windows.walls());
+        let windows = self.all.iter().flat_map(|front| front.windows.walls());
         windows.for_each(|wall| together[wall] = true);
         together
     }
@@ -160,13 +211,13 @@ impl<S: Real> ZoneFronts<S> {
     /// Reads what stays in a stage at these windows; `convection`: expected conductance of the gas in a wall [W/(m2 K)].
     #[inline(always)]
     pub(crate) fn begin_windows(&mut self, conditions: &Conditions<S>, convection: impl Fn(usize) -> S) {
-        self.zone_fronts.iter_mut().for_each(|front| front.windows.begin(conditions, &convection));
+        self.all.iter_mut().for_each(|front| front.windows.begin(conditions, &convection));
     }
 
     /// Writes these windows as they were linearised and solved to the walls.
     #[inline(always)]
     pub(crate) fn write_windows(&self, cells: &[S], walls: &mut [WallSystem<S>]) {
-        self.zone_fronts.iter().for_each(|front| front.windows.write_walls(cells, walls));
+        self.all.iter().for_each(|front| front.windows.write_walls(cells, walls));
     }
 
     /// Takes over the other windows as they are linearised in an iteration: their heat into surfaces of 0 degC [W/m2], and how it follows
@@ -176,7 +227,7 @@ impl<S: Real> ZoneFronts<S> {
         S::vectorised(
             #[inline(always)]
             || {
-                for front in &mut self.zone_fronts {
+                for front in &mut self.all {
                     let places = (&front.layout, front.windows.singles());
                     front.exterior.set_windows(places, (sources, responses), &mut front.heat);
                 }
@@ -194,16 +245,17 @@ impl<S: Real> ZoneFronts<S> {
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
+        if let (true, Some(iterate)) = (self.windows_together, iterate) {
+            S::in_chunks(Condense { zone_fronts: &mut self.all, cells: &iterate.cells });
+        }
         S::vectorised(
             #[inline(always)]
             || {
-                S::in_chunks(Eliminate {
-                    zone_fronts: &mut self.zone_fronts,
-                    iterate,
-                    elimination,
-                    constant,
-                });
-                for zone_front in &self.zone_fronts {
+                S::in_chunks(Eliminate { zone_fronts: &mut self.all, iterate, elimination, constant });
+                if self.side_by_side {
+                    S::in_chunks(SchurComplements { zone_fronts: &mut self.all });
+                }
+                for zone_front in &self.all {
                     zone_front.add_schur_complement(elimination, constant, coupled);
                 }
             },
@@ -213,29 +265,31 @@ impl<S: Real> ZoneFronts<S> {
     /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces and cells are those of the building.
     #[inline(never)]
     pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], solution: &mut Unknowns<S>) {
-        let Unknowns { surfaces, cells, .. } = solution;
+        let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
         S::vectorised(
             #[inline(always)]
-            || {
-                S::in_chunks(Solve {
-                    zone_fronts: &mut self.zone_fronts,
-                    constant,
-                    unknowns,
-                    surfaces,
-                    cells,
-                });
-            },
+            || S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces }),
         );
+        self.write_cells(&mut solution.cells);
     }
 
     /// Surfaces and cells of the building from a solution of all unknowns that was found with the factors.
     #[inline(never)]
     pub(crate) fn write(&mut self, unknowns: &[S], solution: &mut Unknowns<S>) {
-        let Unknowns { surfaces, cells, .. } = solution;
+        let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
         S::vectorised(
             #[inline(always)]
-            || S::in_chunks(Write { zone_fronts: &mut self.zone_fronts, unknowns, surfaces, cells }),
+            || S::in_chunks(Write { zone_fronts, unknowns, surfaces }),
         );
+        self.write_cells(&mut solution.cells);
+    }
+
+    /// Cells of the windows that are computed together.
+    #[inline(always)]
+    fn write_cells(&self, cells: &mut [S]) {
+        if self.windows_together {
+            S::in_chunks(WriteWindows { zone_fronts: &self.all, cells });
+        }
     }
 
     /// Eliminates the surfaces of the fronts from another right-hand side.
@@ -243,7 +297,7 @@ impl<S: Real> ZoneFronts<S> {
     pub(crate) fn forward(&self, right: &mut [S]) {
         S::vectorised(
             #[inline(always)]
-            || self.zone_fronts.iter().for_each(|front| front.forward_in_building(right)),
+            || self.all.iter().for_each(|front| front.forward_in_building(right)),
         );
     }
 
@@ -252,13 +306,13 @@ impl<S: Real> ZoneFronts<S> {
     pub(crate) fn back(&self, right: &mut [S]) {
         S::vectorised(
             #[inline(always)]
-            || self.zone_fronts.iter().for_each(|front| front.back_in_building(right)),
+            || self.all.iter().for_each(|front| front.back_in_building(right)),
         );
     }
 
     /// Copies laws that were linearised elsewhere.
     pub(crate) fn copy_laws(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
-        for front in &mut self.zone_fronts {
+        for front in &mut self.all {
             front.laws.copy_from(laws);
             front.exterior.laws.copy_from(laws);
         }
@@ -267,19 +321,19 @@ impl<S: Real> ZoneFronts<S> {
     /// Writes the laws of the exterior surfaces, which the energy balance needs.
     #[inline(never)]
     pub(crate) fn write_exterior_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
-        self.zone_fronts.iter().for_each(|front| front.exterior.laws.copy_to(laws));
+        self.all.iter().for_each(|front| front.exterior.laws.copy_to(laws));
     }
 
     /// Writes the laws of the surfaces in the zones.
     #[cfg(test)]
     pub(crate) fn laws_in_zones(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
-        self.zone_fronts.iter().for_each(|front| front.laws.copy_to(laws));
+        self.all.iter().for_each(|front| front.laws.copy_to(laws));
     }
 
     /// Writes the exterior surfaces as lines of the interior ones [degC], and how much they rise with heat [m2 K/W].
     #[inline(never)]
     pub(crate) fn write_exterior_surfaces(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
-        for front in &self.zone_fronts {
+        for front in &self.all {
             for (i, interior) in front.layout.walls.iter().enumerate().take(front.layout.exterior) {
                 let (line, inverse) = front.exterior.line_at(i);
                 surfaces[interior.wall()] = ExteriorSurfaces::One { side: interior.opposite().side(), line };
@@ -294,22 +348,22 @@ impl ZoneFronts<f64> {
     /// Eliminates the surfaces of the fronts from right-hand sides of any kind.
     #[inline(always)]
     pub(crate) fn forward_values<R: Real>(&self, right: &mut [R]) {
-        self.zone_fronts.iter().for_each(|front| front.forward_values(right));
+        self.all.iter().for_each(|front| front.forward_values(right));
     }
 
     /// Solves for the eliminated surfaces of right-hand sides of any kind.
     #[inline(always)]
     pub(crate) fn back_values<R: Real>(&self, right: &mut [R]) {
-        self.zone_fronts.iter().for_each(|front| front.back_values(right));
+        self.all.iter().for_each(|front| front.back_values(right));
     }
 
     /// The transpose of [`Self::back_values`].
     pub(crate) fn back_transposed(&self, weights: &mut [f64]) {
-        self.zone_fronts.iter().for_each(|front| front.back_transposed(weights));
+        self.all.iter().for_each(|front| front.back_transposed(weights));
     }
 
     /// The transpose of [`Self::forward_values`].
     pub(crate) fn forward_transposed(&self, weights: &mut [f64]) {
-        self.zone_fronts.iter().for_each(|front| front.forward_transposed(weights));
+        self.all.iter().for_each(|front| front.forward_transposed(weights));
     }
 }

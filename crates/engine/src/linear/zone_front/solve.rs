@@ -116,12 +116,7 @@ impl<S: Real> ZoneFront<S> {
     /// Temperatures of the eliminated surfaces and of the exterior surfaces of their walls, once the retained unknowns are
     /// known.
     #[inline(always)]
-    pub(super) fn solve<V: Chunk<S>>(
-        &mut self,
-        constant: bool,
-        unknowns: &mut [S],
-        building: (&mut [S], &mut [S]),
-    ) {
+    pub(super) fn solve<V: Chunk<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
         if self.side_by_side() {
             self.solve_side_by_side::<V>(unknowns);
         } else if constant {
@@ -141,7 +136,7 @@ impl<S: Real> ZoneFront<S> {
             let row = first_rows[0];
             unknowns[row..row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
         }
-        self.write_surfaces::<V>(building);
+        self.write_surfaces::<V>(surfaces);
     }
 
     /// Temperatures of the eliminated surfaces in place of their right-hand sides, where the matrix is constant.
@@ -186,7 +181,7 @@ impl<S: Real> ZoneFront<S> {
 
     /// Takes the eliminated surfaces from a solution of all unknowns.
     #[inline(always)]
-    pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], building: (&mut [S], &mut [S])) {
+    pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], surfaces: &mut [S]) {
         let Layout { eliminated, ref first_rows, .. } = self.layout;
         if self.side_by_side() {
             for (lane, &row) in first_rows.iter().enumerate() {
@@ -199,13 +194,12 @@ impl<S: Real> ZoneFront<S> {
             let row = first_rows[0];
             self.equations.right[..eliminated].copy_from_slice(&unknowns[row..row + eliminated]);
         }
-        self.write_surfaces::<V>(building);
+        self.write_surfaces::<V>(surfaces);
     }
 
-    /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building, and the cells of
-    /// windows to its cells.
+    /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building.
     #[inline(always)]
-    fn write_surfaces<V: Chunk<S>>(&mut self, (surfaces, cells): (&mut [S], &mut [S])) {
+    fn write_surfaces<V: Chunk<S>>(&mut self, surfaces: &mut [S]) {
         let interior = &self.equations.right;
         for start in (0..self.layout.eliminated).step_by(S::CHUNK) {
             let exterior: V = self.exterior.temperatures(part!(interior, start), start);
@@ -218,7 +212,6 @@ impl<S: Real> ZoneFront<S> {
         for (&surface, &interior) in thick.iter().zip(&interior[walls.len()..]) {
             surfaces[surface.index()] = interior;
         }
-        self.windows.write_cells::<V>([&self.equations.right, &self.scratch], cells);
     }
 
     /// Eliminates the surfaces from another right-hand side; `place` is the position of an unknown of the front in it.

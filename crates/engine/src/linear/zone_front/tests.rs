@@ -108,7 +108,7 @@ fn solve<S: Real>(
     coupled.solve_rest();
     let mut surfaces = vec![S::zero(); 2 * zone_fronts[0].layout.eliminated];
     let unknowns = &mut coupled.right;
-    S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces: &mut surfaces, cells: &mut [] });
+    S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces: &mut surfaces });
     let exterior = surfaces.chunks_exact(2).map(|pair| pair[0]);
     coupled.right.iter().copied().chain(exterior).collect()
 }
