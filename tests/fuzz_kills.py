@@ -108,6 +108,17 @@ def _tables(folder: Path) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in files if file.is_file()}
 
 
+def _other(found: dict[str, bytes], expected: dict[str, bytes]) -> str:
+    """Where results differ first; empty where they do not."""
+    for name in sorted(found.keys() | expected.keys()):
+        here, there = found.get(name, b""), expected.get(name, b"")
+        if here != there:
+            at = next((k for k, (a, b) in enumerate(zip(here, there, strict=False)) if a != b), 0)
+            low = max(0, at - 60)
+            return f"{name}, byte {at}: {here[low : at + 60]!r} instead of {there[low : at + 60]!r}"
+    return ""
+
+
 def killed(name: str, folder: Path, count: int, seed: int) -> list[str]:
     """Kill a command at random times until `count` kills have hit; then it is finished and compared.
 
@@ -138,8 +149,8 @@ def killed(name: str, folder: Path, count: int, seed: int) -> list[str]:
         if process.returncode not in ENDS:
             faults.append(f"a killed {name} ended with {process.returncode}: {said[-1000:]}")
         if process.returncode == 0 or finish:
-            if loop.results(place) != expected:
-                faults.append(f"after {kills} kills a {name} has other results: {said[-1000:]}")
+            if other := _other(loop.results(place), expected):
+                faults.append(f"after {kills} kills a {name} has other results: {other}; {said[-1000:]}")
             if finish:
                 return faults
             shutil.rmtree(place)

@@ -14,6 +14,7 @@ from mascarin.building.outputs import Output
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.building_analysis import factors_of
+from mascarin.study.other_laws import changed
 from mascarin.study.parameter_effects import Effects
 
 if TYPE_CHECKING:
@@ -97,6 +98,7 @@ class Model:
     ) -> None:
         self.setup, self.simulation, self.store = setup, simulation, store
         self._progress = progress
+        self._others: dict[tuple[str, str], Simulation | None] = {}
         self.sensors = len(setup.observation.names)
         self.fitted = {parameter.path: parameter for parameter in fit.problem.parameters}
         factors = {factor.path: factor for factor in _factors(simulation.building)}
@@ -215,6 +217,22 @@ class Model:
             return self.setup.over_record(building, further)
         except InputError:
             return None
+
+    def of_form(self, form: tuple[str, str], changes: dict[str, Any], vector: Array) -> Array:
+        """Series with another form of the model, shape (n, S); one NaN where it cannot be built or run."""
+
+        def make() -> Array:
+            if form not in self._others:
+                other = changed(self.simulation.building, changes)
+                self._others[form] = None if other is None else self.other(other)
+            run, nothing = self._others[form], np.full(1, np.nan)
+            try:
+                return nothing if run is None else self.series(self.transferred(vector, run), run)
+            except SolverError:
+                return nothing
+
+        # Before the model is compiled: a study that goes on does not compile all forms again.
+        return self.store.array(("form", self.simulation.identity, self.group, form, vector.tobytes()), make)
 
     def transferred(self, vector: Array, other: Simulation) -> Array:
         """The parameter vector of another building with the values of the calibrated parameters it has."""

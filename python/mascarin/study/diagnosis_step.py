@@ -23,7 +23,7 @@ from mascarin.study import diagnosis_words as words
 from mascarin.study.corrections import Corrections, Found
 from mascarin.study.diagnosis_candidates import Candidate, OtherForm, name_of
 from mascarin.study.diagnosis_model import Model, Store
-from mascarin.study.other_laws import changed, forms
+from mascarin.study.other_laws import forms
 from mascarin.validation.causes import Cause, Diagnosis
 from mascarin.validation.changes import changes
 from mascarin.validation.evidence import Squares, chance, level_chance
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration
     from mascarin.progress import ProgressOption
-    from mascarin.simulation.simulation import Simulation
     from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
@@ -143,7 +142,6 @@ class _Search:
         self.whitening: Whitening | None = None
         self._key = (model.simulation.identity, vector.tobytes(), setup.inputs()["measurements"])
         self._joint: tuple[tuple[object, ...], Joint] | None = None
-        self._runs: dict[tuple[str, str], Simulation | None] = {}
         self.first: float | None = None
         self.last: float | None = None
 
@@ -400,17 +398,7 @@ class _Search:
         seen = {surfaces[o.surface] for o in outputs if o.surface is not None and o.surface < len(surfaces)}
         found = []
         for part, kind, replaced in forms(building, seen):
-            key = (part, kind)
-            if key not in self._runs:
-                other = changed(building, replaced)
-                self._runs[key] = None if other is None else self.model.other(other)
-            run = self._runs[key]
-            if run is None:
-                continue
-            try:
-                series = self.model.series(self.model.transferred(self.vector, run), run)
-            except SolverError:
-                continue
+            series = self.model.of_form((part, kind), replaced, self.vector)
             if np.isfinite(series).all():
                 found.append(OtherForm(part, kind, series))
         return found

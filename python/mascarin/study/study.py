@@ -303,7 +303,11 @@ class Study(Setup):
         sources = None
         if missed:
             sources = kept(workspace, ("sources", at), lambda: error_sources(self, fitted, fit, progress))
-        causes = diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress)
+        causes = kept(
+            workspace,
+            ("diagnosis", at, missed),
+            lambda: diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress),
+        )
         slope = slopes(self, fitted, fit)
         return StudyResults(
             setup=self,
