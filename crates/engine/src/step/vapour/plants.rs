@@ -84,7 +84,7 @@ impl<S: Real> Limits<S> {
         let dry = S::select(self.dry.lt(start), self.dry.max(line(end.dry)).min(self.saturated), self.dry);
         let wet = self.humidify.min(line(end.humidify));
         let humidify = S::select(start.lt(self.humidify), wet, self.humidify);
-        Self { dry, humidify, ..*self }
+        Self { humidify, dry, ..*self }
     }
 
     /// The mode of a zone from a humidity ratio and what was taken away: the point of the law on the line
