@@ -23,7 +23,7 @@ pub struct WallPlan {
     pub window: Option<usize>,
     /// Whether its surfaces are eliminated each with its own zone, see the module `thick_walls`.
     pub thick: bool,
-    /// Whether the front of a zone eliminates it, see [`eliminated_in_front`](Self::eliminated_in_front).
+    /// Whether the front of a zone eliminates it, see `eliminated_in_front`.
     pub in_front: bool,
 }
 
