@@ -276,5 +276,5 @@ def test_set_points_of_a_measured_column_that_cross_are_refused() -> None:
     wish = np.where(np.arange(25) == 7, 30.0, 20.0)
     schedules = {"wish": {"kind": "temperature", "column": "wish"}}
     zone = {"heating": {"setpoint": {"schedule": "wish"}}, "cooling": {"setpoint": 26}}
-    with pytest.raises(InputError, match=r"from 2001-01-01 06:00; expected a heating set point"):
+    with pytest.raises(InputError, match=r"from 2001-01-01 06:00; expected a set point of heating"):
         Simulation(box({"room": zone}, schedules=schedules), dark(np.zeros(25), wish=wish), step="1h")
