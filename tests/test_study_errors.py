@@ -173,3 +173,15 @@ def test_a_finished_calibration_is_not_searched_again(
     np.testing.assert_array_equal([again.low, again.high], [first.low, first.high])
     for path, estimate in zip(first.problem.paths, first.x, strict=True):
         assert again.building.parameter(path).value == estimate
+
+
+def test_incomplete_files_of_a_killed_study_are_removed(folder: Path, tmp_path: Path) -> None:
+    study = Study.from_yaml(folder / "study.yaml")
+    left = [tmp_path / ".study.json.a1b2.part", tmp_path / "tables" / ".causes.csv.a1b2.part"]
+    others = [tmp_path / "download.part", tmp_path / ".study.json"]
+    (tmp_path / "tables").mkdir()
+    for file in [*left, *others]:
+        file.write_text("half", encoding="utf-8")
+    with Workspace(tmp_path, study.inputs()):
+        assert not any(file.exists() for file in left)
+        assert all(file.exists() for file in others)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import glob
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Final
 
@@ -135,7 +136,16 @@ def write(path: Path, content: str | bytes) -> Path:
 
 def remove_drafts(folder: Path) -> None:
     """Remove incomplete files of killed processes from a folder that this process has locked."""
-    for draft in folder.glob(f"*{PART}"):
+    _remove(folder.glob(f"*{PART}"))
+
+
+def remove_drafts_of(path: Path) -> None:
+    """Remove what killed processes left of one file; no other process may be writing it."""
+    _remove(path.parent.glob(f"{glob.escape(_prefix(path))}*{PART}"))
+
+
+def _remove(drafts: Iterable[Path]) -> None:
+    for draft in drafts:
         if draft.is_dir():
             shutil.rmtree(draft, ignore_errors=True)
         else:

@@ -166,6 +166,8 @@ class DesignResults:
             The folder.
         """
         tables = {"designs": self.to_dataframe(), "ranking": self.ranking_table(), "samples": self._samples()}
+        for name in (*(f"{table}.csv" for table in tables), "designs.parquet", "design.json", "report.html"):
+            atomic.remove_drafts_of(out / name)
         written = [
             atomic.write(out / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
             for name, table in tables.items()

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 _FOLDER: Final = ".work"
 #: The report of a study in the folder of its results.
 REPORT: Final = "report.html"
+#: Files of the result folder itself.
+_WRITTEN: Final = ("study.json", "run.json", REPORT)
 _REMOVED: Final = ", and the old report is removed"
 
 
@@ -69,7 +71,10 @@ class Workspace:
             self._clear("*.npy")
             self._clear("*.jsonl")
             self._clear("*.npz")
-        atomic.remove_drafts(self.folder)
+        for place in (self.folder, out / "tables", out / "figures"):
+            atomic.remove_drafts(place)
+        for name in _WRITTEN:
+            atomic.remove_drafts_of(out / name)
         atomic.write(manifest, text)
 
     def __enter__(self) -> Self:
