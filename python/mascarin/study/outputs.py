@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
@@ -20,6 +20,7 @@ from mascarin.study.comfort_step import comfort_figures, comfort_table, rated
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
 from mascarin.study.kept import written_once
+from mascarin.study.storage import RUN, WRITTEN
 from mascarin.study.tables import tables_of, write_tables
 from mascarin.validation.days import FAR
 
@@ -30,10 +31,6 @@ if TYPE_CHECKING:
     from mascarin.calibration.result import PlotKind
     from mascarin.study.findings import Findings
     from mascarin.study.storage import Workspace
-
-
-#: When a study was run, and how long it took.
-RUN: Final = "run.json"
 
 
 def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> None:
@@ -58,7 +55,7 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,
-        *(out / name for name in ("study.json", RUN, "report.html")),
+        *(out / name for name in WRITTEN),
     ]
     workspace.record("study", written)
 

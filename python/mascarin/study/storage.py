@@ -30,8 +30,10 @@ if TYPE_CHECKING:
 _FOLDER: Final = ".work"
 #: The report of a study in the folder of its results.
 REPORT: Final = "report.html"
+#: Date and run time of a study, in the folder of its results.
+RUN: Final = "run.json"
 #: Files of the result folder itself.
-_WRITTEN: Final = ("study.json", "run.json", REPORT)
+WRITTEN: Final = ("study.json", RUN, REPORT)
 _REMOVED: Final = ", and the old report is removed"
 
 
@@ -73,7 +75,7 @@ class Workspace:
             self._clear("*.npz")
         for place in (self.folder, out / "tables", out / "figures"):
             atomic.remove_drafts(place)
-        for name in _WRITTEN:
+        for name in WRITTEN:
             atomic.remove_drafts_of(out / name)
         atomic.write(manifest, text)
 
