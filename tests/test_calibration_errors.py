@@ -234,6 +234,42 @@ def test_a_stated_offset_no_longer_moves_the_parameter() -> None:
     assert 0.3 * errors.mean[1] == pytest.approx(0.3, abs=0.06)
 
 
+def test_an_estimate_on_the_end_of_its_range_says_how_far_it_wants_to_go() -> None:
+    """Known white errors: the deviance beyond the end is that of a normal distribution."""
+    hours = np.arange(96.0)
+    slope = 0.5 + np.sin(hours / 5.0)
+    measured = 20.0 + 5.1 * slope + 0.2 * np.random.default_rng(5).normal(size=96)
+    problem = linear_problem(measured, slope)  # up to 5
+    sizes = Discrepancy(
+        1e-12 * np.eye(1), 1e-12 * np.eye(1), 1e-12 * np.eye(1), np.array([0.04]), np.zeros(1), 4.0
+    )
+    stated = ErrorStatement((SensorError(),), hours, 3600.0, np.array([1.0]), 0.0)
+    linear = Linear(
+        np.array([0.5]), np.full((96, 1), 20.0), (10.0 * slope)[:, None, None], np.zeros((96, 1, 0))
+    )
+    found = joint(problem, linear, stated, sizes)
+    # The range is a prior as well: uniform, with the variance 10^2 / 12.
+    precision = slope @ slope / 0.04 + 12.0 / 100.0
+    best = slope @ (measured - 20.0) / 0.04 / precision
+    assert found.z == [1.0]
+    assert found.beyond[0] == pytest.approx(precision * (best - 5.0) ** 2, rel=1e-3)
+    assert best > 5.0
+    inside = joint(linear_problem(measured - slope, slope), linear, stated, sizes)
+    assert inside.beyond == [0.0]
+
+
+@pytest.mark.parametrize(("truth", "said"), [(5.5, "lies beyond, at more"), (5.008, "within its uncertainty")])
+def test_the_interval_contains_an_estimate_on_the_end_of_its_range(truth: float, said: str) -> None:
+    hours = np.arange(120.0)
+    slope = np.sin(2.0 * np.pi * hours / 24.0)
+    measured = 20.0 + truth * slope + 0.05 * np.random.default_rng(6).normal(size=120)
+    stated = ErrorStatement((SensorError(),), hours, 3600.0, np.array([0.05]))
+    found, _ = refined(solve(linear_problem(measured, slope), rules=Rules(starts=1)), stated, Rules())
+    assert found.x[0] == found.high[0] == 5.0
+    assert 4.8 < found.low[0] < 5.0
+    assert said in found.on_bound["p"]
+
+
 def test_a_normal_distribution_within_bounds_has_the_moments_of_the_truncated_one() -> None:
     sample = within_bounds(np.array([0.3]), np.array([[0.25]]), np.zeros(1), np.ones(1))
     expected = stats.truncnorm((0.0 - 0.3) / 0.5, (1.0 - 0.3) / 0.5, 0.3, 0.5)

@@ -331,6 +331,18 @@ def test_a_name_that_no_file_has_is_refused(name: str, said: str, tmp_path: Path
     assert len(str(error.value)) < 1000
 
 
+def test_a_shipped_climate_is_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from mascarin.study import Study
+
+    monkeypatch.delenv("MASCARIN_DATA", raising=False)
+    text = re.sub(r"climate:.*?(?=^\w)", "climate: {epw: shipped:tampa}\n", STUDY, flags=re.S | re.M)
+    assert text != STUDY
+    study = _study(tmp_path / "study", text)
+    with pytest.raises(InputError) as error:  # the table is of another year
+        Study.from_yaml(study)
+    assert "outside the folder" not in str(error.value)
+
+
 def test_the_data_folder_may_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from mascarin.study import Study
 

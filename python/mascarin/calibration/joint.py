@@ -36,6 +36,7 @@ from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
 from mascarin.calibration.size_sample import SizeSample, sample_sizes
 from mascarin.calibration.truncated import within_bounds
+from mascarin.calibration.uncertainty import AT_BOUND
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -119,6 +120,9 @@ class Joint:
         Log density of all days. [-]
     prior : ndarray, shape (P,)
         Standard deviation of the prior of each position. [-]
+    beyond : ndarray, shape (P,)
+        For positions on an end of their range: by how much minus twice the log density is lower at the best
+        position beyond it, in variances of the normal distribution; 0 for others. [-]
     """
 
     z: Floats
@@ -130,6 +134,7 @@ class Joint:
     by_day: Floats
     density: float
     prior: Floats
+    beyond: Floats
 
     def quantile(self, confidence: float) -> float:
         """Half-width of an interval on other days, in standard deviations: Student's.
@@ -241,8 +246,9 @@ def joint(
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
     bounded_mean, bounded = _bounded(middle, together, sample)
     names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
+    z, beyond = _most_probable(gaussian, likely, scale, count)
     return Joint(
-        _most_probable(gaussian, likely, scale, count),
+        z,
         bounded_mean,
         bounded,
         sample,
@@ -251,6 +257,7 @@ def joint(
         gaussian.left_out(data.error),
         gaussian.log_density(data.error),
         scale[:count],
+        beyond,
     )
 
 
@@ -267,7 +274,7 @@ def best_positions(
         Sizes of the errors of the model.
     """
     gaussian, _, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
-    return _most_probable(gaussian, mean, scale, len(problem.parameters)), sizes
+    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], sizes
 
 
 def _estimated(
@@ -348,16 +355,27 @@ def _scale(problem: CalibrationProblem) -> Floats:
     return np.array([float(np.sqrt(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
 
 
-def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> Floats:
-    """Positions (P,) of the largest density within the ranges."""
+def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> tuple[Floats, Floats]:
+    """Positions (P,) of the largest density within the ranges, and `Joint.beyond`."""
     from scipy import optimize
 
     precision = gaussian.precision / np.outer(scale, scale)
     root = np.linalg.cholesky(precision).T
     low, high = np.full(mean.size, -math.inf), np.full(mean.size, math.inf)
     low[:count], high[:count] = 0.0, 1.0
-    found = optimize.lsq_linear(root, root @ mean, bounds=(low, high), method="bvls")
-    return np.asarray(np.clip(found.x[:count], 0.0, 1.0))
+
+    def best(free: int | None = None) -> tuple[Floats, float]:
+        ends = low.copy(), high.copy()
+        if free is not None:
+            ends[0][free], ends[1][free] = -math.inf, math.inf
+        found = optimize.lsq_linear(root, root @ mean, bounds=ends, method="bvls")
+        return found.x, 2.0 * float(found.cost)
+
+    x, deviance = best()
+    z = np.asarray(np.clip(x[:count], 0.0, 1.0))
+    on_end = (z <= AT_BOUND) | (z >= 1.0 - AT_BOUND)
+    beyond = [deviance - best(k)[1] if on_end[k] else 0.0 for k in range(count)]
+    return z, np.array(beyond)
 
 
 def _bounded(mean: Floats, covariance: Floats, sample: Floats) -> tuple[Floats, Floats]:

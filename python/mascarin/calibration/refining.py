@@ -33,6 +33,8 @@ _STEPS: Final = 6
 #: Linearizations at which the sizes of the errors are estimated anew.
 _ESTIMATED: Final = 2
 _HALVINGS: Final = 3
+#: With which an estimate is said to lie beyond the end of its range. [-]
+_CONFIDENCE: Final = 0.95
 #: Decrease of minus the log density below which the estimates stay. [-]
 _ENOUGH: Final = 0.05
 
@@ -120,6 +122,8 @@ def _reported(
     x = problem.values(z[None])[0]
     tail = 0.5 * (1.0 - fit.confidence)
     low, high = np.quantile(found.widened(), [tail, 1.0 - tail], axis=0)
+    # An estimate on the end of its range is in no interval with equal tails.
+    low, high = np.minimum(low, z), np.maximum(high, z)
     covariance = found.covariance[: z.size, : z.size]
     sd = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(sd, sd)
@@ -145,8 +149,16 @@ def _reported(
         of_sensors=each[0],
         residuals=np.where(problem.mask, residuals, np.nan),
         uncertainty=uncertainty,
-        on_bound=on_bounds(problem, z, np.zeros(z.size), uncertainty),
+        on_bound=on_bounds(problem, z, _outward(z, found), uncertainty),
         warnings=tuple(warnings(problem, z, uncertainty, left, here.jacobian)),
         uncertainty_method=METHOD,
         reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
     )
+
+
+def _outward(z: Floats, found: Joint) -> Floats:
+    """Sign of the derivative of the cost by positions (P,) on an end of their range, 0 if not significant."""
+    from scipy import stats
+
+    significant = found.beyond > float(stats.chi2.ppf(_CONFIDENCE, 1))
+    return np.where(significant, np.where(z < 0.5, 1.0, -1.0), 0.0)

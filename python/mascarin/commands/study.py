@@ -231,6 +231,7 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
             ]
+    lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
     if results.aims:
         reached = sum(aim.passed for aim in results.aims)
         lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")

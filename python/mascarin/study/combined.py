@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 def estimates_of(study: Setup, found: Combination) -> Calibration:
     """The calibration of the best form, its intervals with the spread between forms.
 
-    A parameter of which another form has one of the same meaning has the interval of both together.
+    A parameter of which another form has one of the same meaning has the interval of both together. The
+    interval always contains the estimate of the best form, which may be on the end of its range.
     """
     best = found.forms[0]
     fit = best.fit
@@ -51,7 +52,8 @@ def estimates_of(study: Setup, found: Combination) -> Calibration:
                 other = form.fit.problem.parameters[k]
                 samples.append(np.array([other.value(v) for v in form.joint.widened()[:, k]]))
                 weights.append(weight)
-        low[i], high[i] = weighted_quantiles(samples, np.array(weights), np.array([tail, 1.0 - tail]))
+        ends = weighted_quantiles(samples, np.array(weights), np.array([tail, 1.0 - tail]))
+        low[i], high[i] = min(ends[0], fit.x[i]), max(ends[1], fit.x[i])
     method = METHOD
     if len(found.kept) > 1:
         method += f"; {len(found.kept)} forms of the model, weighed by days left out of the identification"

@@ -16,6 +16,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
 from mascarin.weather.data import FOLDER, cache_folder, data_file
+from mascarin.weather.shipped import FOLDER as CLIMATES
 from mascarin.weather.shipped import PREFIX
 from mascarin.weather.table import read_table
 
@@ -52,8 +53,8 @@ class Beside:
         if self.allow_outside:
             return
         data = os.environ.get(FOLDER)
-        # Known data sets are downloaded to a cache.
-        allowed = [self.folder, *([Path(data)] if data else []), cache_folder()]
+        # Known data sets are downloaded to a cache; the shipped climates are files of Mascarin.
+        allowed = [self.folder, *([Path(data)] if data else []), cache_folder(), CLIMATES]
         target = path.resolve()
         if not any(target.is_relative_to(folder.resolve()) for folder in allowed):
             raise InputError(
