@@ -15,9 +15,14 @@ import numpy as np
 import dsc_samples
 import fuzz_runs
 from building_samples import EVERYTHING, ROOM
+from design_support import BUILDING as DESIGNED
+from design_support import STUDY as DESIGN
 from fuzz_mutation import mutated, mutated_yaml
 from genopt_support import SWARM, write_project
+from idf_samples import IDF
 from mascarin.building import check, load
+from mascarin.convert import convert
+from mascarin.design.inputs import read_design
 from mascarin.errors import MascarinError, SolverError
 from mascarin.genopt import Options
 from mascarin.genopt.run import check as check_project
@@ -215,4 +220,11 @@ def readers(folder: Path) -> list[Reader]:
         Reader("table", {"logger.csv": few}, ("logger.csv",), _table),
         Reader("DSC", {"dsc.csv": dsc}, ("dsc.csv",), lambda at: from_dsc(at / "dsc.csv")),
         Reader("GenOpt", genopt, tuple(genopt), _genopt),
+        Reader("IDF", {"model.idf": IDF.encode()}, ("model.idf",), lambda at: convert(at / "model.idf")),
+        Reader(
+            "design",
+            {"design.yaml": DESIGN.encode(), "building.yaml": DESIGNED.encode()},
+            ("design.yaml",),
+            lambda at: read_design(at / "design.yaml"),
+        ),
     ]

@@ -283,6 +283,30 @@ def test_nothing_is_dropped_in_silence(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (box()[:-40], r"box\.idf:15: found 'BuildingSurface:Detailed,Floor.*' without a semicolon"),
+        (
+            box("Schedule:Compact,A,,Through: 12/31,For: AllDays,Until: 24:00,nan;"),
+            "A': data 4: field: found nan; expected a finite number",
+        ),
+        (
+            box("Schedule:Constant,A,,1e308;"),
+            "box.idf:16: Schedule:Constant 'A': hourly_value: found 1e\\+308",
+        ),
+        (
+            box("MaterialProperty:PhaseChange,Brick,0,-20,0,20,Wall;"),
+            "values 2: enthalpy: found 'Wall'; expected a",
+        ),
+        (box("RunPeriod,B,13,1,,12,31,,Tuesday;"), "'B': begin_month: found 13; expected at most 12"),
+    ],
+)
+def test_numbers_that_energyplus_refuses_and_files_cut_off(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        converted(tmp_path, text)
+
+
+@pytest.mark.parametrize(
     ("change", "message"),
     [
         (("Zone,Room", "Zoone,Room"), r"box\.idf:9: Zoone 'Room': Unknown object type"),
@@ -296,7 +320,10 @@ def test_nothing_is_dropped_in_silence(tmp_path: Path) -> None:
         (("Wall,Wall,ROOM", "Wall,Wal,ROOM"), r"found 'Wal'; expected the name of a Construction"),
         (("0.2,0.8,1800", "0.2,zero,1800"), r"box\.idf:7: Material 'Brick': conductivity: found 'zero'"),
         (("Construction,Wall,Brick", "Construction,Wall,Brik"), r"box\.idf:8: Construction 'Wall'.*'Brik'"),
-        (("4,0,0,3,0,0,0,4,0,0,4,0,3", "2,0,0,3,0,0,0"), r"South.*found 2 vertices; expected at least 3"),
+        (
+            ("4,0,0,3,0,0,0,4,0,0,4,0,3", "2,0,0,3,0,0,0"),
+            r"South.*vertices: found 2; expected at least 3",
+        ),
         (("ROOM,,Outdoors,,Sun", "ROOM,,Space,,Sun"), r"outside_boundary_condition: found 'space'"),
         (("Site:Location", "!Site:Location"), r"found no Site:Location"),
     ],

@@ -17,7 +17,7 @@ import fuzz_states
 from conftest import SEED
 
 #: Inputs of each reader: files of a year take longer to read.
-INPUTS = {"EPW": 12, "TMY3": 8, "study": 30}
+INPUTS = {"EPW": 12, "TMY3": 8, "study": 30, "IDF": 15, "design": 15}
 READERS = ("building", "room", "study", "EPW", "TMY3", "table", "DSC", "GenOpt")
 
 

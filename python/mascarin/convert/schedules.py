@@ -10,6 +10,7 @@ from datetime import date, timedelta
 from pathlib import Path
 from typing import Final
 
+from mascarin.convert.field_checks import finite
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
@@ -217,7 +218,7 @@ def _throughs(item: Item, words: Sequence[str]) -> Iterator[tuple[str, list[tupl
 
 def _value(item: Item, word: str) -> float:
     try:
-        return float(word)
+        return finite(word)
     except ValueError:
         raise item.error(f"'{word}'", "a number after Until", "Correct the schedule") from None
 
@@ -335,7 +336,7 @@ def _column(work: Work, item: Item) -> list[float]:
     place = int(item.needed("column_number")) - 1
     rows = [row for row in rows[int(item.number("rows_to_skip_at_top") or 0) :] if row]
     try:
-        return [float(row[place]) for row in rows]
+        return [finite(row[place]) for row in rows]
     except (IndexError, ValueError) as error:
         raise item.error(
             f"{path.name}: {error}", f"numbers in column {place + 1}", "Correct the file"

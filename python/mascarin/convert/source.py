@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
+from mascarin.convert.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
 
 #: Words that let EnergyPlus find a number itself.
-AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
 _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
@@ -215,6 +215,8 @@ def read(path: Path) -> Model:
     if not path.is_file():
         raise InputError(f"{path}: found no such file; expected {_EXPECTED}. Check its folder and name")
     kit = _idfkit()
+    if form == "idf":
+        _require_end(path)
     try:
         document: Any = kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
     except kit.VersionNotFoundError:
@@ -243,6 +245,19 @@ def _idfkit() -> Any:
             "pip install 'mascarin[energyplus]'"
         ) from None
     return idfkit
+
+
+def _require_end(path: Path) -> None:
+    """Refuse a file whose last object has no end: the patterns of idfkit would search it for hours."""
+    text = re.sub("!.*", "", path.read_text(encoding="latin-1"))
+    rest = text[text.rfind(";") + 1 :]
+    if not rest.strip():
+        return
+    line = text.count("\n", 0, len(text) - len(rest.lstrip())) + 1
+    raise InputError(
+        f"{path}:{line}: found {' '.join(rest.split())[:60]!r} without a semicolon behind it; "
+        "expected one at the end of each object. Is the file cut off?"
+    )
 
 
 def _epjson(kit: Any, path: Path) -> Any:
@@ -295,7 +310,11 @@ def _items(document: Any, path: Path, form: str) -> list[Item]:
             defaults[kind] = _defaults(schema, kind)
         plain = {key: value for key, value in dict(one.data).items() if value is not None and value != ""}
         line = lines.get(k) if form == "idf" else lines.get((kind, one.name), lines.get((kind, "")))
-        found.append(Item(kind, str(one.name or ""), plain, defaults[kind], line, path.name))
+        item = Item(kind, str(one.name or ""), plain, defaults[kind], line, path.name)
+        fault = wrong_number(schema, kind, plain)
+        if fault is not None:
+            raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")
+        found.append(item)
     return found
 
 
