@@ -250,6 +250,30 @@ def test_an_overhang_over_a_window(tmp_path: Path) -> None:
     assert building.zones["Room"].sun is not None
 
 
+def test_a_window_behind_its_wall_keeps_what_stands_in_front_of_its_glass(tmp_path: Path) -> None:
+    """0.2 m behind the south wall, below a shade of the wall that reaches 0.5 m out of it."""
+    found = converted(
+        tmp_path,
+        box(
+            "WindowMaterial:SimpleGlazingSystem,Glass,2.0,0.5;Construction,Glazing,Glass;",
+            "FenestrationSurface:Detailed,Pane,Window,Glazing,South,,,,1,4,"
+            "1,0.2,2.5,1,0.2,0.5,3,0.2,0.5,3,0.2,2.5;",
+            "Shading:Zone:Detailed,Slab,South,,4,0.5,-0.5,2.7,0.5,0,2.7,3.5,0,2.7,3.5,-0.5,2.7;",
+        ),
+    )
+    window = found.building.windows["Pane"]
+    assert window.vertices is not None
+    assert {float(corner[1]) for corner in window.vertices} == {0.0}
+    assert float(window.area or 0.0) == pytest.approx(4.0)
+    shades = {name: np.array(one.vertices, dtype=float) for name, one in found.building.shades.items()}
+    reveal = [corners for name, corners in shades.items() if name != "Slab"]
+    assert sum(map(g.area_of, reveal)) == pytest.approx(0.2 * 8.0)
+    assert all(corners[:, 1].min() == -0.2 and corners[:, 1].max() == 0.0 for corners in reveal)
+    # From the glass the slab reaches from 0.2 to 0.7 m, as in the file.
+    assert (shades["Slab"][:, 1].min(), shades["Slab"][:, 1].max()) == pytest.approx((-0.7, -0.2))
+    assert any("0.200 m behind the plane of its wall" in one.what for one in found.findings)
+
+
 def test_a_frame_lies_around_the_glass(tmp_path: Path) -> None:
     text = box(
         "WindowMaterial:SimpleGlazingSystem,Glass,2.0,0.5;Construction,Glazing,Glass;",
