@@ -311,7 +311,9 @@ def test_nothing_is_dropped_in_silence(tmp_path: Path) -> None:
     [
         (("Zone,Room", "Zoone,Room"), r"box\.idf:9: Zoone 'Room': Unknown object type"),
         (("Version,25.2;", "Version,7.2;"), r"version 7\.2; expected 8\.9 to 26\.2"),
+        (("Version,25.2;", "Version,99.1;"), r"version 99\.1; expected 8\.9 to 26\.2"),
         (("Version,25.2;", ""), r"found no Version object"),
+        (("4,5,0,4,0,0;", "4,5,0"), r"box\.idf:15: found 'BuildingSurface:Detailed' without a semicolon"),
         (("Wall,Wall,ROOM", "Wall,Wall,"), r"box\.idf:10: BuildingSurface:Detailed 'South': found no zone"),
         (
             ("Wall,Wall,ROOM", "Wall,Wall,Rom"),
@@ -330,6 +332,13 @@ def test_what_cannot_be_used_is_named_with_its_line(
 ) -> None:
     with pytest.raises(InputError, match=message):
         converted(tmp_path, box().replace(change[0], change[1], 1))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-8-sig"])
+def test_names_that_are_not_ascii(tmp_path: Path, encoding: str) -> None:
+    file = tmp_path / "box.idf"
+    file.write_text(box().replace("Zone,Room", "Zone,Küche").replace("ROOM", "KÜCHE"), encoding=encoding)
+    assert list(convert(file).building.zones) == ["Küche"]
 
 
 def test_missing_files(tmp_path: Path) -> None:
