@@ -260,8 +260,8 @@ def _idf(kit: Any, path: Path) -> Any:
         line = plain.count(b"\n", 0, plain.index(rest, last)) + 1
         name = rest.split(b",")[0].decode("latin-1").strip()[:60]
         raise InputError(
-            f"{path}:{line}: found {name!r} without a semicolon after its last field; expected one at the end "
-            "of each object. Is the file complete?"
+            f"{path}:{line}: found {name!r} without a semicolon after its last field; expected one at the "
+            "end of each object. Is the file complete?"
         )
     try:
         data.decode("utf-8")
