@@ -268,6 +268,18 @@ def test_what_a_slider_cannot_be_is_said(session: Session, values: dict[str, Any
         session.run(values)
 
 
+def test_sliders_where_the_sky_is_that_of_the_weather() -> None:
+    """Infrared radiation of the weather replaces the model of the sky, whose parameters have no slider."""
+    plain = box().to_dict()
+    del plain["site"]["sky"]
+    options = {"start": "2001-07-01", "end": "2001-07-03", "step": "1h"}
+    session = Session(mc.Building.from_dict(plain), mc.Climate.from_epw("shipped:golden"), options=options)
+    paths = [one.path for one in session.sliders]
+    assert len(paths) == choice.USUAL
+    assert not any(path.startswith(("site.sky", "site.cloud")) for path in paths)
+    assert session.simulation.building.parameter("site.sky.scale")  # of the sky of the weather
+
+
 def test_parameters_that_do_not_exist_or_cannot_vary_are_named() -> None:
     with pytest.raises(InputError, match="absorptance"):
         Session(box(), box_climate(), parameters=["surfaces.facade.outside.absorptanc"])

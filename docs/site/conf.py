@@ -56,6 +56,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "min_reported_time": 0,
     "image_scrapers": ("matplotlib",),
+    "ignore_repr_types": r"matplotlib",  # the figure itself is shown
     "write_computation_times": False,
 }
 # Settings of the gallery are not written to the cache.

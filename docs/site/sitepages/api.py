@@ -11,7 +11,7 @@ import mascarin
 
 PACKAGES: Final = (
     "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization", "validation",
-    "calibration",
+    "calibration", "study", "design", "comfort", "convert", "fmu", "view",
 )  # fmt: skip
 
 

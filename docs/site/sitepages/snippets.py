@@ -16,7 +16,11 @@ from mascarin import examples
 from mascarin.building.description import Description
 from mascarin.building.part import Part
 
-_YAML_FENCE = re.compile(r"^```yaml\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_YAML_FENCE = re.compile(
+    r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```yaml\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
+)
+#: Files of pages whose typing errors a message explains.
+_WRONG = "slip.yaml"
 _LONGEST = 70
 
 
@@ -100,7 +104,8 @@ def _sources(docs: Path) -> Iterator[str]:
         yield (cases / f"{name}.yaml").read_text(encoding="utf-8")
     for page in sorted(docs.glob("*.md")):
         for fence in _YAML_FENCE.finditer(page.read_text(encoding="utf-8")):
-            yield fence[1]
+            if fence["file"] != _WRONG:
+                yield fence["text"]
     yield (docs / "site" / "more_keys.yaml").read_text(encoding="utf-8")
 
 

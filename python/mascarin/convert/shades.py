@@ -12,6 +12,7 @@ from mascarin.building.geometry import Polygon
 from mascarin.convert import geometry as g
 from mascarin.convert.faces import SURFACES, Face, Opening
 from mascarin.convert.schedules import SCHEDULES, year
+from mascarin.convert.setbacks import setback, shift_of_shades
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.errors import InputError
@@ -33,7 +34,7 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
     rules, by_face = g.rules_of(work.model), {face.item.name.casefold(): face for face in every}
     by_opening = {opening.item.name.casefold(): opening for opening in openings}
     for item in work.model.of(*_DETAILED):
-        points = _detailed(work, rules, item, by_face)
+        points = _detailed(work, rules, item, by_face, openings)
         if _opaque(work, item):
             _enter(work, item, item.name, points)
     for item in work.model.of(*_SIMPLE):
@@ -51,12 +52,14 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
                     "a window or door of the file",
                     "Correct it",
                 )
-            for name, points in made(item, window.points):
+            for name, points in made(item, window.points + setback(window)):
                 _enter(work, item, name, points)
     _reflectances(work)
 
 
-def _detailed(work: Work, rules: g.Rules, item: Item, by_face: dict[str, Face]) -> g.Array:
+def _detailed(
+    work: Work, rules: g.Rules, item: Item, by_face: dict[str, Face], openings: list[Opening]
+) -> g.Array:
     corners = g.corners_of(item)
     if item.kind == "Shading:Site:Detailed":
         return corners
@@ -66,7 +69,8 @@ def _detailed(work: Work, rules: g.Rules, item: Item, by_face: dict[str, Face]) 
     if base is None:
         work.model.require(item, "base_surface_name", *SURFACES)
         raise item.error("no surface", "a surface", "Correct base_surface_name")
-    return g.frame_of(base.zone, rules, rules.relative).place(corners)
+    placed = g.frame_of(base.zone, rules, rules.relative).place(corners)
+    return placed + shift_of_shades(base, openings)
 
 
 def _simple(rules: g.Rules, item: Item) -> g.Array:

@@ -18,8 +18,10 @@ from mascarin._io.regular import require_regular
 from mascarin.convert.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
 
-#: Words that let EnergyPlus find a number itself.
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
+_COMMENT: Final = re.compile(rb"![^\n]*")
+#: White space, and what old editors write at the end of a file.
+_ENDING: Final = b" \t\r\n\x1a\x00\xef\xbb\xbf"
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
 _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
 
@@ -215,10 +217,8 @@ def read(path: Path) -> Model:
     if not path.is_file():
         raise InputError(f"{path}: found no such file; expected {_EXPECTED}. Check its folder and name")
     kit = _idfkit()
-    if form == "idf":
-        _require_end(path)
     try:
-        document: Any = kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
+        document: Any = _idf(kit, path) if form == "idf" else _epjson(kit, path)
     except kit.VersionNotFoundError:
         raise InputError(
             f"{path}: found no Version object; expected one such as 'Version, 25.2;'. Is this a model of "
@@ -230,6 +230,8 @@ def read(path: Path) -> Model:
         raise _unreadable(path, error) from None
     except kit.IdfKitError as error:
         raise InputError(f"{path}: {error}; expected a model of EnergyPlus") from None
+    if document.version[:2] not in {one[:2] for one in kit.get_schema_manager().get_supported_versions()}:
+        raise _unknown_version(kit, path)
     items, schema = _items(document, path, form), document.schema
     kinds = {item.kind for item in items}
     groups = {kind: str(schema.get_group(kind) or "") for kind in kinds} if schema is not None else {}
@@ -247,17 +249,24 @@ def _idfkit() -> Any:
     return idfkit
 
 
-def _require_end(path: Path) -> None:
-    """Refuse a file whose last object has no end: the patterns of idfkit would search it for hours."""
-    text = re.sub("!.*", "", path.read_text(encoding="latin-1"))
-    rest = text[text.rfind(";") + 1 :]
-    if not rest.strip():
-        return
-    line = text.count("\n", 0, len(text) - len(rest.lstrip())) + 1
-    raise InputError(
-        f"{path}:{line}: found {' '.join(rest.split())[:60]!r} without a semicolon behind it; "
-        "expected one at the end of each object. Is the file cut off?"
-    )
+def _idf(kit: Any, path: Path) -> Any:
+    data = path.read_bytes()
+    plain = _COMMENT.sub(b"", data)
+    last = plain.rfind(b";") + 1
+    rest = plain[last:].strip(_ENDING)
+    if rest:
+        # idfkit would look for the end of this object without end.
+        line = plain.count(b"\n", 0, plain.index(rest, last)) + 1
+        name = rest.split(b",")[0].decode("latin-1").strip()[:60]
+        raise InputError(
+            f"{path}:{line}: found {name!r} without a semicolon after its last field; expected one at the "
+            "end of each object. Is the file complete?"
+        )
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return kit.parse_idf(path, encoding="latin-1", preserve_formatting=True)
+    return kit.parse_idf(path, encoding="utf-8", preserve_formatting=True)
 
 
 def _epjson(kit: Any, path: Path) -> Any:

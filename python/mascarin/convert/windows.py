@@ -13,6 +13,7 @@ from mascarin.convert.faces import Opening
 from mascarin.convert.films import Films
 from mascarin.convert.glazings import construction_of, glazing
 from mascarin.convert.materials import skin
+from mascarin.convert.setbacks import describe_setback, setback
 from mascarin.convert.source import Item
 from mascarin.convert.surfaces import Surfaces
 from mascarin.convert.work import Section, Work
@@ -67,7 +68,7 @@ def _window(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> N
     if found is None:
         return
     frame = _frame_of(work, item) or found.frame
-    points = g.without_repeats(opening.points)
+    points = g.without_repeats(opening.points + setback(opening))
     shape = _glazed_shape(work, opening, points, frame, surfaces.drawn[wall])
     film = films.outside(item, base.zone, "very_smooth")
     tilt = g.tilt_of(base.points)
@@ -106,6 +107,7 @@ def _glazed_shape(
                 opening.item, "corners outside of its wall", "its area alone: nothing shades it"
             )
         return {"area": total} | made
+    describe_setback(work, opening, outline)
     made = {"vertices": g.rounded(outline), **made}
     if opening.copies > 1:
         work.findings.approximated(
@@ -171,12 +173,14 @@ def _door(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> Non
     wall_name = surfaces.placed[opening.base.item.name.casefold()]
     wall = work.section("surfaces")[wall_name]
     made = construction_of(work, opening.item)
-    points = g.without_repeats(opening.points)
+    points = g.without_repeats(opening.points + setback(opening))
     if not surfaces.drawn[wall_name] or not _accepted(opening, points):
         work.findings.left_out(
             opening.item, "a door whose wall has no corners here", "it has the construction of the wall"
         )
         return
+    if np.any(setback(opening)):
+        work.findings.approximated(opening.item, "a door beside the plane of its wall", "in this plane")
     if opening.copies > 1:
         work.findings.left_out(opening.item, f"{opening.copies} doors", "there is one of them")
     sides = {}

@@ -59,6 +59,9 @@ class SyntheticWall:
     measurements : Measurements
         Columns ``room`` and ``sun``, which are boundary conditions, and ``joint``, the temperature between
         insulation and brick, computed with the true parameters, with noise of 0.05 K.
+    table : pandas.DataFrame
+        Both as a logger keeps them: hourly local stamps (UTC+1), and columns ``air``, ``sun``, ``room`` and
+        ``joint``. [degC, W/m2]
 
     Examples
     --------
@@ -71,6 +74,7 @@ class SyntheticWall:
     building: Building
     climate: Climate
     measurements: Measurements
+    table: pd.DataFrame
 
 
 def synthetic_wall() -> SyntheticWall:
@@ -115,8 +119,9 @@ def synthetic_wall() -> SyntheticWall:
     ).run()
     noise = np.random.default_rng(1).normal(0.0, 0.05, len(table))
     table["joint"] = results.records[:, 0] + noise
-    measurements = Measurements.from_table(table.round(3), timezone="UTC+1", columns=["room", "sun", "joint"])
-    return SyntheticWall(building, climate, measurements)
+    table = table.round(3)
+    measurements = Measurements.from_table(table, timezone="UTC+1", columns=["room", "sun", "joint"])
+    return SyntheticWall(building, climate, measurements, table)
 
 
 def _boundary_conditions() -> pd.DataFrame:

@@ -77,11 +77,13 @@ def _paths(building: Building, pattern: str, known: Mapping[str, Parameter]) -> 
     return [path for path in paths if path not in tied]
 
 
-def strongest(simulation: Simulation, most: int = USUAL) -> list[Parameter]:
+def strongest(building: Building, simulation: Simulation, most: int = USUAL) -> list[Parameter]:
     """Parameters whose ranges change the recorded temperatures most, by one run with derivatives.
 
     Parameters
     ----------
+    building : Building
+        The building as it is described.
     simulation : Simulation
         A compiled run that records temperatures.
     most : int
@@ -93,10 +95,12 @@ def strongest(simulation: Simulation, most: int = USUAL) -> list[Parameter]:
         The one with the largest effect first: derivative of the mean of all recorded temperatures times the
         width of the range. Where there are no derivatives, those with the widest ranges.
     """
-    everything = simulation.building.parameters()
-    tied = {member for one in everything for member in one.members}
+    everything = building.parameters()
+    without = {member for one in everything for member in one.members}
+    # The sky of the run may be that of the weather: a slider for its parameters could not be saved.
+    without |= {one.path for one in everything} - {one.path for one in simulation.building.parameters()}
     varying = {
-        one.path: one for one in everything if one.varies and not one.structural and one.path not in tied
+        one.path: one for one in everything if one.varies and not one.structural and one.path not in without
     }
     try:
         slopes = simulation.gradient(_mean_of_all).slopes

@@ -88,7 +88,7 @@ class Session:
         else:
             temperatures = wanted or [name for name in chosen if building.output(name).unit == "degC"]
             sliders = choice.strongest(
-                Simulation(building, climate, **{**given, "outputs": temperatures or chosen})
+                building, Simulation(building, climate, **{**given, "outputs": temperatures or chosen})
             )
         self.sliders: tuple[Parameter, ...] = tuple(sliders)
         ranges = {one.path: (one.low, one.high) for one in sliders if one.low < one.high}

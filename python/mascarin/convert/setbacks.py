@@ -1,0 +1,84 @@
+"""Windows and doors that lie behind or in front of the plane of their wall.
+
+In a description an opening lies in its wall. One that is set back is moved into the plane of the wall, with
+four sides of its reveal standing out as shades, and shades that belong to it or to its wall move out with it:
+what stands in front of the glass keeps its place relative to it.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from mascarin.building.geometry import TOLERANCE
+from mascarin.convert import geometry as g
+from mascarin.convert.faces import Face, Opening
+from mascarin.convert.work import Work
+
+#: Cosine of the angle up to which a window counts as parallel to its wall [-].
+_PARALLEL: Final = 1.0 - 1e-6
+
+
+def setback(opening: Opening) -> g.Array:
+    """How far the plane of the wall is from an opening, along its normal; shape (3,). [m]
+
+    Parameters
+    ----------
+    opening : Opening
+        The opening; zeros where it lies in its wall, or is not parallel to it.
+    """
+    out, own = (g.normal_of(points) for points in (opening.base.points, opening.points))
+    out, own = out / np.linalg.norm(out), own / np.linalg.norm(own)
+    depth = float((opening.base.points.mean(axis=0) - opening.points.mean(axis=0)) @ out)
+    if float(out @ own) < _PARALLEL or abs(depth) <= TOLERANCE:
+        return np.zeros(3)
+    moved: g.Array = depth * out
+    return moved
+
+
+def outward(opening: Opening) -> float:
+    """Depth of an opening behind its wall, negative in front of it. [m]"""
+    return float(setback(opening) @ g.normal_of(opening.base.points)) / g.area_of(opening.base.points)
+
+
+def shift_of_shades(base: Face, openings: list[Opening]) -> g.Array:
+    """How far shades of a wall move out: as its deepest window; shape (3,). [m]"""
+    own = [one for one in openings if one.base is base and outward(one) > 0.0]
+    return setback(max(own, key=outward)) if own else np.zeros(3)
+
+
+def describe_setback(work: Work, opening: Opening, outline: g.Array) -> None:
+    """Note an opening that is moved, and enter the sides of its reveal.
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    opening : Opening
+        The opening.
+    outline : ndarray, shape (n, 3)
+        Its corners in the plane of the wall. [m]
+    """
+    move, depth = setback(opening), outward(opening)
+    if depth == 0.0:
+        return
+    if depth < 0.0:
+        work.findings.approximated(
+            opening.item,
+            f"{-depth:.3f} m in front of its wall",
+            "in the plane of the wall, with the shadows there",
+        )
+        return
+    work.findings.approximated(
+        opening.item,
+        f"{depth:.3f} m behind the plane of its wall",
+        "in this plane, with a reveal that stands out; shades of its wall stand out by as much more",
+    )
+    if opening.base.boundary != "outdoors":
+        return
+    for k, corner in enumerate(outline):
+        after = outline[(k + 1) % len(outline)]
+        name = work.names.of("shades", f"{opening.item.name} reveal {k + 1}")
+        corners = np.array([corner, after, after + move, corner + move])
+        work.section("shades")[name] = {"vertices": g.rounded(corners)}
