@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, did_you_mean
@@ -22,6 +23,32 @@ def require_zone(building: Building, zone: str) -> None:
         raise InputError(
             f"found the zone '{zone}', expected one of {', '.join(building.zones)}. "
             f"{did_you_mean(zone, building.zones)}".rstrip()
+        )
+
+
+def is_dried(building: Building, zone: str) -> bool:
+    """Whether a zone has ideal drying, whose latent heat is a load."""
+    return building.humidity is not None and building.humidity.zones[zone].drying is not None
+
+
+def require_same_loads(some: Iterable[str], others: Iterable[str]) -> None:
+    """Refuse designs of which only some are dried: the latent heat would count in a part of them.
+
+    Parameters
+    ----------
+    some, others : iterable of str
+        Outputs that an objective reads of two designs.
+
+    Raises
+    ------
+    InputError
+        Naming the loads that are not in both.
+    """
+    different = set(some) ^ set(others)
+    if different:
+        raise InputError(
+            f"found designs with and without {', '.join(sorted(different))}; expected drying in all of "
+            "them or in none. Give it to all, with 'schedule:' of a schedule that is 0 where there is none"
         )
 
 

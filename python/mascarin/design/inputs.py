@@ -14,6 +14,7 @@ import pandas as pd
 from mascarin.building import Building, load, yaml_document
 from mascarin.building.ties import expanded
 from mascarin.comfort import Surroundings
+from mascarin.design.checks import require_same_loads
 from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
 from mascarin.design.objectives import Comfort
@@ -268,6 +269,10 @@ def _check_objectives(
             # A variant may leave out what an objective needs; one of each structure is compiled later.
             for parts in variants if len(variants) <= 12 else ():
                 objective.check(in_mode(building.replace(parts), objective))
+            for parts in _humid(choices):
+                other = in_mode(building.replace(parts), objective)
+                require_same_loads(objective.outputs(changed), objective.outputs(other))
+            _require_whole(objective, choices)
         prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
         for variable, labels in prices.items():
             with places.noting(faults, "objectives", name, "choices", variable):
@@ -277,6 +282,27 @@ def _check_objectives(
                 wrong = [label for label in labels if label not in known[variable]]
                 if wrong:
                     raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
+
+
+def _require_whole(objective: Objective, choices: Choices) -> None:
+    """Refuse an objective that changes a part of what a variable chooses, or the other way round."""
+    for path in objective.changes():
+        for choice in choices.all:
+            for chosen in dict.fromkeys(p for o in choice.options for p in (*o.numbers, *o.parts)):
+                if chosen.startswith(f"{path}.") or path.startswith(f"{chosen}."):
+                    raise InputError(
+                        f"found a change of {path}, and variable '{choice.name}' chooses {chosen}; expected "
+                        "changes of the same path, which then hold for every design, or of different parts. "
+                        "Write one of them with the path of the other"
+                    )
+
+
+def _humid(choices: Choices) -> Iterator[dict[str, Any]]:
+    """Parts of single options that change the section of the humidity."""
+    for choice in choices.all:
+        for option in choice.options:
+            if any(path.split(".")[0] == "humidity" for path in option.parts):
+                yield dict(option.parts)
 
 
 def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:
