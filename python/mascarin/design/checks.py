@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, did_you_mean
@@ -31,20 +31,32 @@ def is_dried(building: Building, zone: str) -> bool:
     return building.humidity is not None and building.humidity.zones[zone].drying is not None
 
 
-def require_same_loads(some: Iterable[str], others: Iterable[str]) -> None:
-    """Refuse designs of which only some are dried: the latent heat would count in a part of them.
+def require_same_basis(some: Sequence[object], others: Sequence[object]) -> None:
+    """Refuse designs of which only some are dried, or whose seats see different surfaces.
+
+    Their latent heat would count in a part of them, and all designs have the angle factors of the first.
 
     Parameters
     ----------
-    some, others : iterable of str
-        Outputs that an objective reads of two designs.
+    some, others : sequence
+        What an objective reads of two designs: names of outputs, and views from seats.
 
     Raises
     ------
     InputError
         Naming the loads that are not in both.
     """
-    different = set(some) ^ set(others)
+    different = {str(one) for one in {*some} ^ {*others} if isinstance(one, str)}
+    if not different and tuple(some) != tuple(others):
+        raise InputError(
+            "found a seat that sees the surfaces of the designs differently; expected the same vertices of "
+            "the zone in all of them. Remove 'seat:', or make a study of each shape"
+        )
+    if different and not all(one.endswith("latent_cooling_load") for one in different):
+        raise InputError(
+            f"found designs with and without {', '.join(sorted(different))}; expected outputs that all of "
+            "them have. Remove 'seat:', or make a study of each shape"
+        )
     if different:
         raise InputError(
             f"found designs with and without {', '.join(sorted(different))}; expected drying in all of "

@@ -14,7 +14,7 @@ import pandas as pd
 from mascarin.building import Building, load, yaml_document
 from mascarin.building.ties import expanded
 from mascarin.comfort import Surroundings
-from mascarin.design.checks import require_same_loads
+from mascarin.design.checks import require_same_basis
 from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
 from mascarin.design.objectives import Comfort
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 #: A date without a year is one of the year that the weather file has.
 _MONTH_AND_DAY: Final = re.compile(r"\d{1,2}-\d{1,2}(?:[T ].*)?")
+
+
+#: Sections of a building with zones that are dried, and with the vertices that are seen from a seat.
+_DEEP: Final = ("humidity", "surfaces", "windows", "zones")
 
 
 @dataclass(frozen=True)
@@ -269,9 +273,9 @@ def _check_objectives(
             # A variant may leave out what an objective needs; one of each structure is compiled later.
             for parts in variants if len(variants) <= 12 else ():
                 objective.check(in_mode(building.replace(parts), objective))
-            for parts in _humid(choices):
+            for parts in _deep(choices):
                 other = in_mode(building.replace(parts), objective)
-                require_same_loads(objective.outputs(changed), objective.outputs(other))
+                require_same_basis(objective.basis(changed), objective.basis(other))
             _require_whole(objective, choices)
         prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
         for variable, labels in prices.items():
@@ -297,11 +301,11 @@ def _require_whole(objective: Objective, choices: Choices) -> None:
                     )
 
 
-def _humid(choices: Choices) -> Iterator[dict[str, Any]]:
-    """Parts of single options that change the section of the humidity."""
+def _deep(choices: Choices) -> Iterator[dict[str, Any]]:
+    """Parts of single options that may change what an objective reads: humidity and geometry."""
     for choice in choices.all:
         for option in choice.options:
-            if any(path.split(".")[0] == "humidity" for path in option.parts):
+            if any(path.split(".")[0] in _DEEP for path in option.parts):
                 yield dict(option.parts)
 
 

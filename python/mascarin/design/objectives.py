@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from mascarin.building import Building
+    from mascarin.comfort import SeatView
     from mascarin.design.layers import LayerFacts
     from mascarin.design.wanted import Array, Measures
     from mascarin.weather import Climate
@@ -146,8 +147,9 @@ class Comfort(OfZones):
         )
 
     def check(self, building: Building) -> None:
-        """Refuse a simulated humidity of a building without one."""
+        """Refuse a simulated humidity of a building without one, and a seat that is not in each zone."""
         super().check(building)
+        self._views(building)
         if self.comfort.humidity == "simulated" and building.humidity is None:
             raise InputError(
                 "found humidity: simulated, and a building without humidity; expected the section "
@@ -158,13 +160,24 @@ class Comfort(OfZones):
     def outputs(self, building: Building) -> tuple[str, ...]:
         """Temperatures of the air and of the surfaces, and the humidity where it is simulated."""
         humid = ("relative_humidity",) if self.comfort.humidity == "simulated" else ()
-        kinds = ("air_temperature", "mean_radiant_temperature", *humid)
-        return tuple(f"{zone}.{kind}" for zone in self.zones for kind in kinds)
+        found: list[str] = []
+        for zone, view in zip(self.zones, self._views(building), strict=True):
+            radiant = (f"{zone}.mean_radiant_temperature",) if view is None else view.outputs
+            found += [f"{zone}.air_temperature", *radiant, *(f"{zone}.{kind}" for kind in humid)]
+        return tuple(dict.fromkeys(found))
+
+    def _views(self, building: Building) -> tuple[SeatView | None, ...]:
+        """What is seen from the seat, in each zone."""
+        return tuple(self.comfort.view(building, zone) for zone in self.zones)
+
+    def basis(self, building: Building) -> tuple[object, ...]:
+        """The outputs, and what is seen from the seat."""
+        return (*super().basis(building), *self._views(building))
 
     def measures(self, climate: Climate, building: Building) -> Measures:
         """Degree-hours, and hours in which the index has no value."""
         return {
-            key: Assessed(self.zones, key, self.side, self.comfort, climate)
+            key: Assessed(self.zones, key, self.side, self.comfort, climate, self._views(building))
             for key in ("degrees", "undefined")
         }
 

@@ -51,6 +51,10 @@ class Wanted(Part):
         """Outputs of the building that the measures read."""
         return ()
 
+    def basis(self, building: Building) -> tuple[object, ...]:
+        """What the measures depend on in a building: the same for all designs."""
+        return self.outputs(building)
+
     def parts(self, kept: Mapping[str, Array]) -> dict[str, Array]:
         """What the value is the sum of, by name; empty where not all of `PARTS` were kept."""
         return {part: kept[part] for part in self.PARTS} if set(self.PARTS) <= set(kept) else {}
