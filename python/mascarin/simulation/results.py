@@ -460,18 +460,17 @@ class Results(Mapping[str, "xr.DataArray"]):
         from mascarin.comfort import ComfortSettings
         from mascarin.simulation.comfort import comfort_of
 
-        chosen = ComfortSettings(**keys) if settings is None else settings
+        chosen = settings or ComfortSettings(**keys)
         return comfort_of(self.outputs, self.records, self.index, zone, climate, chosen, building)
 
     def __repr__(self) -> str:
         return display.text(f"Results of '{self.provenance.building}'", self._rows())
 
     def _repr_html_(self) -> str:
-        tables = {"Statistics": self.to_dataframe().describe().T} if len(self) else {}
         return display.page(
             f"Results of '{self.provenance.building}'",
             self._rows(),
-            tables=tables,
+            tables={"Statistics": self.to_dataframe().describe().T} if len(self) else {},
             figures={"Plot": self.plot(list(self)[:_DRAWN])} if len(self) else {},
         )
 
