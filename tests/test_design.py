@@ -401,7 +401,7 @@ def test_drying_in_a_part_of_the_designs_is_refused(tmp_path: Path) -> None:
 
 def test_what_an_objective_sets_holds_for_every_design(tmp_path: Path) -> None:
     """Closed windows of the cooled building, also where a variable chooses the windows."""
-    closed = {"openings.window.area": 0.001, "schedules.windows": {"kind": "fraction", "value": 0.0}}
+    closed = {"openings.*.area": 0.001, "schedules.windows": {"kind": "fraction", "value": 0.0}}
     cooled = {"kind": "cooling_energy", "zones": ["room"], "setpoint": 25}
     variables = {
         "area": {"path": "openings.window.area", "values": [0.2, 0.8]},

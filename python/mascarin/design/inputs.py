@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from mascarin.building import Building, load, yaml_document
-from mascarin.building.ties import expanded
+from mascarin.building.ties import expanded, spread
 from mascarin.comfort import Surroundings
 from mascarin.design.checks import require_same_basis
 from mascarin.design.choices import Choices, read_choices
@@ -276,7 +276,7 @@ def _check_objectives(
             for parts in _deep(choices):
                 other = in_mode(building.replace(parts), objective)
                 require_same_basis(objective.basis(changed), objective.basis(other))
-            _require_whole(objective, choices)
+            _require_whole(spread(building, objective.changes()), choices)
         prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
         for variable, labels in prices.items():
             with places.noting(faults, "objectives", name, "choices", variable):
@@ -288,9 +288,9 @@ def _check_objectives(
                     raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
 
 
-def _require_whole(objective: Objective, choices: Choices) -> None:
+def _require_whole(changes: Mapping[str, Any], choices: Choices) -> None:
     """Refuse an objective that changes a part of what a variable chooses, or the other way round."""
-    for path in objective.changes():
+    for path in changes:
         for choice in choices.all:
             for chosen in dict.fromkeys(p for o in choice.options for p in (*o.numbers, *o.parts)):
                 if chosen.startswith(f"{path}.") or path.startswith(f"{chosen}."):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.building.ties import spread
 from mascarin.design.layers import LayerFacts
 from mascarin.design.measures import BINS, DaysInBin
 from mascarin.design.wanted import column_of_part
@@ -229,6 +230,7 @@ class Runs:
             outputs |= dict.fromkeys(objective.outputs(building))
         if not functions:
             return {}
+        columns = _with_changes(columns, spread(site.building, mode.changes))
         for output in [name for name in outputs if name.endswith("_liquid_fraction")]:
             functions |= {f"bin {k} {output}": DaysInBin(output, k) for k in range(BINS)}
         count, before = len(next(iter(columns.values()))), self.done
@@ -236,7 +238,7 @@ class Runs:
             self._folder(site, functions, columns, mode),
             building,
             site.climate,
-            one_each(_with_changes(columns, mode.changes)),
+            one_each(columns),
             outputs=list(outputs),
             objectives=functions,
             start=site.start,
@@ -270,7 +272,7 @@ class Runs:
             self.inputs.file.scheme,
             json.dumps(mode.changes, sort_keys=True, default=str),
             json.dumps(site.building.to_dict(), sort_keys=True, default=str),
-            json.dumps(_with_changes(columns, mode.changes), sort_keys=True, default=str),
+            json.dumps(dict(columns), sort_keys=True, default=str),
             repr(self.inputs.choices.ranges()),
         ]
         name = f"{site.name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
