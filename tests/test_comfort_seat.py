@@ -12,8 +12,8 @@ import pytest
 
 import mascarin as mc
 from design_support import written
-from mascarin.building.geometry import Polygon, plane_factor, solid_angle
-from mascarin.comfort import ComfortSettings, seen_from
+from mascarin.building.geometry import Polygon, plane_factor, solid_angle, view_factors
+from mascarin.comfort import ComfortSettings, SeatView, seen_from
 from mascarin.design import read_design, run_design
 
 LONG, WIDE, HIGH = 5.0, 4.0, 2.5
@@ -25,6 +25,7 @@ CORNERS: dict[str, list[list[float]]] = {
     "west": [[0, WIDE, 0], [0, 0, 0], [0, 0, HIGH], [0, WIDE, HIGH]],
     "east": [[LONG, 0, 0], [LONG, WIDE, 0], [LONG, WIDE, HIGH], [LONG, 0, HIGH]],
 }
+SIGMA = 5.670374419e-8
 #: A window in the south wall, from x 1 to 4 m and z 0.8 to 2 m.
 WINDOW = [[1, 0, 0.8], [4, 0, 0.8], [4, 0, 2.0], [1, 0, 2.0]]
 NEAR, FAR = (2.5, 0.5, 0.6), (2.5, 3.5, 0.6)
@@ -34,10 +35,15 @@ def room() -> mc.Building:
     """A room with vertices and a window in its south wall."""
     outside = {"outdoors": True, "convection": 15, "emissivity": 0.9, "absorptance": 0.5}
     surfaces: dict[str, Any] = {
-        name: {"construction": "wall", "vertices": corners, "outside": outside,
-               "inside": {"zone": "room", "absorptance": 0.6, "convection": 3, "emissivity": 0.9}}
+        name: {
+            "construction": "wall",
+            "vertices": corners,
+            "outside": outside,
+            "inside": {"zone": "room", "absorptance": 0.6, "convection": 3, "emissivity": 0.9},
+        }
         for name, corners in CORNERS.items()
     }  # fmt: skip
+    surfaces["south"]["inside"]["emissivity"] = 0.2
     plain = {
         "name": "room with a seat",
         "site": {"latitude": 39.7, "longitude": -105.2, "altitude": 1800, "timezone": "UTC-7"},
@@ -96,7 +102,9 @@ def test_factors_of_a_closed_room_sum_to_one(
     view = seen_from(building, "room", NEAR, posture, facing)
     assert sum(view.factors) == pytest.approx(1.0, abs=1e-14)
     assert min(view.factors) > 0.0
-    assert view.radiant(np.full((3, len(view.outputs)), 21.5)) == pytest.approx([21.5] * 3, abs=1e-10)
+    # All surfaces alike exchange nothing.
+    alike = np.array([21.5] * len(view.sides) + [0.0] * len(view.sides))
+    assert view.radiant(np.tile(alike, (3, 1))) == pytest.approx([21.5] * 3, abs=1e-10)
 
 
 @pytest.mark.parametrize("point", [NEAR, FAR, (0.3, 1.7, 2.2)])
@@ -104,14 +112,12 @@ def test_the_window_is_seen_under_its_solid_angle(
     building: mc.Building, point: tuple[float, float, float]
 ) -> None:
     view = seen_from(building, "room", point)
-    factors = dict(zip(view.outputs, view.factors, strict=True))
-    assert factors["window.inside_temperature"] == pytest.approx(angle(point) / (4 * math.pi), rel=1e-12)
+    factors = dict(zip(view.sides, view.factors, strict=True))
+    assert factors["window.inside"] == pytest.approx(angle(point) / (4 * math.pi), rel=1e-12)
     whole = sum(
         corner_angle(a, b, point[1]) for a in (point[0], LONG - point[0]) for b in (point[2], HIGH - point[2])
     )
-    assert factors["south.inside_temperature"] == pytest.approx(
-        (whole - angle(point)) / (4 * math.pi), rel=1e-12
-    )
+    assert factors["south.inside"] == pytest.approx((whole - angle(point)) / (4 * math.pi), rel=1e-12)
 
 
 def test_a_seat_beside_a_cold_window_is_colder() -> None:
@@ -120,8 +126,9 @@ def test_a_seat_beside_a_cold_window_is_colder() -> None:
     found = {}
     for name, point in (("near", NEAR), ("far", FAR)):
         view = seen_from(building, "room", point)
-        cold = np.array([2.0 if name.startswith("window") else 20.0 for name in view.outputs])
-        found[name] = float(view.radiant(cold))
+        black = SeatView(view.sides, view.factors)
+        cold = np.array([2.0 if side.startswith("window") else 20.0 for side in black.sides])
+        found[name] = float(black.radiant(cold))
         share = angle(point) / (4 * math.pi)
         fourth = share * 275.15**4 + (1 - share) * 293.15**4
         assert found[name] == pytest.approx(fourth**0.25 - 273.15, abs=1e-9)
@@ -154,9 +161,7 @@ def test_a_person_sees_planes_by_their_projected_areas(building: mc.Building) ->
     for facing, weights in ((None, (0.26, 0.26)), (0.0, (0.30, 0.22)), (90.0, (0.22, 0.30))):
         view = seen_from(building, "room", NEAR, "seated", facing)
         by_hand = (0.18 * up + weights[0] * (front + back) + weights[1] * sides) / 1.4
-        assert view.factors[view.outputs.index("roof.inside_temperature")] == pytest.approx(
-            by_hand, rel=1e-12
-        )
+        assert view.factors[view.sides.index("roof.inside")] == pytest.approx(by_hand, rel=1e-12)
 
 
 def test_a_polygon_with_a_notch_and_one_from_behind() -> None:
@@ -178,24 +183,32 @@ def test_comfort_of_a_run_at_a_seat(building: mc.Building, tmp_path: Path) -> No
     """From the series of the surfaces; a design rates its room at the same seat alike."""
     view = seen_from(building, "room", NEAR)
     climate = mc.Climate.shipped("golden")
-    names = ["room.air_temperature", "room.mean_radiant_temperature", *view.outputs]
+    recorded = ["room.air_temperature", "room.mean_radiant_temperature", *view.outputs]
     span: dict[str, Any] = {"start": "2001-01-05", "end": "2001-01-06", "step": "1h"}
     moved = building.replace({f"site.{key}": value for key, value in {
         "latitude": 39.74, "longitude": -105.18, "altitude": 1829, "timezone": "UTC-7"}.items()})  # fmt: skip
-    run = mc.simulate(moved, climate, outputs=names, **span)
+    run = mc.simulate(moved, climate, outputs=recorded, **span)
     keys: dict[str, Any] = {"index": "operative", "band": [18, 26]}
     seated = run.comfort("room", building=moved, seat=NEAR, **keys)
     found = seated.to_dataframe()["mean_radiant_temperature"].to_numpy()
-    by_hand = sum(
-        f * (run[n].to_numpy() + 273.15) ** 4 for n, f in zip(view.outputs, view.factors, strict=True)
-    )
-    assert found == pytest.approx(by_hand**0.25 - 273.15, abs=1e-9)
+    # Radiosities of gray surfaces from their temperatures and view factors alone.
+    outlines = CORNERS | {"window": WINDOW}
+    names = [side.removesuffix(".inside") for side in view.sides]
+    exchange = view_factors([Polygon.of(name, outlines[name][::-1]) for name in names])
+    emissivity = np.array([{"south": 0.2, "window": 0.84}.get(name, 0.9) for name in names])
+    kelvin = np.stack([run[f"{side}_temperature"].to_numpy() for side in view.sides]) + 273.15
+    emitted = emissivity[:, None] * SIGMA * kelvin**4
+    leaving = np.linalg.solve(np.eye(len(names)) - (1.0 - emissivity)[:, None] * exchange, emitted)
+    by_hand = (np.array(view.factors) @ leaving / SIGMA) ** 0.25 - 273.15
+    assert found == pytest.approx(by_hand, abs=1e-6)
+    black = SeatView(view.sides, view.factors).radiant((kelvin - 273.15).T)
+    assert np.abs(black - by_hand).max() > 0.05
     assert "at the seat [2.5, 0.5, 0.6]" in seated.notes[0]
     plain = run.comfort("room", **keys)
     assert abs(seated.degree_hours - plain.degree_hours) > 0.5
     with pytest.raises(mc.InputError, match="expected the building of the run"):
         run.comfort("room", seat=NEAR, **keys)
-    short = mc.simulate(moved, climate, outputs=names[:3], **span)
+    short = mc.simulate(moved, climate, outputs=recorded[:3], **span)
     with pytest.raises(mc.InputError, match=r"not recorded.*seen_from\(building, 'room', seat\)"):
         short.comfort("room", building=moved, seat=NEAR, **keys)
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin.building.geometry import Polygon, open_edges, parents, plane_factor, solid_angle
 from mascarin.building.geometry.flat import inside
+from mascarin.building.window import emissivities as emissivities_of_glass
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ _NEAR: Final = 0.01
 #: Part of all directions that may be without a surface. [-]
 _OPEN: Final = 1e-3
 _KELVIN: Final = 273.15
+#: Stefan-Boltzmann constant. [W/(m2 K4)]
+_SIGMA: Final = 5.670374419e-8
 #: Names in one line of text at most.
 _NAMED: Final = 6
 
@@ -44,38 +47,54 @@ class SeatView:
 
     Attributes
     ----------
-    outputs : tuple of str
-        Temperature of each surface and window that is seen, as an output of a run.
+    sides : tuple of str
+        Each side of a surface or window that is seen, such as ``wall.inside``.
     factors : tuple of float
         Angle factor of each; their sum is 1. [-]
+    emissivities : tuple of float
+        Emissivity of each; empty where surfaces are taken as black. [-]
     notes : tuple of str
         What was assumed.
 
     Examples
     --------
-    >>> SeatView(("wall.inside_temperature",), (1.0,)).radiant(np.array([[21.0]])).round(9)
+    >>> SeatView(("wall.inside",), (1.0,)).radiant(np.array([[21.0]])).round(9)
     array([21.])
     """
 
-    outputs: tuple[str, ...]
+    sides: tuple[str, ...]
     factors: tuple[float, ...]
+    emissivities: tuple[float, ...] = ()
     notes: tuple[str, ...] = ()
 
-    def radiant(self, temperatures: Array) -> Array:
-        """Mean radiant temperature: the fourth powers of black surfaces, weighted by their angle factors.
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Outputs of a run that `radiant` needs: temperatures, then the net long-wave radiation."""
+        temperatures = tuple(f"{side}_temperature" for side in self.sides)
+        return temperatures + tuple(f"{side}_longwave" for side in self.sides if self.emissivities)
+
+    def radiant(self, values: Array) -> Array:
+        """Mean radiant temperature of the radiosities, weighted by their angle factors.
+
+        A surface of the emissivity ``e`` that gains ``q`` by long-wave radiation receives
+        ``sigma T^4 + q/e``. What leaves it is ``sigma T^4 + q (1 - e)/e``.
 
         Parameters
         ----------
-        temperatures : ndarray, shape (..., surfaces)
-            Temperature of each surface. [degC]
+        values : ndarray, shape (..., outputs)
+            Series of `outputs`. [degC, W/m2]
 
         Returns
         -------
         ndarray, shape (...)
             Mean radiant temperature (ISO 7726:1998, annex B). [degC]
         """
-        mean = ((temperatures + _KELVIN) ** 4) @ np.asarray(self.factors)
-        return np.asarray(mean**0.25 - _KELVIN, dtype=np.float64)
+        count = len(self.sides)
+        leaving = _SIGMA * (values[..., :count] + _KELVIN) ** 4
+        if self.emissivities:
+            emissivities = np.asarray(self.emissivities)
+            leaving = leaving + values[..., count:] * (1.0 - emissivities) / emissivities
+        return np.asarray((leaving @ np.asarray(self.factors) / _SIGMA) ** 0.25 - _KELVIN, dtype=np.float64)
 
 
 def seen_from(
@@ -124,12 +143,12 @@ def seen_from(
     >>> from mascarin.examples import FOLDER
     >>> house = mc.load(FOLDER / "reunion_house" / "building.yaml")
     >>> view = seen_from(house, "living", (3.0, 0.5, 0.6))
-    >>> round(view.factors[view.outputs.index("jalousie_living_south.inside_temperature")], 3)
+    >>> round(view.factors[view.sides.index("jalousie_living_south.inside")], 3)
     0.085
     """
     if zone not in building.zones:
         raise InputError(f"zone: found '{zone}'; expected one of {', '.join(building.zones)}")
-    seen, notes = _faces(building, zone)
+    seen, said = _faces(building, zone)
     polygons = [polygon for _, polygon in seen]
     point = (float(at[0]), float(at[1]), float(at[2]))
     _require_distance(zone, polygons, point)
@@ -141,8 +160,9 @@ def seen_from(
             factors[parent] -= gross[k]
     # What is missing between polygons that meet within their tolerance is shared out.
     factors = np.maximum(factors, 0.0) / np.maximum(factors, 0.0).sum()
-    outputs = tuple(f"{item.name}.{item.side}_temperature" for item, _ in seen)
-    return SeatView(outputs, tuple(map(float, factors)), notes)
+    emissivities, reflecting = _emissivities(building, zone, [item for item, _ in seen])
+    sides = tuple(f"{item.name}.{item.side}" for item, _ in seen)
+    return SeatView(sides, tuple(map(float, factors)), emissivities, (reflecting, *said))
 
 
 def _faces(building: Building, zone: str) -> tuple[list[tuple[ZoneSurface, Polygon]], tuple[str, ...]]:
@@ -164,12 +184,30 @@ def _faces(building: Building, zone: str) -> tuple[list[tuple[ZoneSurface, Polyg
             "vertices of all its surfaces and windows, by which it is known what is seen from a seat. Add "
             "'vertices:' to them, or leave out 'seat:': surfaces are then weighted by area"
         )
-    notes = ["surfaces are taken as black"]
+    notes = []
     if framed:
-        notes.append(f"frames as warm as their glass ({_listed(list(dict.fromkeys(framed)))})")
+        notes.append(f"frames radiate as their glass ({_listed(list(dict.fromkeys(framed)))})")
     if furniture:
         notes.append(f"internal mass is not seen, because it has no place ({_listed(furniture)})")
     return list(found.values()), tuple(notes)
+
+
+def _emissivities(
+    building: Building, zone: str, seen: Sequence[ZoneSurface]
+) -> tuple[tuple[float, ...], str]:
+    """Emissivities, where the long-wave exchange between the surfaces is known; and what is assumed."""
+    found = []
+    for item in seen:
+        if item.window is not None:
+            both = emissivities_of_glass(building.glazings[item.window.glazing])
+            found.append(float(both[item.side == "inside"]))
+        elif item.surface is not None:
+            side = item.surface.inside if item.side == "inside" else item.surface.outside
+            found.append(float(side.emissivity or 0.0))
+    blinds = any(item.window is not None and item.window.blind is not None for item in seen)
+    if building.zones[zone].longwave.kind == "none" or blinds or min(found) <= 0.0:
+        return (), "surfaces are taken as black"
+    return tuple(found), "surfaces reflect what they do not absorb (radiosities)"
 
 
 def _require_distance(zone: str, polygons: Sequence[Polygon], point: Point) -> None:
