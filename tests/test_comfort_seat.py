@@ -42,7 +42,7 @@ def room() -> mc.Building:
             "inside": {"zone": "room", "absorptance": 0.6, "convection": 3, "emissivity": 0.9},
         }
         for name, corners in CORNERS.items()
-    }  # fmt: skip
+    }
     surfaces["south"]["inside"]["emissivity"] = 0.2
     plain = {
         "name": "room with a seat",
@@ -227,6 +227,13 @@ def test_comfort_of_a_run_at_a_seat(building: mc.Building, tmp_path: Path) -> No
     (tmp_path / "building.yaml").write_text(json.dumps(building.to_dict()), encoding="utf-8")
     with pytest.raises(mc.InputError, match="a seat that sees the surfaces of the designs differently"):
         read_design(file)
+    coated = {"low": {"path": "surfaces.roof.inside.emissivity", "values": [0.1, 0.9]}}
+    uncertain = {"parameters": ["surfaces.roof.inside.emissivity"], "samples": 4}
+    for chosen, unknown in ((coated, None), (variables, uncertain)):
+        written(tmp_path, objectives={"seat": objective}, variables=chosen, uncertainty=unknown)
+        (tmp_path / "building.yaml").write_text(json.dumps(building.to_dict()), encoding="utf-8")
+        with pytest.raises(mc.InputError, match="the same vertices and emissivities"):
+            read_design(file)
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,8 @@ def require_same_basis(some: Sequence[object], others: Sequence[object]) -> None
     different = {str(one) for one in {*some} ^ {*others} if isinstance(one, str)}
     if not different and tuple(some) != tuple(others):
         raise InputError(
-            "found a seat that sees the surfaces of the designs differently; expected the same vertices of "
-            "the zone in all of them. Remove 'seat:', or make a study of each shape"
+            "found a seat that sees the surfaces of the designs differently; expected the same vertices and "
+            "emissivities of the zone in all designs and samples. Remove 'seat:', or make a study of each"
         )
     if different and not all(one.endswith("latent_cooling_load") for one in different):
         raise InputError(

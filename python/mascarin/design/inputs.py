@@ -142,7 +142,7 @@ def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInput
     for name in file.climates:
         with faults.kept():
             sites.append(_site(name, file, building, beside, places))
-    _check_objectives(file, building, choices, places, faults)
+    _check_objectives(file, building, choices, uncertain, places, faults)
     with places.noting(faults, "reference"):
         building.replace(file.reference)
     _check_validity(file, sites, places, faults)
@@ -263,8 +263,14 @@ def _overlap(path: str, chosen: str) -> bool:
 
 
 def _check_objectives(
-    file: DesignFile, building: Building, choices: Choices, places: Places, faults: Faults
+    file: DesignFile,
+    building: Building,
+    choices: Choices,
+    uncertain: Sequence[str],
+    places: Places,
+    faults: Faults,
 ) -> None:
+    deep = [*_deep(choices), *_uncertain_emissivities(building, uncertain)]
     variants = list(choices.structures())
     for name, objective in file.objectives.items():
         with places.noting(faults, "objectives", name):
@@ -273,7 +279,7 @@ def _check_objectives(
             # A variant may leave out what an objective needs; one of each structure is compiled later.
             for parts in variants if len(variants) <= 12 else ():
                 objective.check(in_mode(building.replace(parts), objective))
-            for parts in _deep(choices):
+            for parts in deep:
                 other = in_mode(building.replace(parts), objective)
                 require_same_basis(objective.basis(changed), objective.basis(other))
             _require_whole(spread(building, objective.changes()), choices)
@@ -302,11 +308,22 @@ def _require_whole(changes: Mapping[str, Any], choices: Choices) -> None:
 
 
 def _deep(choices: Choices) -> Iterator[dict[str, Any]]:
-    """Parts of single options that may change what an objective reads: humidity and geometry."""
+    """Changes by single options that may change what an objective reads: humidity, geometry, emissivity."""
     for choice in choices.all:
         for option in choice.options:
             if any(path.split(".")[0] in _DEEP for path in option.parts):
                 yield dict(option.parts)
+            elif any(path.endswith("emissivity") for path in option.numbers):
+                yield dict(option.numbers)
+
+
+def _uncertain_emissivities(building: Building, uncertain: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Emissivities that vary over the samples, each at the middle between its value and an end."""
+    for path in uncertain:
+        if path.endswith("emissivity"):
+            parameter = building.parameter(path)
+            end = parameter.low if parameter.low < parameter.value else parameter.high
+            yield {path: 0.5 * (parameter.value + end)}
 
 
 def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:
