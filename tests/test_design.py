@@ -295,7 +295,7 @@ def test_the_command_says_what_it_would_run(capsys: pytest.CaptureFixture[str], 
     assert cli.main(["design", "reunion-house", "--check", "--json"]) == 0
     plan = json.loads(capsys.readouterr().out)
     assert plan["designs"] == 60
-    assert plan["runs"] == (60 + 6 * 16) * 2 * 2
+    assert plan["runs"] == (60 + 6 * 16) * 3 * 2  # climates, free and cooled
     assert cli.main(["design", "nowhere", "-o", str(tmp_path / "out")]) == 2
     assert "reunion-house" in capsys.readouterr().err
     assert DESIGNS["reunion-house"].is_file()
@@ -326,3 +326,111 @@ def test_comfort_of_the_simulated_humidity(tmp_path: Path) -> None:
         dry = run.comfort("room", site.climate, index="givoni", humidity=50).degree_hours
         assert value == pytest.approx(alone, rel=1e-12)
         assert abs(alone - dry) > 1.0
+
+
+def test_cooling_counts_the_latent_heat_of_drying(tmp_path: Path) -> None:
+    """A room held at 10 g/kg under a steady outdoor vapour: ``G + L rho V n (w_o - w)``, a hand number.
+
+    The coil of a second objective takes ``1/9`` of its sensible heat as latent heat. A design without
+    drying has sensible heat alone, and the same heat: it does not depend on vapour.
+    """
+    from mascarin.weather.shipped import content, found
+
+    def steady(row: str) -> str:
+        fields = row.split(",")
+        return ",".join([*fields[:7], "20.0", fields[8], "101325", *fields[10:]])
+
+    rows = content(found("shipped:tampa")).decode("latin-1").splitlines()
+    (tmp_path / "steady.epw").write_text(
+        "\n".join([*rows[:8], *map(steady, rows[8:])]) + "\n", encoding="latin-1"
+    )
+    cooled = {"zones": ["room"], "setpoint": 25}
+    point = {"set": {"humidity.zones.room.drying": {"humidity_ratio": 0.010}}}
+    coil = {"set": {"humidity.zones.room.drying": {"sensible_heat_ratio": 0.9}}}
+    file = written(
+        tmp_path,
+        climates={"steady": {"epw": "steady.epw", "start": "07-01", "end": "07-03"}},
+        variables={"roof": {"path": "surfaces.ceiling.outside.absorptance", "values": [0.3, 0.7]}},
+        objectives={
+            "energy": {"kind": "cooling_energy", **cooled, **point},
+            "peak": {"kind": "peak_cooling", **cooled, **point},
+            "by coil": {"kind": "cooling_energy", **cooled, **coil},
+            "sensible alone": {"kind": "cooling_energy", **cooled},
+            "sensible peak": {"kind": "peak_cooling", **cooled},
+        },
+        uncertainty=None,
+        reference={},
+    )
+    humid = {"zones": {"room": {"gains": {"people": {"power": 200}}}}}
+    described = (tmp_path / "building.yaml").read_text(encoding="utf-8")
+    described = described.replace("timezone: UTC-5", "timezone: UTC-5, air_density: 1.2")
+    plain = [line for line in described.splitlines() if not line.startswith("openings:")]
+    (tmp_path / "building.yaml").write_text(
+        "\n".join([*plain, f"humidity: {json.dumps(humid)}"]), encoding="utf-8"
+    )
+    results = run_design(read_design(file), tmp_path / "out")
+    table = results.to_dataframe()
+    # 2338.8 Pa at 20 degC (Hyland & Wexler); 30 m3 and one air change an hour; 48 h.
+    outdoor = 0.621945 * 2338.8 / (101325.0 - 2338.8)
+    load = 200.0 + 2.5e6 * 1.2 * 30.0 / 3600.0 * (outdoor - 0.010)
+    assert table["energy, latent"].tolist() == pytest.approx([0.048 * load] * 2, rel=2e-5)
+    assert table["energy"].tolist() == pytest.approx(
+        (table["sensible alone"] + 0.048 * load).tolist(), rel=1e-4
+    )
+    assert table["peak"].tolist() == pytest.approx((table["sensible peak"] + load).tolist(), rel=1e-4)
+    assert table["by coil"].tolist() == pytest.approx((table["sensible alone"] / 0.9).tolist(), rel=1e-9)
+    assert "sensible alone, latent" not in table
+    assert results.reference["steady"]["energy, latent"] == pytest.approx(0.048 * load, rel=2e-5)
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count("energy, latent, kWh") == 2  # by climate, and of all designs
+    assert "sensible, and latent where a zone is dried" in page
+
+
+def test_drying_in_a_part_of_the_designs_is_refused(tmp_path: Path) -> None:
+    """Its latent heat would count in these designs only."""
+    dried = {"humidity.zones.room.drying": {"relative_humidity": 0.6}}
+    study = written(
+        tmp_path, variables={"plant": {"variants": {"none": {}, "dried": dried}}},
+        objectives={"energy": {"kind": "cooling_energy", "zones": ["room"], "setpoint": 25}},
+    )  # fmt: skip
+    with (tmp_path / "building.yaml").open("a", encoding="utf-8") as building:
+        building.write("humidity: {}\n")
+    with pytest.raises(InputError, match=r"with and without room\.latent_cooling_load.*in all of them"):
+        read_design(study)
+
+
+def test_what_an_objective_sets_holds_for_every_design(tmp_path: Path) -> None:
+    """Closed windows of the cooled building, also where a variable chooses the windows."""
+    closed = {"openings.*.area": 0.001, "schedules.windows": {"kind": "fraction", "value": 0.0}}
+    cooled = {"kind": "cooling_energy", "zones": ["room"], "setpoint": 25}
+    variables = {
+        "area": {"path": "openings.window.area", "values": [0.2, 0.8]},
+        "windows": {
+            "variants": {"ajar": {}, "open": {"schedules.windows": {"kind": "fraction", "value": 1.0}}}
+        },
+    }
+    described = (written(tmp_path).parent / "building.yaml").read_text(encoding="utf-8")
+    opened = described.replace("wind_coefficient: 0.2}", "wind_coefficient: 0.2, schedule: windows}")
+    file = written(
+        tmp_path,
+        climates={"tampa": {"epw": "shipped:tampa", "start": "07-01", "end": "07-02"}},
+        variables=variables,
+        objectives={"closed": {**cooled, "set": closed}, "as chosen": cooled},
+        uncertainty=None,
+    )
+    (tmp_path / "building.yaml").write_text(
+        opened + "schedules: {windows: {kind: fraction, value: 0.5}}\n", encoding="utf-8"
+    )
+    found = run_design(read_design(file), tmp_path / "out")
+    site = found.inputs.sites[0]
+    run = mc.simulate(
+        site.building.replace({**closed, "zones.room.cooling": {"setpoint": 25}}), site.climate,
+        start=site.start, end=site.end, step="1h", outputs=["room.cooling_load"],
+    )  # fmt: skip
+    alone = float(np.asarray(run["room.cooling_load"])[1:].sum()) / 1000.0
+    assert found.values("closed").tolist() == pytest.approx([alone] * 4, rel=1e-12)
+    assert len(set(found.values("as chosen").tolist())) == 4
+    overlap = {"closed": {**cooled, "set": {"openings.window": {"zone": "room", "area": 0.1, "height": 0.4}}}}
+    written(tmp_path, variables=variables, objectives=overlap)
+    with pytest.raises(InputError, match=r"a change of openings\.window, and variable 'area' chooses"):
+        read_design(file)

@@ -232,7 +232,7 @@ def test_drying_to_a_set_point_that_steps(point: dict[str, Any]) -> None:
 def test_humidifying_by_a_schedule_of_humidity_ratios() -> None:
     """To 10 g/kg by day and 5 g/kg, below that of the outdoor air, by night: nothing is added then."""
     profile = [{"at": "00:00", "value": 0.005}, {"at": "08:00", "value": 0.010}]
-    plain = room().to_dict() | {"schedules": {"points": {"kind": "fraction", "days": {"all": profile}}}}
+    plain = room().to_dict() | {"schedules": {"points": {"kind": "humidity_ratio", "days": {"all": profile}}}}
     plain["humidity"] = {"zones": {"room": {"humidifying": {"humidity_ratio": {"schedule": "points"}}}}}
     names = ("room.latent_heating_load", "room.humidity_ratio")
     found = run(mc.Building.from_dict(plain), climate(hours=24), *names)
@@ -250,7 +250,10 @@ def test_humidifying_by_a_schedule_of_humidity_ratios() -> None:
         ({"relative_humidity": {"schedule": "point"}}, None, "Did you mean 'points'"),
         ({"relative_humidity": {"schedule": "warm"}}, None, "a schedule of kind fraction"),
         ({"relative_humidity": {"schedule": "nought"}}, None, "'nought' with 0\n  expected: values above 0"),
-        ({"humidity_ratio": {"schedule": "points"}}, None, "'points' with 0.6\n  expected: values"),
+        ({"humidity_ratio": {"schedule": "points"}}, None, "a schedule of kind humidity_ratio"),
+        ({"humidity_ratio": {"schedule": "none"}}, None,
+         "'none' with 0\n  expected: values above 0, up to 0.2 [kg/kg]"),
+        ({"relative_humidity": {"schedule": "none"}}, None, "a schedule of kind fraction"),
         ({"relative_humidity": {"schedule": "points", "column": "points"}}, None, "schedule and column"),
         ({"relative_humidity": {"constant": 0.6, "unit": "%"}}, None, "'unit' without a column"),
         ({"relative_humidity": {"schedule": "points"}}, {"relative_humidity": 0.55},
@@ -266,6 +269,7 @@ def test_set_points_that_cannot_be_are_refused(drying: Any, humidifying: Any, wo
         "points": STEPS,
         "warm": {"kind": "temperature", "value": 20},
         "nought": {"kind": "fraction", "value": 0},
+        "none": {"kind": "humidity_ratio", "value": 0},
     }
     plain["humidity"] = {"zones": {"room": {"drying": drying, "humidifying": humidifying}}}
     with pytest.raises(InputError) as caught:

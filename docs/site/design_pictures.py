@@ -1,7 +1,7 @@
 """The pictures of docs/design.md and docs/pcm-results.md, from the report of the shipped design study.
 
-``python docs/site/design_pictures.py`` runs the study into a temporary folder (a minute and a half of two
-free cores); with a folder of ``mascarin design reunion-house -o FOLDER`` it reads the report there. Each
+``python docs/site/design_pictures.py`` runs the study into a temporary folder (two minutes of two free
+cores); with a folder of ``mascarin design reunion-house -o FOLDER`` it reads the report there. Each
 picture is a drawing of the report with the part of its style sheet that it uses, for light and dark pages.
 """
 

@@ -55,7 +55,7 @@ def _of_humidity(building: Description) -> Iterator[Use]:
                 yield plant.schedule, (*at, which, "schedule"), "fraction"
             key, setpoint = plant.setpoint
             if setpoint.schedule is not None:
-                yield setpoint.schedule, (*at, which, key, "schedule"), "fraction"
+                yield setpoint.schedule, (*at, which, key, "schedule"), setpoint.SCHEDULED
 
 
 def _of_units(building: Description) -> Iterator[Use]:

@@ -78,9 +78,11 @@ class HumiditySetPoint(Part):
     KIND: ClassVar[CourseKind]
     USUAL: ClassVar[str]
     WORDS: ClassVar[tuple[float, str]]
+    #: Kind of the schedule that gives its values.
+    SCHEDULED: ClassVar[str]
 
     constant: Number | None = None
-    schedule: ScheduleName | None = Field(None, description="Schedule of kind fraction with its values")
+    schedule: ScheduleName | None = Field(None, description="Schedule with its values")
     column: str | None = Field(None, description="Measured column with its values")
 
     @model_validator(mode="after")
@@ -129,6 +131,7 @@ class RelativeHumiditySetPoint(HumiditySetPoint):
     KIND: ClassVar = "relative_humidity"
     USUAL: ClassVar = "-"
     WORDS: ClassVar = (100.0, "% relative humidity")
+    SCHEDULED: ClassVar = "fraction"
 
     constant: q.RelativeHumidity | None = None
     unit: Literal["-", "%"] | None = Field(None, description="Unit of the column; none: -")
@@ -146,6 +149,7 @@ class HumidityRatioSetPoint(HumiditySetPoint):
     KIND: ClassVar = "humidity_ratio"
     USUAL: ClassVar = "kg/kg"
     WORDS: ClassVar = (1000.0, "g/kg")
+    SCHEDULED: ClassVar = "humidity_ratio"
 
     constant: q.HumidityRatio | None = None
     unit: Literal["kg/kg", "g/kg"] | None = Field(None, description="Unit of the column; none: kg/kg")

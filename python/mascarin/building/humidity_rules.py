@@ -102,7 +102,7 @@ def _schedules_are_humidities(building: Description, at: tuple[str, ...], plant:
         return
     schedule = building.schedules[setpoint.schedule]
     quantity = quantity_of(type(setpoint).model_fields["constant"])
-    if schedule.kind != "fraction" or quantity is None:
+    if schedule.kind != setpoint.SCHEDULED or quantity is None:
         return  # the kind is compared with the use of all schedules
     most, drying = quantity.limits.upper, at[-1] == "drying"
     values = [float(number) for _, number, _ in leaves(schedule)]

@@ -1,4 +1,4 @@
-"""Schedules: a fraction or a temperature over days, weeks and holidays."""
+"""Schedules: a fraction, a temperature or a humidity ratio over days, weeks and holidays."""
 
 from __future__ import annotations
 
@@ -78,7 +78,23 @@ class TemperaturePoint(Part):
     )
 
 
-Point = FractionPoint | TemperaturePoint
+class HumidityRatioPoint(Part):
+    """A humidity ratio from a time of day on.
+
+    Examples
+    --------
+    >>> HumidityRatioPoint(at="07:00", value=0.007)
+    HumidityRatioPoint(at=07:00, value=0.007 kg/kg)
+    """
+
+    at: ClockTime = Field(description='Time of day, "07:30"')
+    value: q.ScheduledHumidityRatio
+    ramp_to: q.ScheduledHumidityRatio | None = Field(
+        None, description="Value that is reached linearly at the next point"
+    )
+
+
+Point = FractionPoint | TemperaturePoint | HumidityRatioPoint
 
 
 class _Days(Part):
@@ -155,6 +171,30 @@ class TemperatureDays(_Days):
     holidays: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of holidays")
 
 
+class HumidityRatioDays(_Days):
+    """Profiles of a humidity ratio by kind of day.
+
+    Examples
+    --------
+    >>> HumidityRatioDays(all=[{"at": "00:00", "value": 0.007}])
+    HumidityRatioDays(all=[HumidityRatioPoint])
+    """
+
+    all: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of all days")
+    weekdays: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Monday to Friday")
+    weekends: tuple[HumidityRatioPoint, ...] | None = Field(
+        None, description="Profile of Saturday and Sunday"
+    )
+    monday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Mondays")
+    tuesday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Tuesdays")
+    wednesday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Wednesdays")
+    thursday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Thursdays")
+    friday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Fridays")
+    saturday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Saturdays")
+    sunday: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of Sundays")
+    holidays: tuple[HumidityRatioPoint, ...] | None = Field(None, description="Profile of holidays")
+
+
 def _last_day(text: str) -> str:
     if not re.fullmatch(r"\d\d-\d\d", text):
         raise problem(shown(text), 'a day of the year, "03-31"', "Write month and day with two digits.")
@@ -188,6 +228,19 @@ class TemperatureSeason(Part):
 
     until: LastDay = Field(description='Last day, "03-31"; it begins after that of the season before')
     days: TemperatureDays = Field(description="Profiles by kind of day")
+
+
+class HumidityRatioSeason(Part):
+    """Profiles of a humidity ratio for a part of the year.
+
+    Examples
+    --------
+    >>> HumidityRatioSeason(until="12-31", days={"all": [{"at": "00:00", "value": 0.007}]}).until
+    '12-31'
+    """
+
+    until: LastDay = Field(description='Last day, "03-31"; it begins after that of the season before')
+    days: HumidityRatioDays = Field(description="Profiles by kind of day")
 
 
 def schedule_channel(name: str) -> str:
@@ -255,7 +308,7 @@ class _Schedule(Part):
         return 1.0
 
     @property
-    def profiles(self) -> tuple[FractionDays | TemperatureDays, ...]:
+    def profiles(self) -> tuple[FractionDays | TemperatureDays | HumidityRatioDays, ...]:
         """Profiles by kind of day, of each season; none for one value or a column."""
         days, seasons = getattr(self, "days", None), getattr(self, "seasons", None)
         return tuple(season.days for season in seasons or ()) or ((days,) if days is not None else ())
@@ -337,7 +390,26 @@ class TemperatureSchedule(_Schedule):
     )
 
 
-Schedule = Annotated[FractionSchedule | TemperatureSchedule, Field(discriminator="kind")]
+class HumidityRatioSchedule(_Schedule):
+    """A humidity ratio over time; a run uses its mean over a step.
+
+    Examples
+    --------
+    >>> float(HumidityRatioSchedule(value=0.007).value)
+    0.007
+    """
+
+    kind: Literal["humidity_ratio"] = "humidity_ratio"
+    value: q.ScheduledHumidityRatio | None = None
+    days: HumidityRatioDays | None = Field(None, description="Profiles by kind of day")
+    seasons: tuple[HumidityRatioSeason, ...] | None = Field(
+        None, description="Profiles that change in the course of the year, in order"
+    )
+
+
+Schedule = Annotated[
+    FractionSchedule | TemperatureSchedule | HumidityRatioSchedule, Field(discriminator="kind")
+]
 
 
 def _minutes(at: str) -> float:

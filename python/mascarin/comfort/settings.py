@@ -15,6 +15,7 @@ from mascarin.building.schedule import ClockTime
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Discomfort, Evaluation, Floats, discomfort
 from mascarin.comfort.indices import INDICES, Band, Index, index_named, require_limits
+from mascarin.comfort.seat import Point, Posture, SeatView, seen_from
 from mascarin.comfort.surroundings import Surroundings
 from mascarin.errors import InputError
 from mascarin.weather.moisture import relative_humidity
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from typing import Self
 
     import pandas as pd
+
+    from mascarin.building import Building
 
 IndexName = Literal[
     "operative", "adaptive-en", "adaptive-ashrae", "pmv", "set", "heat-index", "utci", "givoni"
@@ -88,6 +91,21 @@ class ComfortSettings(Part):
     clothing: Annotated[float, Field(ge=0.0, le=5.0)] = Field(
         0.5, description="Insulation of the clothing: 0.3 light, 0.5 summer, 1.0 winter [clo]"
     )
+    seat: Point | None = Field(
+        None,
+        description="Position [x, y, z] of the person, in the coordinates of the vertices: surfaces and "
+        "windows count by what is seen of them from there; by default they are weighted by area [m]",
+    )
+    posture: Posture = Field(
+        "sphere",
+        description="What sees the surfaces from the seat: a small sphere, or a seated or standing person "
+        "(ISO 7726)",
+    )
+    facing: Annotated[float, Field(ge=0.0, le=360.0)] | None = Field(
+        None,
+        description="Direction in which the person looks, clockwise from north; none: four directions alike "
+        "[deg]",
+    )
     hours: tuple[tuple[ClockTime, ClockTime], ...] = Field(
         (), description='Hours in which somebody is there, such as [["08:00", "18:00"]]; by default all'
     )
@@ -112,6 +130,11 @@ class ComfortSettings(Part):
             key = "category" if index.categories else "band"
             found, _, expected = str(error).partition("found ")[2].partition("; expected ")
             return [fault((key,), found, expected, f"Correct '{key}:'.")]
+        if self.posture != "sphere" and self.seat is None:
+            return [fault(("posture",), repr(self.posture), "a seat beside it", "Add 'seat: [x, y, z]'.")]
+        if self.facing is not None and self.posture == "sphere":
+            return [fault(("facing",), f"{self.facing:g} deg for a sphere, which is the same on all sides",
+                          "posture: seated or standing beside it", "Add 'posture:'.")]  # fmt: skip
         if self.humidity is None or "humidity" in index.needs:
             return []
         return [fault(("humidity",), repr(self.humidity), f"none: {index.title} does not use it",
@@ -128,6 +151,25 @@ class ComfortSettings(Part):
         if self.category is not None:
             return self.category
         return self.band if self.band is not None else INDICES[self.index].usual
+
+    def view(self, building: Building, zone: str) -> SeatView | None:
+        """What is seen from the seat; None without one.
+
+        Parameters
+        ----------
+        building : Building
+            The building.
+        zone : str
+            Name of the zone.
+
+        Raises
+        ------
+        InputError
+            It is not known what is seen from the seat; see `mascarin.comfort.seen_from`.
+        """
+        if self.seat is None:
+            return None
+        return seen_from(building, zone, self.seat, self.posture, self.facing)
 
     def occupied(self, times: pd.DatetimeIndex) -> Floats:
         """Time that each record stands for, 0 where nobody is there.

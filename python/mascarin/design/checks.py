@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, did_you_mean
@@ -22,6 +23,44 @@ def require_zone(building: Building, zone: str) -> None:
         raise InputError(
             f"found the zone '{zone}', expected one of {', '.join(building.zones)}. "
             f"{did_you_mean(zone, building.zones)}".rstrip()
+        )
+
+
+def is_dried(building: Building, zone: str) -> bool:
+    """Whether a zone has ideal drying, whose latent heat is a load."""
+    return building.humidity is not None and building.humidity.zones[zone].drying is not None
+
+
+def require_same_basis(some: Sequence[object], others: Sequence[object]) -> None:
+    """Refuse designs of which only some are dried, or whose seats see different surfaces.
+
+    Their latent heat would count in a part of them, and all designs have the angle factors of the first.
+
+    Parameters
+    ----------
+    some, others : sequence
+        What an objective reads of two designs: names of outputs, and views from seats.
+
+    Raises
+    ------
+    InputError
+        Naming the loads that are not in both.
+    """
+    different = {str(one) for one in {*some} ^ {*others} if isinstance(one, str)}
+    if not different and tuple(some) != tuple(others):
+        raise InputError(
+            "found a seat that sees the surfaces of the designs differently; expected the same vertices and "
+            "emissivities of the zone in all designs and samples. Remove 'seat:', or make a study of each"
+        )
+    if different and not all(one.endswith("latent_cooling_load") for one in different):
+        raise InputError(
+            f"found designs with and without {', '.join(sorted(different))}; expected outputs that all of "
+            "them have. Remove 'seat:', or make a study of each shape"
+        )
+    if different:
+        raise InputError(
+            f"found designs with and without {', '.join(sorted(different))}; expected drying in all of "
+            "them or in none. Give it to all, with 'schedule:' of a schedule that is 0 where there is none"
         )
 
 

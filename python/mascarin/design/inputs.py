@@ -12,8 +12,9 @@ import numpy as np
 import pandas as pd
 
 from mascarin.building import Building, load, yaml_document
-from mascarin.building.ties import expanded
+from mascarin.building.ties import expanded, spread
 from mascarin.comfort import Surroundings
+from mascarin.design.checks import require_same_basis
 from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
 from mascarin.design.objectives import Comfort
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
 
 #: A date without a year is one of the year that the weather file has.
 _MONTH_AND_DAY: Final = re.compile(r"\d{1,2}-\d{1,2}(?:[T ].*)?")
+
+
+#: Sections of a building with zones that are dried, and with the vertices that are seen from a seat.
+_DEEP: Final = ("humidity", "surfaces", "windows", "zones")
 
 
 @dataclass(frozen=True)
@@ -137,7 +142,7 @@ def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInput
     for name in file.climates:
         with faults.kept():
             sites.append(_site(name, file, building, beside, places))
-    _check_objectives(file, building, choices, places, faults)
+    _check_objectives(file, building, choices, uncertain, places, faults)
     with places.noting(faults, "reference"):
         building.replace(file.reference)
     _check_validity(file, sites, places, faults)
@@ -258,8 +263,14 @@ def _overlap(path: str, chosen: str) -> bool:
 
 
 def _check_objectives(
-    file: DesignFile, building: Building, choices: Choices, places: Places, faults: Faults
+    file: DesignFile,
+    building: Building,
+    choices: Choices,
+    uncertain: Sequence[str],
+    places: Places,
+    faults: Faults,
 ) -> None:
+    deep = [*_deep(choices), *_uncertain_emissivities(building, uncertain)]
     variants = list(choices.structures())
     for name, objective in file.objectives.items():
         with places.noting(faults, "objectives", name):
@@ -268,6 +279,10 @@ def _check_objectives(
             # A variant may leave out what an objective needs; one of each structure is compiled later.
             for parts in variants if len(variants) <= 12 else ():
                 objective.check(in_mode(building.replace(parts), objective))
+            for parts in deep:
+                other = in_mode(building.replace(parts), objective)
+                require_same_basis(objective.basis(changed), objective.basis(other))
+            _require_whole(spread(building, objective.changes()), choices)
         prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
         for variable, labels in prices.items():
             with places.noting(faults, "objectives", name, "choices", variable):
@@ -277,6 +292,38 @@ def _check_objectives(
                 wrong = [label for label in labels if label not in known[variable]]
                 if wrong:
                     raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
+
+
+def _require_whole(changes: Mapping[str, Any], choices: Choices) -> None:
+    """Refuse an objective that changes a part of what a variable chooses, or the other way round."""
+    for path in changes:
+        for choice in choices.all:
+            for chosen in dict.fromkeys(p for o in choice.options for p in (*o.numbers, *o.parts)):
+                if chosen.startswith(f"{path}.") or path.startswith(f"{chosen}."):
+                    raise InputError(
+                        f"found a change of {path}, and variable '{choice.name}' chooses {chosen}; expected "
+                        "changes of the same path, which then hold for every design, or of different parts. "
+                        "Write one of them with the path of the other"
+                    )
+
+
+def _deep(choices: Choices) -> Iterator[dict[str, Any]]:
+    """Changes by single options that may change what an objective reads: humidity, geometry, emissivity."""
+    for choice in choices.all:
+        for option in choice.options:
+            if any(path.split(".")[0] in _DEEP for path in option.parts):
+                yield dict(option.parts)
+            elif any(path.endswith("emissivity") for path in option.numbers):
+                yield dict(option.numbers)
+
+
+def _uncertain_emissivities(building: Building, uncertain: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Emissivities that vary over the samples, each at the middle between its value and an end."""
+    for path in uncertain:
+        if path.endswith("emissivity"):
+            parameter = building.parameter(path)
+            end = parameter.low if parameter.low < parameter.value else parameter.high
+            yield {path: 0.5 * (parameter.value + end)}
 
 
 def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import xarray as xr
 
-    from mascarin.comfort import ComfortSettings
+    from mascarin.comfort import ComfortSettings, SeatView
     from mascarin.comfort.evaluation import Discomfort
     from mascarin.weather import Climate
 
@@ -175,6 +175,8 @@ class Assessed:
         Index, limits and person.
     climate : Climate
         The weather.
+    views : tuple of SeatView or None
+        What is seen from the seat in each zone; None: surfaces are weighted by area.
     """
 
     zones: tuple[str, ...]
@@ -182,6 +184,7 @@ class Assessed:
     side: str
     settings: ComfortSettings
     climate: Climate = field(repr=False, compare=False)
+    views: tuple[SeatView | None, ...]
 
     def __call__(self, run: xr.Dataset) -> Array:
         """Value for each member. [unit of the index x h] or [h]"""
@@ -191,10 +194,12 @@ class Assessed:
         around = Surroundings.of(self.climate, times)
         hours = self.settings.occupied(times)
         total = np.zeros(run.sizes["member"])
-        for zone in self.zones:
-            air, radiant = (
-                run[f"{zone}.{kind}"].to_numpy() for kind in ("air_temperature", "mean_radiant_temperature")
-            )
+        for zone, view in zip(self.zones, self.views, strict=True):
+            air = run[f"{zone}.air_temperature"].to_numpy()
+            if view is None:
+                radiant = run[f"{zone}.mean_radiant_temperature"].to_numpy()
+            else:
+                radiant = view.radiant(np.stack([run[name].to_numpy() for name in view.outputs], axis=-1))
             simulated = self.settings.humidity == "simulated"
             humidity = 100.0 * run[f"{zone}.relative_humidity"].to_numpy() if simulated else None
             found = self.settings.discomfort(air, radiant, hours, around, humidity)

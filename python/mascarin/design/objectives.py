@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from mascarin.building.part import Part, Shorthand, fault, insist
+from mascarin.building.part import Shorthand, fault, insist
 from mascarin.comfort import ComfortSettings
-from mascarin.design.checks import require_layer, require_zone
-from mascarin.design.measures import Assessed, Beyond, CycleDays, Heat, Highest, Melted, PeakLoad
+from mascarin.design.checks import require_layer
+from mascarin.design.cooling import CoolingEnergy, PeakCooling
+from mascarin.design.measures import Assessed, Beyond, CycleDays, Highest, Melted
+from mascarin.design.wanted import OfZones, Wanted
 from mascarin.ensemble import Statistic
 from mascarin.errors import InputError
 from mascarin.study.field_types import Hours
@@ -20,66 +21,17 @@ from mascarin.study.field_types import Hours
 if TYPE_CHECKING:
     from typing import Self
 
-    import numpy.typing as npt
-
     from mascarin.building import Building
+    from mascarin.comfort import SeatView
     from mascarin.design.layers import LayerFacts
+    from mascarin.design.wanted import Array, Measures
     from mascarin.weather import Climate
-
-    Array = npt.NDArray[np.float64]
-    Measures = dict[str, Callable[[Any], Any]]
 
 #: Higher indoor limits of EN 16798-1:2019, table B.4, by the air speed that occupants control. [m/s] -> [K]
 AIR_SPEED: Final[dict[float, float]] = {0.0: 0.0, 0.6: 1.2, 0.9: 1.8, 1.2: 2.2}
 
 
-class Wanted(Part):
-    """Base of the objectives."""
-
-    #: Whether small values are good.
-    least: ClassVar[bool] = True
-
-    @property
-    @abstractmethod
-    def unit(self) -> str:
-        """Unit of the value."""
-
-    def changes(self) -> dict[str, Any]:
-        """What is replaced in the building for the runs of this objective."""
-        return {}
-
-    def check(self, building: Building) -> None:
-        """Refuse what the building, with its changes, does not have."""
-
-    def measures(self, climate: Climate) -> Measures:
-        """What is kept of each run in a climate, by name; empty where no run is needed."""
-        return {}
-
-    def outputs(self) -> tuple[str, ...]:
-        """Outputs that the measures read."""
-        return ()
-
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
-        """The objective of each member, shape (members,), from what was kept and from its layers."""
-        return np.asarray(next(iter(kept.values())), dtype=np.float64)
-
-
-class _OfZones(Wanted):
-    zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the mean over them")
-
-    _ENDING: ClassVar = "operative_temperature"
-
-    def outputs(self) -> tuple[str, ...]:
-        """One output for each zone."""
-        return tuple(f"{zone}.{self._ENDING}" for zone in self.zones)
-
-    def check(self, building: Building) -> None:
-        """Refuse a zone that the building does not have."""
-        for zone in self.zones:
-            require_zone(building, zone)
-
-
-class _Limited(_OfZones):
+class _Limited(OfZones):
     above: float | None = Field(None, description="Operative temperature above which it is too hot [degC]")
     below: float | None = Field(None, description="Operative temperature below which it is too cold [degC]")
     hours: Hours | None = Field(
@@ -140,7 +92,7 @@ class _Limited(_OfZones):
     def _beyond(self, *, weighted: bool) -> Measures:
         return {
             "beyond": Beyond(
-                self.outputs(), self.limit, self.above is not None, span_of(self.hours), weighted
+                self._temperatures(), self.limit, self.above is not None, span_of(self.hours), weighted
             )
         }
 
@@ -155,7 +107,7 @@ class DegreeHours(_Limited):
         """Unit of the value."""
         return "K h"
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """Degree-hours."""
         return self._beyond(weighted=True)
 
@@ -170,12 +122,12 @@ class DiscomfortHours(_Limited):
         """Unit of the value."""
         return "h"
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """Hours."""
         return self._beyond(weighted=False)
 
 
-class Comfort(_OfZones):
+class Comfort(OfZones):
     """Degree-hours outside of the limits of a comfort index."""
 
     kind: Literal["comfort"] = "comfort"
@@ -195,8 +147,9 @@ class Comfort(_OfZones):
         )
 
     def check(self, building: Building) -> None:
-        """Refuse a simulated humidity of a building without one."""
+        """Refuse a simulated humidity of a building without one, and a seat that is not in each zone."""
         super().check(building)
+        self._views(building)
         if self.comfort.humidity == "simulated" and building.humidity is None:
             raise InputError(
                 "found humidity: simulated, and a building without humidity; expected the section "
@@ -204,21 +157,32 @@ class Comfort(_OfZones):
                 "'outdoor'"
             )
 
-    def outputs(self) -> tuple[str, ...]:
+    def outputs(self, building: Building) -> tuple[str, ...]:
         """Temperatures of the air and of the surfaces, and the humidity where it is simulated."""
         humid = ("relative_humidity",) if self.comfort.humidity == "simulated" else ()
-        kinds = ("air_temperature", "mean_radiant_temperature", *humid)
-        return tuple(f"{zone}.{kind}" for zone in self.zones for kind in kinds)
+        found: list[str] = []
+        for zone, view in zip(self.zones, self._views(building), strict=True):
+            radiant = (f"{zone}.mean_radiant_temperature",) if view is None else view.outputs
+            found += [f"{zone}.air_temperature", *radiant, *(f"{zone}.{kind}" for kind in humid)]
+        return tuple(dict.fromkeys(found))
 
-    def measures(self, climate: Climate) -> Measures:
+    def _views(self, building: Building) -> tuple[SeatView | None, ...]:
+        """What is seen from the seat, in each zone."""
+        return tuple(self.comfort.view(building, zone) for zone in self.zones)
+
+    def basis(self, building: Building) -> tuple[object, ...]:
+        """The outputs, and what is seen from the seat."""
+        return (*super().basis(building), *self._views(building))
+
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """Degree-hours, and hours in which the index has no value."""
         return {
-            key: Assessed(self.zones, key, self.side, self.comfort, climate)
+            key: Assessed(self.zones, key, self.side, self.comfort, climate, self._views(building))
             for key in ("degrees", "undefined")
         }
 
 
-class PeakTemperature(_OfZones):
+class PeakTemperature(OfZones):
     """Highest operative temperature of some zones."""
 
     kind: Literal["peak_temperature"] = "peak_temperature"
@@ -234,86 +198,22 @@ class PeakTemperature(_OfZones):
         """What it is."""
         return f"highest operative temperature of {', '.join(self.zones)}"
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """The highest value."""
-        return {"peak": Highest(self.outputs(), span_of(self.hours))}
-
-
-class _Cooled(_OfZones):
-    zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the sum over them")
-    setpoint: float | None = Field(
-        None,
-        ge=10.0,
-        le=40.0,
-        description="Set point of ideal cooling of these zones; none: as described in the building [degC]",
-    )
-    set: dict[str, Any] = Field(
-        default_factory=dict,
-        description="Path -> value of the cooled building only, such as closed windows",
-    )
-
-    _ENDING: ClassVar = "cooling_load"
-
-    def changes(self) -> dict[str, Any]:
-        """Ideal cooling, and what goes with it."""
-        cooled = {f"zones.{zone}.cooling": {"setpoint": self.setpoint} for zone in self.zones}
-        return {**(cooled if self.setpoint is not None else {}), **self.set}
-
-    def check(self, building: Building) -> None:
-        """Refuse a zone without cooling."""
-        super().check(building)
-        for zone in self.zones:
-            if building.zones[zone].cooling is None:
-                raise InputError(
-                    f"found no cooling in zone '{zone}'; expected ideal cooling, whose energy is counted. "
-                    f"Add "
-                    "setpoint: here, such as setpoint: 26, or cooling: in the building"
-                )
-
-    @property
-    def words(self) -> str:
-        """What it is."""
-        at = "" if self.setpoint is None else f" at {self.setpoint:g} degC"
-        return f"sensible ideal cooling of {', '.join(self.zones)}{at}"
-
-
-class CoolingEnergy(_Cooled):
-    """Energy of ideal cooling over the period."""
-
-    kind: Literal["cooling_energy"] = "cooling_energy"
-
-    @property
-    def unit(self) -> str:
-        """Unit of the value."""
-        return "kWh"
-
-    def measures(self, climate: Climate) -> Measures:
-        """The energy."""
-        return {"cooling": Heat(self.outputs())}
-
-
-class PeakCooling(_Cooled):
-    """Largest load of ideal cooling, mean over an hour, all zones together."""
-
-    kind: Literal["peak_cooling"] = "peak_cooling"
-
-    @property
-    def unit(self) -> str:
-        """Unit of the value."""
-        return "W"
-
-    def measures(self, climate: Climate) -> Measures:
-        """The load."""
-        return {"load": PeakLoad(self.outputs())}
+        return {"peak": Highest(self._temperatures(), span_of(self.hours))}
 
 
 class _OfLayer(Wanted):
     layer: str = Field(description="Phase-change layer: SURFACE.LAYER, such as ceiling.pcm")
     least: ClassVar[bool] = False
 
-    def outputs(self) -> tuple[str, ...]:
+    def outputs(self, building: Building) -> tuple[str, ...]:
         """The liquid fraction."""
-        return (f"{self.layer}_liquid_fraction",)
+        return (self._fraction,)
+
+    @property
+    def _fraction(self) -> str:
+        return f"{self.layer}_liquid_fraction"
 
     def check(self, building: Building) -> None:
         """Refuse a layer that is not there or does not melt."""
@@ -335,9 +235,9 @@ class LatentUse(_OfLayer):
         """What it is."""
         return f"latent heat taken up in a day by {self.layer}"
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """The fraction that melts in a day."""
-        return {"melted": Melted(self.outputs()[0])}
+        return {"melted": Melted(self._fraction)}
 
     def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Latent heat of a square metre times the fraction that melts."""
@@ -360,9 +260,9 @@ class Cycles(_OfLayer):
         """What it is."""
         return f"days on which the liquid fraction of {self.layer} changes by {self.change:g} or more"
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """The days."""
-        return {"days": CycleDays(self.outputs()[0], self.change)}
+        return {"days": CycleDays(self._fraction, self.change)}
 
 
 class Mass(Wanted):
@@ -454,11 +354,11 @@ class Plain(Wanted):
         """Refuse an output that the building does not have."""
         building.output(self._read().output)
 
-    def outputs(self) -> tuple[str, ...]:
+    def outputs(self, building: Building) -> tuple[str, ...]:
         """The output."""
         return (self._read().output,)
 
-    def measures(self, climate: Climate) -> Measures:
+    def measures(self, climate: Climate, building: Building) -> Measures:
         """The statistic."""
         return {"statistic": self._read()}
 

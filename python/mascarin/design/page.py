@@ -221,12 +221,12 @@ def _rankings(results: DesignResults) -> list[dict[str, Any]]:
 def _climates(results: DesignResults) -> dict[str, Any]:
     """Objectives of the reference and of the best design, climate by climate."""
     best = results.best[results.rankings[ALL].order[0]]
-    names = list(results.inputs.file.objectives)
+    columns = results.columns
     rows = []
     for site in results.inputs.sites:
         own = results.best[results.rankings[site.name].order[0]]
         cells = []
-        for name in names:
+        for name in columns:
             reference = results.reference[site.name].get(name, np.nan)
             value = float(results.values(name, site.name)[best])
             both = np.isfinite(reference) and reference
@@ -250,10 +250,10 @@ def _climates(results: DesignResults) -> dict[str, Any]:
     heads = [
         {
             "name": name,
-            "unit": units.shown(results.inputs.objective(name).unit),
-            "words": getattr(results.inputs.objective(name), "words", ""),
+            "unit": units.shown(results.inputs.objective(objective).unit),
+            "words": getattr(results.inputs.objective(objective), "words", "") if name == objective else "",
         }
-        for name in names
+        for name, objective in columns.items()
     ]
     return {"heads": heads, "rows": rows, "best": results.label(best)}
 
@@ -294,9 +294,10 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
     return found
 
 
-def _named(results: DesignResults, objective: str) -> str:
+def _named(results: DesignResults, objective: str, column: str | None = None) -> str:
+    """An objective, or a column that belongs to it, with the unit."""
     unit = units.shown(results.inputs.objective(objective).unit)
-    return f"{objective}, {unit}" if unit else objective
+    return f"{column or objective}, {unit}" if unit else column or objective
 
 
 def _maps(results: DesignResults) -> list[dict[str, Any]]:
@@ -361,7 +362,7 @@ def _column(label: str, value: float | None, choice: Choice) -> str:
 
 
 def _designs(results: DesignResults) -> dict[str, Any]:
-    names = list(results.inputs.file.objectives)
+    names = results.columns
     cost = results.cost(results.ranked_by)
     order = np.argsort(np.where(np.isfinite(cost), cost, np.inf), kind="stable")[:_ROWS]
     labels = results.inputs.choices.labels([results.designs[k] for k in order])
@@ -377,7 +378,7 @@ def _designs(results: DesignResults) -> dict[str, Any]:
     failed = results.nominal["failure"].dropna()
     return {
         "variables": list(labels),
-        "heads": [_named(results, name) for name in names],
+        "heads": [_named(results, objective, name) for name, objective in names.items()],
         "rows": rows,
         "count": len(results.designs),
         "failed": len(failed),

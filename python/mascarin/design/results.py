@@ -13,6 +13,7 @@ import numpy as np
 from mascarin import __version__
 from mascarin._io import atomic
 from mascarin.design.ranking import pareto, ranked
+from mascarin.design.wanted import column_of_part
 from mascarin.errors import SolverError
 
 if TYPE_CHECKING:
@@ -64,8 +65,17 @@ class DesignResults:
         """The objective of the ranking."""
         return self.inputs.file.ranked_by
 
+    @property
+    def columns(self) -> dict[str, str]:
+        """Columns of the objectives, each followed by its parts, and the objective that they belong to."""
+        found: dict[str, str] = {}
+        for name, objective in self.inputs.file.objectives.items():
+            parts = [column_of_part(name, part) for part in objective.PARTS]
+            found |= dict.fromkeys([name, *(one for one in parts if one in self.nominal)], name)
+        return found
+
     def values(self, objective: str, climate: str = ALL) -> Array:
-        """An objective of all designs in a climate, or its mean over all, shape (designs,)."""
+        """An objective, or another column, of all designs in a climate or as the mean: shape (designs,)."""
         return by_climate(self.nominal, objective, len(self.designs))[climate]
 
     def label(self, design: int) -> str:

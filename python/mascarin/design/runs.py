@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.building.ties import spread
 from mascarin.design.layers import LayerFacts
 from mascarin.design.measures import BINS, DaysInBin
+from mascarin.design.wanted import column_of_part
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.members import members as read_members
 from mascarin.ensemble.work import dataset
@@ -153,7 +155,7 @@ class Runs:
             with contextlib.suppress(InputError):
                 self.inputs.objective(name).check(building)
                 possible.append(name)
-        outputs = [output for name in possible for output in self.inputs.objective(name).outputs()]
+        outputs = [output for name in possible for output in self.inputs.objective(name).outputs(building)]
         series = None
         if outputs:
             simulation = Simulation(
@@ -171,8 +173,12 @@ class Runs:
         found = dict.fromkeys(mode.objectives, float("nan"))
         for name in possible:
             objective = self.inputs.objective(name)
-            kept = {key: np.asarray(one(series)) for key, one in objective.measures(site.climate).items()}
+            measures = objective.measures(site.climate, building)
+            kept = {key: np.asarray(one(series)) for key, one in measures.items()}
             found[name] = float(objective.value(kept, facts)[0])
+            found |= {
+                column_of_part(name, part): float(one[0]) for part, one in objective.parts(kept).items()
+            }
         return found
 
     def forget_others(self) -> None:
@@ -197,8 +203,10 @@ class Runs:
             kept = self._kept(site, building, columns, mode)
             for name in mode.objectives:
                 objective = self.inputs.objective(name)
-                own = {key: kept[f"{name}: {key}"] for key in objective.measures(site.climate)}
+                own = {key: kept[f"{name}: {key}"] for key in objective.measures(site.climate, building)}
                 table[name] = np.asarray(objective.value(own, facts), dtype=np.float64)
+                for part, values in objective.parts(own).items():
+                    table[column_of_part(name, part)] = values
                 if "undefined" in own:
                     table[f"{name}{UNDEFINED}"] = own["undefined"]
             for key in [key for key in kept if key.startswith("bin ")]:
@@ -217,10 +225,12 @@ class Runs:
         outputs: dict[str, None] = {}
         for name in mode.objectives:
             objective = self.inputs.objective(name)
-            functions |= {f"{name}: {key}": one for key, one in objective.measures(site.climate).items()}
-            outputs |= dict.fromkeys(objective.outputs())
+            measures = objective.measures(site.climate, building)
+            functions |= {f"{name}: {key}": one for key, one in measures.items()}
+            outputs |= dict.fromkeys(objective.outputs(building))
         if not functions:
             return {}
+        columns = _with_changes(columns, spread(site.building, mode.changes))
         for output in [name for name in outputs if name.endswith("_liquid_fraction")]:
             functions |= {f"bin {k} {output}": DaysInBin(output, k) for k in range(BINS)}
         count, before = len(next(iter(columns.values()))), self.done
@@ -286,7 +296,7 @@ def runs_per_design(inputs: DesignInputs, only: Sequence[str] | None = None) -> 
     needed = [
         mode
         for mode in modes(inputs.file.objectives, only)
-        if any(inputs.objective(name).outputs() for name in mode.objectives)
+        if any(inputs.objective(name).outputs(inputs.building) for name in mode.objectives)
     ]
     return len(needed) * len(inputs.sites)
 
@@ -316,6 +326,13 @@ def one_each(columns: Mapping[str, Sequence[Any]]) -> dict[str, Any]:
         else:
             found[path] = column
     return found
+
+
+def _with_changes(columns: Mapping[str, Sequence[Any]], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Columns in which what the objective changes holds for every design, whatever the design has chosen."""
+    return {
+        path: [changes[path]] * len(column) if path in changes else column for path, column in columns.items()
+    }
 
 
 def _workers(count: int) -> int | None:

@@ -173,6 +173,6 @@ def _reference(inputs: DesignInputs, runs: Runs) -> dict[str, dict[str, float]]:
     """Objectives of the reference, by climate."""
     table = runs.reference()
     return {
-        str(row["climate"]): {name: float(row[name]) for name in inputs.file.objectives if name in row}
+        str(row["climate"]): {str(name): float(row[name]) for name in table.columns if name != "climate"}
         for _, row in table.iterrows()
     }

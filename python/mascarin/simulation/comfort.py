@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from mascarin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.building import Building, Output
     from mascarin.comfort.evaluation import Floats
     from mascarin.weather import Climate
 
@@ -26,21 +27,22 @@ _RADIANT_NOTE = (
 
 
 def comfort_of(
-    columns: Mapping[str, Floats],
-    units: Mapping[str, str],
+    outputs: Sequence[Output],
+    records: Floats,
     times: pd.DatetimeIndex,
     zone: str | None,
     climate: Climate | None,
     settings: ComfortSettings,
+    building: Building | None = None,
 ) -> Comfort:
     """Assess the comfort of a zone.
 
     Parameters
     ----------
-    columns : mapping of str to ndarray, shape (times,)
-        Series of the run by the name of their output.
-    units : mapping of str to str
-        Unit of each.
+    outputs : sequence of Output
+        What was recorded.
+    records : ndarray, shape (times, outputs)
+        Values. [unit of each output]
     times : pandas.DatetimeIndex, shape (times,)
         Local times.
     zone : str or None
@@ -49,6 +51,8 @@ def comfort_of(
         The weather of the run.
     settings : ComfortSettings
         How comfort is assessed.
+    building : Building, optional
+        The building of the run, for what is seen from a seat.
 
     Returns
     -------
@@ -60,9 +64,13 @@ def comfort_of(
     InputError
         A series that is needed was not recorded, or something that the index needs is not known.
     """
+    columns = {output.name: records[:, k] for k, output in enumerate(outputs)}
+    units = {output.name: output.unit for output in outputs}
     name = zone_of(columns, zone)
     notes: tuple[str, ...] = (_RADIANT_NOTE,)
-    if f"{name}.{_AIR}" in columns and f"{name}.{_RADIANT}" in columns:
+    if settings.seat is not None:
+        air, radiant, notes = _at_seat(columns, name, settings, building)
+    elif f"{name}.{_AIR}" in columns and f"{name}.{_RADIANT}" in columns:
         air, radiant = columns[f"{name}.{_AIR}"], columns[f"{name}.{_RADIANT}"]
     elif f"{name}.{_OPERATIVE}" in columns and "humidity" not in settings.index_used.needs:
         air = radiant = columns[f"{name}.{_OPERATIVE}"]
@@ -77,6 +85,31 @@ def comfort_of(
     return assess(
         name, settings, times, air, radiant, around, _humidity(columns, units, name, settings), notes
     )
+
+
+def _at_seat(
+    columns: Mapping[str, Floats], name: str, settings: ComfortSettings, building: Building | None
+) -> tuple[Floats, Floats, tuple[str, ...]]:
+    """Temperature of the air, mean radiant temperature at the seat, and what it was made of."""
+    if building is None:
+        raise InputError(
+            "seat: found no building; expected the building of the run, whose vertices say what is seen "
+            "from the seat: run.comfort(..., building=building)"
+        )
+    view = settings.view(building, name)
+    if view is None:
+        raise TypeError("a view is from a seat")
+    missing = [key for key in (f"{name}.{_AIR}", *view.outputs) if key not in columns]
+    if missing:
+        raise InputError(
+            f"{', '.join(missing)}: not recorded in this run; comfort at a seat needs "
+            f"outputs=['{name}.{_AIR}', *seen_from(building, '{name}', seat).outputs] of simulate "
+            "(mascarin.comfort.seen_from)"
+        )
+    radiant = view.radiant(np.stack([columns[key] for key in view.outputs], axis=-1))
+    place = ", ".join(f"{c:g}" for c in settings.seat or ())
+    notes = (f"the mean radiant temperature is that at the seat [{place}] ({settings.posture})", *view.notes)
+    return columns[f"{name}.{_AIR}"], radiant, (*notes, "no sun falls on the person")
 
 
 def zone_of(columns: Mapping[str, Any], zone: str | None) -> str:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from mascarin.building import Output
+    from mascarin.building import Building, Output
     from mascarin.comfort import Comfort, ComfortSettings
     from mascarin.weather import Climate
 
@@ -421,6 +421,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         zone: str | None = None,
         climate: Climate | None = None,
         settings: ComfortSettings | None = None,
+        building: Building | None = None,
         **keys: Any,
     ) -> Comfort:
         """Assess the thermal comfort in a zone.
@@ -432,9 +433,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         climate : Climate, optional
             The weather of the run, for adaptive comfort and for ``humidity="outdoor"``.
         settings : ComfortSettings, optional
-            How comfort is assessed; else give its keys: index, category, band, humidity, air_speed, ...
+            How comfort is assessed.
+        building : Building, optional
+            The building of the run, for the view from a ``seat``.
         **keys : object
-            Keys of `mascarin.comfort.ComfortSettings`.
+            In place of `settings`, its keys: index, category, band, humidity, air_speed, ...
 
         Returns
         -------
@@ -457,20 +460,17 @@ class Results(Mapping[str, "xr.DataArray"]):
         from mascarin.comfort import ComfortSettings
         from mascarin.simulation.comfort import comfort_of
 
-        chosen = ComfortSettings(**keys) if settings is None else settings
-        columns = {output.name: self.records[:, k] for k, output in enumerate(self.outputs)}
-        units = {output.name: output.unit for output in self.outputs}
-        return comfort_of(columns, units, self.index, zone, climate, chosen)
+        chosen = settings or ComfortSettings(**keys)
+        return comfort_of(self.outputs, self.records, self.index, zone, climate, chosen, building)
 
     def __repr__(self) -> str:
         return display.text(f"Results of '{self.provenance.building}'", self._rows())
 
     def _repr_html_(self) -> str:
-        tables = {"Statistics": self.to_dataframe().describe().T} if len(self) else {}
         return display.page(
             f"Results of '{self.provenance.building}'",
             self._rows(),
-            tables=tables,
+            tables={"Statistics": self.to_dataframe().describe().T} if len(self) else {},
             figures={"Plot": self.plot(list(self)[:_DRAWN])} if len(self) else {},
         )
 

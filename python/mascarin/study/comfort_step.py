@@ -32,8 +32,8 @@ def require_rooms(study: Setup) -> None:
     Raises
     ------
     InputError
-        There is no such zone, the index needs a humidity that the model does not have, or a package is not
-        installed.
+        There is no such zone, the index needs a humidity that the model does not have, it is not known what
+        is seen from a seat, or a package is not installed.
     """
     zones = list(study.building.zones)
     known = {output.name for output in study.building.outputs()}
@@ -49,6 +49,7 @@ def require_rooms(study: Setup) -> None:
                     f"{settings.index_used.title} needs it and the model has no output "
                     f"{zone}.relative_humidity"
                 )
+            settings.view(study.building, zone)
             # One value says before the first run when a package is missing.
             here = Conditions(np.array([25.0]), np.array([25.0]), 50.0, 20.0, 20.0)
             settings.index_used.evaluate(here, settings.limits)
@@ -82,10 +83,14 @@ def _of_model(study: Setup, run: ModelRun) -> dict[str, Comfort]:
     known = {output.name for output in building.outputs()}
     recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
     wanted = [f"{zone}.{what}" for zone in study.plan.comfort for what in _OUTPUTS]
-    further = [name for name in wanted if name in known and name not in recorded]
+    for zone, settings in study.plan.comfort.items():
+        view = settings.view(building, zone)
+        wanted += [] if view is None else [building.output(name).name for name in view.outputs]
+    further = [name for name in dict.fromkeys(wanted) if name in known and name not in recorded]
     results = study.over_record(building, further).run()
     return {
-        zone: results.comfort(zone, study.climate, settings) for zone, settings in study.plan.comfort.items()
+        zone: results.comfort(zone, study.climate, settings, building)
+        for zone, settings in study.plan.comfort.items()
     }
 
 

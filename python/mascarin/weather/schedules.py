@@ -129,7 +129,7 @@ def scheduled(
         if not course.columns:
             # Only a schedule has no columns.
             pieces = pieces_of(cast("Schedule", course), timezone, steps.first, steps.last)
-            means = course.kind == "fraction"
+            means = course.kind != "temperature"
             return pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
         values = _measured(climate, measurements, name, course, steps)
         fraction = getattr(course, "schedule", None)

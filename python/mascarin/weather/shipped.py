@@ -1,9 +1,8 @@
 """Climates that come with Mascarin: typical years of the U.S. government, compressed, found by name.
 
 Typical meteorological years of the National Solar Radiation Data Base (TMY3), made by the National Renewable
-Energy Laboratory from 1976 to 2005, as EPW files with EnergyPlus. They are works of the U.S. government and
-in the public domain. There is no hot and dry place among those that EnergyPlus brings; Golden is dry, and
-cool because it is high.
+Energy Laboratory from 1976 to 2005, as the EPW files of EnergyPlus and its weather data. They are works of
+the U.S. government and in the public domain.
 
 References
 ----------
@@ -63,6 +62,10 @@ _ALL: Final = (
     ShippedClimate(
         "tampa", "USA_FL_Tampa.Intl.AP.722110_TMY3.epw", "hot and humid (Cfa, subtropical)",
         "70bfcdf8a79b9df57f062e0ba94cda9b9316ea53e3c1130a24b6c230eec90c45",
+    ),
+    ShippedClimate(
+        "tucson", "USA_AZ_Davis-Monthan.AFB.722745_TMY3.epw", "hot and dry, with rain in late summer (BSh)",
+        "157b17debef93ca3e165d428ba8da60aa6f200ca5c5e671b40461d6fb844636d",
     ),
     ShippedClimate(
         "golden", "USA_CO_Golden-NREL.724666_TMY3.epw", "dry, sunny and high, with cold winters (BSk)",

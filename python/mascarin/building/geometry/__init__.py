@@ -21,6 +21,7 @@ from mascarin.building.geometry.flat import TOLERANCE
 from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.obstacles import InFront, in_front
 from mascarin.building.geometry.polygon import Polygon
+from mascarin.building.geometry.viewpoint import plane_factor, solid_angle
 
 __all__ = [
     "CLOSURE_LIMIT",
@@ -37,6 +38,8 @@ __all__ = [
     "net_areas",
     "open_edges",
     "parents",
+    "plane_factor",
+    "solid_angle",
     "view_factors",
     "volume",
 ]

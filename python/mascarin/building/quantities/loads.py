@@ -57,6 +57,15 @@ ScheduledFraction = Annotated[
         FRACTION,
     ),
 ]
+ScheduledHumidityRatio = Annotated[
+    Number,
+    Quantity(
+        "kg/kg",
+        "Humidity ratio",
+        Fixed("acts through the forcing; vary a set point without a schedule"),
+        Limits(at_least=0, at_most=0.2),
+    ),
+]
 ScheduledTemperature = Annotated[
     Number,
     Quantity(

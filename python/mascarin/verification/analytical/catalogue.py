@@ -6,7 +6,7 @@ import math
 
 from mascarin.errors import MascarinError
 from mascarin.progress import ProgressOption, reporting
-from mascarin.verification.analytical import conduction, melting, phase, radiation, sun, zones
+from mascarin.verification.analytical import conduction, melting, moisture, phase, radiation, sun, zones
 from mascarin.verification.analytical.check import Case, Check, Topic
 
 
@@ -27,7 +27,8 @@ def cases(topic: Topic | None = None) -> list[Case]:
     >>> cases("pcm")[0].name
     'Stefan, one phase'
     """
-    every = (*conduction.CASES, *phase.CASES, *melting.CASES, *zones.CASES, *radiation.CASES, *sun.CASES)
+    topics = (conduction, phase, melting, zones, moisture, radiation, sun)
+    every = [case for one in topics for case in one.CASES]
     return [case for case in every if topic is None or topic in case.topics]
 
 
