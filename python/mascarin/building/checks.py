@@ -35,6 +35,9 @@ from mascarin.building.zone import AirPath, Zone
 from mascarin.building.zone_surfaces import closed
 from mascarin.errors import InputError
 
+#: SDIRK2 satisfies the maximum principle for steps below this many times the smallest time constant.
+SDIRK2_BOUND = 2.4
+
 
 def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     """Describe a building in lines of text.
@@ -68,12 +71,12 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *_surfaces(building),
         *_windows(building),
         *_blinds(building),
-        *_constructions(building, mesh),
+        *_constructions(building, mesh, step_seconds),
         *_winds(building),
         *humidity_lines(building),
         *_melting(building),
         *(f"shading: {words}" for words in [in_words(building)] if words),
-        *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
+        *(f"warning: {text}" for text in warnings(building, mesh)),
         *(f"assumed: {text}" for text in assumptions(building)),
     ]
 
@@ -299,11 +302,13 @@ def _facing(side: Side) -> str:
     return side.zone or side.in_words()
 
 
-def _constructions(building: Description, mesh: Mesh) -> Iterator[str]:
+def _constructions(building: Description, mesh: Mesh, step_seconds: float) -> Iterator[str]:
     for name, construction in building.constructions.items():
         layers = [f"{layer.name} {mesh.nodes[name, layer.name]}" for layer in construction.layers]
         least = time_constant(building, name, mesh)
         text = f", smallest time constant {least:.0f} s" if math.isfinite(least) else ""
+        if step_seconds > SDIRK2_BOUND * least:
+            text += f" (after a jump, steps above {SDIRK2_BOUND * least:.0f} s may overshoot for a step)"
         yield f"construction {name}: nodes {', '.join(layers)}{text}"
 
 

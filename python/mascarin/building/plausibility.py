@@ -1,4 +1,4 @@
-"""Warnings about probable errors in a building: units, areas, volumes, mesh and time step."""
+"""Warnings about probable errors in a building: units, areas, volumes and mesh."""
 
 from __future__ import annotations
 
@@ -14,28 +14,15 @@ from mascarin.building.mesh import Mesh
 from mascarin.building.phase_change_rules import unordered_slopes
 from mascarin.building.phases import phase
 from mascarin.building.rules import shaded
-from mascarin.building.u_values import time_constant
 from mascarin.errors import InputError
 
-#: SDIRK2 satisfies the maximum principle for steps below this many times the smallest time constant.
-SDIRK2_BOUND = 2.4
 #: Thermal diffusivities of building materials, from dense polymers to copper and silver [m2/s].
 _DIFFUSIVITIES = (1e-8, 2e-4)
 
 
-def warnings(building: Description, mesh: Mesh, step_seconds: float) -> Iterator[str]:
-    """Warnings: the mesh, the step, areas and volumes that do not fit together."""
+def warnings(building: Description, mesh: Mesh) -> Iterator[str]:
+    """Warnings: the mesh, areas and volumes that do not fit together."""
     yield from mesh.warnings
-    quick = [
-        name
-        for name in building.constructions
-        if step_seconds > SDIRK2_BOUND * time_constant(building, name, mesh)
-    ]
-    if quick:
-        yield (
-            f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
-            f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
-        )
     yield from _implausible_materials(building)
     yield from _implausible_melting(building)
     yield from _implausible_volumes(building)
