@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import zipfile
 from pathlib import Path
 
@@ -257,7 +258,9 @@ def test_damaged_units_are_refused(room: Simulation, unit_file: Path, tmp_path: 
     assert "library and model description are not of one unit" in other.heard[-1][1]
 
 
-def test_what_a_unit_cannot_be_is_refused_before_it_is_written(room: Simulation, tmp_path: Path) -> None:
+def test_what_a_unit_cannot_be_is_refused_before_it_is_written(
+    room: Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "room.fmu"
     with pytest.raises(
         InputError, match=r"--input: found 'schedules.cold', expected one of the inputs .* schedule"
@@ -270,6 +273,10 @@ def test_what_a_unit_cannot_be_is_refused_before_it_is_written(room: Simulation,
     globe = Simulation(room.building, winter(), end="2024-01-11", outputs=["room.globe_temperature"])
     with pytest.raises(InputError, match=r"room.globe_temperature.*take the air_temperature"):
         export(globe, file)
+    # As where Python was built without liblzma.
+    monkeypatch.setitem(sys.modules, "lzma", None)
+    with pytest.raises(InputError, match=r"this Python has no module lzma, .*; use a Python"):
+        export(room, file)
     assert not file.exists()
 
 

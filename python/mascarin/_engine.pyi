@@ -36,7 +36,7 @@ def interrupt() -> None:
     """Stop all calls that are running now, on whatever thread, with KeyboardInterrupt."""
 
 def fmu_library() -> tuple[bytes, str, str, str]:
-    """The library that goes into an FMU: its bytes, its ending, and the architecture and system it is for."""
+    """The library of an FMU: bytes packed as LZMA, ending, and the architecture and system it is for."""
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""

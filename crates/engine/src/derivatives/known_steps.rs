@@ -126,7 +126,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
 
     /// Brings the surfaces of a state into balance with the weather.
     fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: Solution<'_>) {
-        S::vectorised(
+        S::vectorised_search(
             #[inline(always)]
             || {
                 self.stepper.begin_known_step(state);

@@ -112,6 +112,10 @@ impl<const K: usize> Real for Dual<K> {
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         if K > 1 { crate::number::simd::widened(work) } else { work() }
     }
+    #[inline(always)]
+    fn vectorised_search<R>(work: impl FnOnce() -> R) -> R {
+        work()
+    }
 }
 
 /// Slopes of equations, then of their solution.

@@ -145,6 +145,13 @@ pub trait Real:
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         work()
     }
+    /// The same for work that belongs to the search for the solution of a stage. Numbers with slopes are given the solution of plain
+    /// numbers and search for few stages only (the first step, steps in parts): for them it is compiled once, with the instructions that
+    /// every machine has.
+    #[inline(always)]
+    fn vectorised_search<R>(work: impl FnOnce() -> R) -> R {
+        Self::vectorised(work)
+    }
     /// Cube root of a positive normal number.
     #[inline(always)]
     #[must_use]

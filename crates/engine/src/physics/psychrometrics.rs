@@ -3,7 +3,7 @@
 //! Sources: ASHRAE Handbook of Fundamentals 2017, ch. 1: eqs. 5 and 6 (saturation pressure over ice and water, after Hyland &
 //! Wexler 1983, ASHRAE Trans. 89(2A), 500-519), 20 (humidity ratio), 33 and 35 (wet-bulb temperature). Air is an ideal gas.
 
-use crate::number::real::Real;
+use crate::number::real::{Chunk, ChunkTask, Real};
 use crate::physics::constants::KELVIN;
 
 /// Ratio of the molar masses of water and dry air [-] (ASHRAE 2017, ch. 1, eq. 20).
@@ -36,11 +36,25 @@ const ICE: [f64; 7] = [
 const WATER: [f64; 7] =
     [-5.800_220_6e3, 1.391_499_3, -4.864_023_9e-2, 4.176_476_8e-5, -1.445_209_3e-8, 0.0, 6.545_967_3];
 
+/// A coefficient over ice or water. (`array::from_fn` would not be inlined into code for wide registers.)
+#[inline(always)]
+fn coefficient<S: Real>(frozen: S::Mask, k: usize) -> S {
+    S::select(frozen, S::constant(ICE[k]), S::constant(WATER[k]))
+}
+
 /// Logarithm of the saturation pressure [ln Pa] and its slope [1/K] at a temperature [K].
 #[inline(always)]
 fn log_saturation<S: Real>(kelvin: S) -> (S, S) {
     let frozen = kelvin.lt(S::constant(TRIPLE_POINT));
-    let c: [S; 7] = core::array::from_fn(|k| S::select(frozen, S::constant(ICE[k]), S::constant(WATER[k])));
+    let c: [S; 7] = [
+        coefficient(frozen, 0),
+        coefficient(frozen, 1),
+        coefficient(frozen, 2),
+        coefficient(frozen, 3),
+        coefficient(frozen, 4),
+        coefficient(frozen, 5),
+        coefficient(frozen, 6),
+    ];
     let inverse = S::one() / kelvin;
     let value = c[0] * inverse
         + c[1]
@@ -56,6 +70,29 @@ fn log_saturation<S: Real>(kelvin: S) -> (S, S) {
 #[inline(always)]
 pub fn saturation_pressure<S: Real>(temperature: S) -> S {
     log_saturation(temperature + S::constant(KELVIN)).0.exp()
+}
+
+/// Saturation pressures at temperatures [degC], each with the bits that it has alone; the number of both is a multiple of
+/// [`Real::CHUNK`] [Pa].
+#[inline(always)]
+pub fn saturation_pressures<S: Real>(temperatures: &[S], pressures: &mut [S]) {
+    S::in_chunks(SaturationPressures { temperatures, pressures });
+}
+
+struct SaturationPressures<'r, S> {
+    temperatures: &'r [S],
+    pressures: &'r mut [S],
+}
+
+impl<S: Real> ChunkTask<S> for SaturationPressures<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) {
+        let chunks = self.pressures.chunks_exact_mut(S::CHUNK).zip(self.temperatures.chunks_exact(S::CHUNK));
+        for (pressures, temperatures) in chunks {
+            saturation_pressure(V::load(temperatures)).store(pressures);
+        }
+    }
 }
 
 /// Humidity ratio at a vapour pressure and a pressure of the air [Pa]: [kg/kg]. Vapour is at most half of the air.
@@ -129,6 +166,17 @@ mod tests {
         ] {
             let found = saturation_pressure(temperature);
             assert!((found / expected - 1.0).abs() < 1e-9, "{temperature}: {found}, expected {expected}");
+        }
+    }
+
+    /// Over ice and water, alone and together.
+    #[test]
+    fn saturation_pressures_together_have_the_bits_of_each() {
+        let temperatures: Vec<f64> = (0..4 * f64::CHUNK).map(|k| 2.7 * k as f64 - 31.3).collect();
+        let mut together = vec![0.0; temperatures.len()];
+        saturation_pressures(&temperatures, &mut together);
+        for (&temperature, pressure) in temperatures.iter().zip(together) {
+            assert_eq!(pressure.to_bits(), saturation_pressure(temperature).to_bits(), "{temperature}");
         }
     }
 

@@ -10,7 +10,7 @@
 
 use crate::input::description;
 use crate::input::values::Values;
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::physics::constants::KELVIN;
 use crate::physics::psychrometrics::saturation_pressure;
 
@@ -73,15 +73,28 @@ impl<S: Real> Isotherm<S> {
     /// Relative humidity at a content [kg/m3], and the slope of the content there [kg/m3].
     #[inline(always)]
     pub fn humidity(&self, content: S) -> (S, S) {
-        let first = &self.lines[0];
-        let of = |line: &Segment<S>| S::constant(line.humidity) + (content - line.content) / line.slope;
-        let (mut humidity, mut slope) = (of(first), first.slope);
-        for line in &self.lines[1..] {
-            let below = content.lt(line.content);
-            humidity = S::select(below, humidity, of(line));
-            slope = S::select(below, slope, line.slope);
+        let (humidity, start, slope) = self.line_at(content);
+        (humidity + (content - start) / slope, slope)
+    }
+
+    /// The line at a content: humidity and content at its start, and its slope.
+    #[inline(always)]
+    fn line_at(&self, content: S) -> (S, S, S) {
+        let of = |line: &Segment<S>| (S::constant(line.humidity), line.content, line.slope);
+        let (first, others) = (&self.lines[0], &self.lines[1..]);
+        if S::LANES == 1 {
+            // One number is looked up, with the result of the selections below.
+            let begins = |line: &&Segment<S>| !content.lt(line.content).any();
+            return of(others.iter().rfind(begins).unwrap_or(first));
         }
-        (humidity, slope)
+        let mut at = of(first);
+        for line in others {
+            let (below, next) = (content.lt(line.content), of(line));
+            at.0 = S::select(below, at.0, next.0);
+            at.1 = S::select(below, at.1, next.1);
+            at.2 = S::select(below, at.2, next.2);
+        }
+        at
     }
 }
 

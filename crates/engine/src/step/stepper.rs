@@ -112,7 +112,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// # Errors
     /// [`EngineError::NotConverged`].
     pub fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>) -> Result<(), EngineError> {
-        S::vectorised(
+        S::vectorised_search(
             #[inline(always)]
             || {
                 self.weather.set_instant(&self.model, now);
@@ -174,7 +174,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         self.parts.count_from(self.solver.counters.iterations);
         self.begin_vapour();
-        S::vectorised(
+        S::vectorised_search(
             #[inline(always)]
             || {
                 while let Some(part) = self.parts.next() {

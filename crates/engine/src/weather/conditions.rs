@@ -184,7 +184,7 @@ impl<S: Real> Conditions<S> {
             self.vents.update(&coefficients.vents, now.row);
         }
         if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
-            at.update(humidity, &coefficients.mechanical_air.units, now.row);
+            at.update(humidity, &coefficients.mechanical_air.units, now);
         }
         for (at, bridge) in self.bridges.iter_mut().zip(&coefficients.bridges) {
             *at = match &bridge.to {

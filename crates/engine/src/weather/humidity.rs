@@ -5,7 +5,8 @@ use crate::building::coefficients::humidity::{Control, Dryer};
 use crate::input::forcing::channel;
 use crate::number::real::Real;
 use crate::physics::mechanical_air::Unit;
-use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
+use crate::physics::psychrometrics::humidity_ratio;
+use crate::weather::instant::Instant;
 
 /// What acts on the vapour in the zones in one stage.
 #[derive(Debug, Clone)]
@@ -89,15 +90,23 @@ impl<S: Real> HumidityConditions<S> {
         }
     }
 
-    /// Evaluates a forcing row.
+    /// Evaluates the weather at an instant.
     #[inline(always)]
-    pub(crate) fn update(&mut self, humidity: &HumidityCoefficients<S>, units: &[Unit<S>], row: &[f64]) {
+    pub(crate) fn update(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        units: &[Unit<S>],
+        now: &Instant<'_>,
+    ) {
+        let row = now.row;
         let pressure = row[channel::PRESSURE];
         self.pressure = if pressure.is_nan() { humidity.pressure } else { S::constant(pressure) };
-        let saturated = S::constant(saturation_pressure(row[channel::DEW_POINT]));
-        self.outdoor = humidity_ratio(saturated, self.pressure);
+        self.outdoor = humidity_ratio(S::constant(now.vapour), self.pressure);
         for (at, zone) in self.zones.iter_mut().zip(&humidity.zones) {
             at.gain = zone.gain(row);
+            if !zone.has_plants() {
+                continue;
+            }
             let control = match &zone.drying {
                 Some(Dryer::Controlled(control)) => Some(control),
                 Some(Dryer::Coil { .. }) | None => None,

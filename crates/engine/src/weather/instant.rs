@@ -9,9 +9,11 @@ use crate::building::plan::Plan;
 use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
 use crate::number::elementary::sincos;
+use crate::number::real::Real;
 use crate::physics::convection::{Wind, WindTerms};
 use crate::physics::horizon;
 use crate::physics::longwave::SkyState;
+use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
 use crate::physics::solar::{SkyVisibility, Sunlight};
 
 /// The weather at one stage of a step.
@@ -31,12 +33,13 @@ pub struct Instant<'a> {
     pub(crate) season: [f64; 2],
     /// Fractions of sun and beams, see [`SolarGeometry`](crate::building::solar_geometry::SolarGeometry).
     pub(crate) fractions: Box<[f64]>,
+    /// Vapour pressure outdoors, in a building with vapour balances [Pa].
+    pub(crate) vapour: f64,
 }
 
 impl<'a> Instant<'a> {
-    /// Evaluates a forcing row.
-    #[must_use]
-    pub fn new(plan: &Plan, row: &'a [f64], terms: WindTerms, ground: bool) -> Self {
+    /// Evaluates a forcing row, whose vapour pressure is known.
+    fn new(plan: &Plan, row: &'a [f64], vapour: f64, terms: WindTerms, ground: bool) -> Self {
         let unit = |angle: f64, needed: bool| {
             let (sine, cosine) = if needed { sincos(angle) } else { (0.0, 0.0) };
             [cosine, sine]
@@ -54,6 +57,7 @@ impl<'a> Instant<'a> {
             wind: Wind::new(row[channel::WIND_SPEED], terms),
             wind_from: unit(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
             season: unit(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
+            vapour,
         }
     }
 
@@ -74,6 +78,8 @@ pub struct Weather<'a> {
     ground: bool,
     /// The stages of the first steps, each kept once it has been evaluated; empty where none is kept.
     stages: Vec<OnceLock<Instant<'a>>>,
+    /// Vapour pressure outdoors at all stages, computed together; empty where it is computed when a stage is read, or by nobody [Pa].
+    vapour: Vec<f64>,
 }
 
 impl<'a> Weather<'a> {
@@ -98,7 +104,7 @@ impl<'a> Weather<'a> {
         'a: 'f,
     {
         let Self { plan, terms, ground, .. } = *self;
-        Weather { plan, forcing: *forcing, terms, ground, stages: Vec::new() }
+        Weather { plan, forcing: *forcing, terms, ground, stages: Vec::new(), vapour: Vec::new() }
     }
 
     fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
@@ -110,7 +116,8 @@ impl<'a> Weather<'a> {
             .chain(bridges)
             .any(|facing| matches!(facing, Facing::Ground { .. }));
         let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
-        Self { plan, forcing: *forcing, terms, ground, stages }
+        let vapour = if plan.humidity.is_some() { vapour_pressures(forcing) } else { Vec::new() };
+        Self { plan, forcing: *forcing, terms, ground, stages, vapour }
     }
 
     /// Memory of a stage that is kept [B].
@@ -120,7 +127,13 @@ impl<'a> Weather<'a> {
     }
 
     fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
-        Instant::new(self.plan, self.forcing.at(step, stage), self.terms, self.ground)
+        let row = self.forcing.at(step, stage);
+        let vapour = match self.vapour.get(step * self.forcing.stages() + stage) {
+            Some(&known) => known,
+            None if self.plan.humidity.is_some() => saturation_pressure(row[channel::DEW_POINT]),
+            None => 0.0,
+        };
+        Instant::new(self.plan, row, vapour, self.terms, self.ground)
     }
 
     /// Number of steps.
@@ -143,6 +156,18 @@ impl<'a> Weather<'a> {
             None => Cow::Owned(self.evaluate(step, stage)),
         }
     }
+}
+
+/// Vapour pressures at the dew points of a forcing [Pa]; some more at the end. The exponential and the logarithm of one dew point
+/// alone take as long as those of eight.
+fn vapour_pressures(forcing: &Forcing<'_>) -> Vec<f64> {
+    let stages = 0..forcing.steps() * forcing.stages();
+    let mut dew: Vec<f64> =
+        stages.map(|k| forcing.at(k / forcing.stages(), k % forcing.stages())[channel::DEW_POINT]).collect();
+    dew.resize(dew.len().next_multiple_of(f64::CHUNK), 0.0);
+    let mut pressures = vec![0.0; dew.len()];
+    saturation_pressures(&dew, &mut pressures);
+    pressures
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::AIR_SPECIFIC_HEAT;
-use crate::physics::psychrometrics::LATENT_HEAT;
+use crate::physics::psychrometrics::{LATENT_HEAT, saturation_pressure};
 use crate::physics::sorption::VapourLayers;
 
 /// Vapour that an ideal plant takes away or adds where no capacity is given [kg/s]: more than any building needs.
@@ -64,8 +64,8 @@ pub enum Dryer<S> {
     Coil {
         /// Vapour taken away per heat [kg/J].
         per_heat: S,
-        /// Temperature of the coil [degC].
-        temperature: S,
+        /// Saturation pressure at the temperature of the coil [Pa].
+        saturated: S,
     },
 }
 
@@ -144,7 +144,7 @@ impl<S: Real> VapourZone<S> {
                 let ratio = values.get(*sensible_heat_ratio);
                 Dryer::Coil {
                     per_heat: (S::one() - ratio) / ratio.scale(LATENT_HEAT),
-                    temperature: values.get(*temperature),
+                    saturated: saturation_pressure(values.get(*temperature)),
                 }
             }
         });
@@ -154,6 +154,12 @@ impl<S: Real> VapourZone<S> {
             drying,
             humidifying: zone.humidifying.as_ref().map(|control| Control::new(control, values)),
         }
+    }
+
+    /// Whether it is dried or humidified.
+    #[inline(always)]
+    pub(crate) fn has_plants(&self) -> bool {
+        self.drying.is_some() || self.humidifying.is_some()
     }
 
     /// Vapour from all sources in a forcing row [kg/s].

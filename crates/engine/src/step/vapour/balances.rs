@@ -14,7 +14,8 @@ use crate::weather::conditions::Conditions;
 
 use super::flows::StageFlows;
 use super::plants::{Limits, Mode};
-use super::surfaces::Uptake;
+use super::saturation::Saturation;
+use super::surfaces::{Tangent, Uptake};
 
 /// Solutions of a stage at most: plants and saturation begin or end in some zones from one to the next.
 const MAX_SOLUTIONS: usize = 30;
@@ -25,6 +26,7 @@ pub(crate) struct VapourBalances<'a, S: Real> {
     plan: &'a HumidityPlan,
     /// Of each stage of the step.
     flows: Vec<StageFlows<S>>,
+    saturation: Saturation<S>,
     system: CoupledSystem<'a, S>,
     /// At the end of the first stage, and of the last one; as in [`State::vapour`].
     first: Vec<S>,
@@ -32,6 +34,10 @@ pub(crate) struct VapourBalances<'a, S: Real> {
     /// Of the balance of each zone: what multiplies its own humidity ratio [kg/s], and what does not depend on any [kg/s].
     diagonal: Vec<S>,
     right: Vec<S>,
+    /// Of the vapour pressure of each zone by its humidity ratio, on the tangent at the start of the step: at zero, and the slope [Pa].
+    pressures: Vec<(S, S)>,
+    /// Of the sorption of each surface at the start of the step.
+    tangents: Vec<[Tangent<S>; 2]>,
     uptakes: Vec<Uptake<S>>,
     limits: Vec<Limits<S>>,
     modes: Vec<Mode<S>>,
@@ -51,11 +57,14 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         Some(Self {
             plan,
             flows: vec![StageFlows::new(humidity, plan.carries.len()); stages],
+            saturation: Saturation::new(zones + humidity.surfaces.len(), stages),
             system: CoupledSystem::new(&plan.pattern, 0, 0),
             first: vec![zero; size],
             reached: vec![zero; size],
             diagonal: vec![zero; zones],
             right: vec![zero; zones],
+            pressures: vec![(zero, zero); zones],
+            tangents: vec![[Tangent::none(); 2]; humidity.surfaces.len()],
             uptakes: vec![Uptake::none(); humidity.surfaces.len()],
             limits: vec![Limits::none(); zones],
             modes: vec![Mode::idle(); zones],
@@ -74,7 +83,8 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         at: Temperatures<'_, S>,
         stage: usize,
     ) {
-        self.flows[stage].note(self.plan, model, conditions, at);
+        let temperatures = self.saturation.temperatures(stage);
+        self.flows[stage].note(self.plan, model, conditions, at, temperatures);
     }
 
     /// A step begins: plants have done nothing yet.
@@ -99,14 +109,16 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         (tableau, length): (&Tableau, f64),
         ledger: &mut VapourLedger<S>,
     ) {
+        self.saturation.update();
+        self.begin_tangents(humidity, &state.vapour);
         let mut step = VapourLedger::new();
         for (stage, &weight) in tableau.weights.iter().enumerate() {
             let ratio = if stage > 0 { tableau.ratio } else { 0.0 };
             self.assemble(humidity, &state.vapour, (stage, ratio, tableau.diagonal * length));
             self.limit(humidity, state, (stage, tableau.nodes[stage]));
-            self.solve(stage);
+            self.solve(humidity, stage);
             self.finish_stage(humidity, &state.vapour, (ratio, tableau.diagonal * length));
-            self.count((stage, weight * length), &mut step);
+            self.count(humidity, (stage, weight * length), &mut step);
             if stage == 0 {
                 self.first.copy_from_slice(&self.reached);
             }
@@ -123,6 +135,16 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         if ratio == 0.0 { start[k] } else { start[k] + (self.first[k] - start[k]).scale(ratio) }
     }
 
+    /// Tangents of the sorption at the start of the step.
+    #[inline(always)]
+    fn begin_tangents(&mut self, humidity: &HumidityCoefficients<S>, start: &[S]) {
+        let (_, contents) = start.split_at(humidity.zones.len());
+        let surfaces = self.tangents.iter_mut().zip(&humidity.surfaces);
+        for ((tangents, surface), contents) in surfaces.zip(contents.as_chunks::<2>().0) {
+            Tangent::update(tangents, &surface.layers, contents);
+        }
+    }
+
     /// The balances of all zones, layers behind surfaces eliminated.
     #[inline(always)]
     fn assemble(
@@ -131,13 +153,15 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         start: &[S],
         (stage, ratio, length): (usize, f64, f64),
     ) {
-        let zones = humidity.zones.len();
+        let (zones, per_second) = (humidity.zones.len(), 1.0 / length);
         for (z, zone) in humidity.zones.iter().enumerate() {
-            let storage = zone.air.scale(1.0 / length);
+            let storage = zone.air.scale(per_second);
             let (held, flows) = (self.held(start, z, ratio), &self.flows[stage]);
             let at = &flows.zones[z];
             self.diagonal[z] = storage + at.outward;
             self.right[z] = storage * held + at.outward * flows.outdoor + at.gain;
+            let (pressure, slope) = vapour_pressure(start[z], flows.pressure);
+            self.pressures[z] = (pressure - slope * start[z], slope);
         }
         let flows = &self.flows[stage];
         for (&[from, to], &carried) in self.plan.carries.iter().zip(&flows.carried) {
@@ -148,14 +172,14 @@ impl<'a, S: Real> VapourBalances<'a, S> {
                 self.right[to] = self.right[to] - of_outdoor;
             }
         }
+        let saturated = &self.saturation.pressures(stage)[zones..];
         for (k, surface) in humidity.surfaces.iter().enumerate() {
             let place = zones + 2 * k;
-            let contents = [start[place], start[place + 1]];
             let held = [self.held(start, place, ratio), self.held(start, place + 1, ratio)];
-            let (flows, ratio_at) = (&self.flows[stage], start[surface.zone]);
-            let air = vapour_pressure(ratio_at, flows.pressure);
-            let uptake =
-                Uptake::new(&surface.layers, &flows.surfaces[k], (contents, held), (ratio_at, air), length);
+            let layers = (&self.tangents[k], surface.layers.two);
+            let at_surface = (saturated[k], per_second);
+            let pressure = self.pressures[surface.zone];
+            let uptake = Uptake::new(layers, &flows.surfaces[k], held, pressure, at_surface);
             self.diagonal[surface.zone] += surface.area * uptake.slope;
             self.right[surface.zone] = self.right[surface.zone] - surface.area * uptake.offset;
             self.uptakes[k] = uptake;
@@ -166,11 +190,14 @@ impl<'a, S: Real> VapourBalances<'a, S> {
     #[inline(always)]
     fn limit(&mut self, humidity: &HumidityCoefficients<S>, state: &State<S>, (stage, node): (usize, f64)) {
         for (z, (limits, zone)) in self.limits.iter_mut().zip(&humidity.zones).enumerate() {
-            let at =
-                |flows: &StageFlows<S>| Limits::new(zone, &flows.zones[z], flows.pressure, state.load[z]);
-            *limits = at(&self.flows[stage]);
-            if let Some(end) = self.flows.last().filter(|_| node < 1.0) {
-                *limits = limits.on_the_way(&at(end), state.vapour[z], node);
+            let at = |stage: usize| {
+                let flows = &self.flows[stage];
+                let pressures = (flows.pressure, self.saturation.pressures(stage)[z]);
+                Limits::new(zone, &flows.zones[z], pressures, state.load[z])
+            };
+            *limits = at(stage);
+            if node < 1.0 && zone.has_plants() {
+                *limits = limits.on_the_way(&at(self.flows.len() - 1), state.vapour[z], node);
             }
         }
     }
@@ -178,13 +205,14 @@ impl<'a, S: Real> VapourBalances<'a, S> {
     /// Humidity ratios, and what plants and saturation take away: an active-set method (Hintermueller, Ito & Kunisch 2002,
     /// doi:10.1137/S1052623401383558), which ends after a few solutions for an M-matrix.
     #[inline(always)]
-    fn solve(&mut self, stage: usize) {
+    fn solve(&mut self, humidity: &HumidityCoefficients<S>, stage: usize) {
         self.modes.fill(Mode::idle());
         for _ in 0..MAX_SOLUTIONS {
             self.solve_in_modes(stage);
             let mut changed = S::Mask::splat(false);
-            for (z, limits) in self.limits.iter().enumerate() {
-                let next = limits.mode(self.reached[z], self.removed[z], self.diagonal[z]);
+            for (z, (limits, zone)) in self.limits.iter().zip(&humidity.zones).enumerate() {
+                let plants = zone.has_plants();
+                let next = limits.mode(plants, self.reached[z], self.removed[z], self.diagonal[z]);
                 changed = changed | next.differs(&self.modes[z]);
                 self.modes[z] = next;
             }
@@ -198,6 +226,15 @@ impl<'a, S: Real> VapourBalances<'a, S> {
     #[inline(always)]
     fn solve_in_modes(&mut self, stage: usize) {
         let Self { plan, flows, system, diagonal, right, modes, removed, reached, .. } = self;
+        if plan.carries.is_empty() {
+            // Zones that exchange no air, such as a single one: with the bits of the system below.
+            for (z, mode) in modes.iter().enumerate() {
+                let free = S::one() / diagonal[z] * (right[z] - mode.value);
+                reached[z] = S::select(mode.held, mode.value, free);
+                removed[z] = S::select(mode.held, right[z] - diagonal[z] * reached[z], mode.value);
+            }
+            return;
+        }
         system.clear_matrix();
         for (z, mode) in modes.iter().enumerate() {
             let row = plan.rows[z];
@@ -234,24 +271,36 @@ impl<'a, S: Real> VapourBalances<'a, S> {
             let [first, second] = uptake.flows(self.reached[surface.zone]);
             let held = [self.held(start, place, ratio), self.held(start, place + 1, ratio)];
             self.reached[place] = held[0] + (first - second).scale(length);
-            self.reached[place + 1] = held[1] + second.scale(length);
+            // Without a second layer there is no flow and no content.
+            if surface.layers.two {
+                self.reached[place + 1] = held[1] + second.scale(length);
+            }
         }
     }
 
     /// Adds the flows of a stage, which counts for a duration [s].
     #[inline(always)]
-    fn count(&mut self, (stage, duration): (usize, f64), step: &mut VapourLedger<S>) {
+    fn count(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        (stage, duration): (usize, f64),
+        step: &mut VapourLedger<S>,
+    ) {
         let flows = &self.flows[stage];
-        for (z, zone) in flows.zones.iter().enumerate() {
+        for (z, (zone, numbers)) in flows.zones.iter().zip(&humidity.zones).enumerate() {
             let fresh = zone.outward * (flows.outdoor - self.reached[z]);
             step.add_flow(VapourFlow::OutdoorAir, fresh.scale(duration));
             step.add_flow(VapourFlow::Gains, zone.gain.scale(duration));
             let [dried, condensed, added] = self.limits[z].shares(self.removed[z]);
-            step.add_flow(VapourFlow::Drying, -dried.scale(duration));
+            if numbers.has_plants() {
+                step.add_flow(VapourFlow::Drying, -dried.scale(duration));
+            }
             step.add_flow(VapourFlow::Condensation, -condensed.scale(duration));
-            step.add_flow(VapourFlow::Humidifying, added.scale(duration));
-            self.plants[z][0] += dried.scale(duration);
-            self.plants[z][1] += added.scale(duration);
+            if numbers.has_plants() {
+                step.add_flow(VapourFlow::Humidifying, added.scale(duration));
+                self.plants[z][0] += dried.scale(duration);
+                self.plants[z][1] += added.scale(duration);
+            }
         }
         for (&[from, to], &carried) in self.plan.carries.iter().zip(&flows.carried) {
             if from != to {
@@ -272,7 +321,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         }
         for (k, surface) in humidity.surfaces.iter().enumerate() {
             let place = humidity.zones.len() + 2 * k;
-            for layer in [place, place + 1] {
+            for layer in [place, place + 1].into_iter().take(if surface.layers.two { 2 } else { 1 }) {
                 step.stored += surface.area * (self.reached[layer] - start[layer]);
                 content += surface.area * self.reached[layer];
             }

@@ -7,7 +7,7 @@ use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
 use crate::physics::constants::KELVIN;
 use crate::physics::doors;
-use crate::physics::psychrometrics::{VAPOUR_GAS_CONSTANT, saturation_pressure};
+use crate::physics::psychrometrics::VAPOUR_GAS_CONSTANT;
 use crate::physics::sorption::VapourLayers;
 use crate::step::film::film;
 use crate::weather::conditions::Conditions;
@@ -35,8 +35,6 @@ pub(super) struct ZoneFlows<S> {
     pub(super) outward: S,
     /// Vapour from sources [kg/s].
     pub(super) gain: S,
-    /// Saturation pressure at the temperature of the air [Pa].
-    pub(super) saturated: S,
     pub(super) drying: Plant<S>,
     pub(super) humidifying: Plant<S>,
 }
@@ -47,8 +45,6 @@ pub(super) struct SurfaceFlows<S> {
     /// From the air to the middle of the first layer, and from there to that of the second [kg/(m2 s Pa)].
     pub(super) to_layer: S,
     pub(super) between: S,
-    /// Saturation pressure at the temperature of the surface [Pa].
-    pub(super) saturated: S,
 }
 
 impl<S: Real> StageFlows<S> {
@@ -56,8 +52,8 @@ impl<S: Real> StageFlows<S> {
     pub(super) fn new(humidity: &HumidityCoefficients<S>, carries: usize) -> Self {
         let zero = S::zero();
         let none = Plant { target: zero, relative: false, capacity: zero };
-        let zone = ZoneFlows { outward: zero, gain: zero, saturated: zero, drying: none, humidifying: none };
-        let surface = SurfaceFlows { to_layer: zero, between: zero, saturated: zero };
+        let zone = ZoneFlows { outward: zero, gain: zero, drying: none, humidifying: none };
+        let surface = SurfaceFlows { to_layer: zero, between: zero };
         Self {
             pressure: humidity.pressure,
             outdoor: zero,
@@ -67,7 +63,7 @@ impl<S: Real> StageFlows<S> {
         }
     }
 
-    /// Notes the flows of a stage, in its conditions and at its temperatures.
+    /// Notes the flows of a stage, in its conditions and at its temperatures; those of airs and surfaces into `temperatures`.
     #[inline(always)]
     pub(super) fn note(
         &mut self,
@@ -75,12 +71,14 @@ impl<S: Real> StageFlows<S> {
         model: &Model<'_, S>,
         conditions: &Conditions<S>,
         at: Temperatures<'_, S>,
+        temperatures: &mut [S],
     ) {
         let (Some(humidity), Some(now)) = (&model.coefficients.humidity, &conditions.humidity) else {
             return;
         };
         (self.pressure, self.outdoor) = (now.pressure, now.outdoor);
-        for (z, (zone, now)) in self.zones.iter_mut().zip(&now.zones).enumerate() {
+        let zones = self.zones.iter_mut().zip(&now.zones).zip(&humidity.zones);
+        for (z, ((zone, now), of_vapour)) in zones.enumerate() {
             let numbers = &model.coefficients.zones[z];
             let (wind, outdoor) = (conditions.wind, conditions.outdoor_air);
             let changes = conditions.zones[z].air_changes(numbers, wind, outdoor, at.air[z]);
@@ -90,16 +88,22 @@ impl<S: Real> StageFlows<S> {
             }
             zone.outward = heat * humidity.mass;
             zone.gain = now.gain;
-            (zone.drying, zone.humidifying) = (now.drying, now.humidifying);
-            zone.saturated = saturation_pressure(at.air[z]);
+            if of_vapour.has_plants() {
+                (zone.drying, zone.humidifying) = (now.drying, now.humidifying);
+            }
         }
-        self.note_carried(humidity.mass, model, conditions, at.air);
+        let (airs, of_surfaces) = temperatures.split_at_mut(self.zones.len());
+        airs.copy_from_slice(at.air);
+        if !plan.carries.is_empty() {
+            self.note_carried(humidity.mass, model, conditions, at.air);
+        }
         // Air whose vapour is recovered does not take it outdoors.
         let first = plan.carries.len() - now.recovered.len();
         for (&[from, _], &carried) in plan.carries[first..].iter().zip(&self.carried[first..]) {
             self.zones[from].outward = self.zones[from].outward - carried;
         }
-        for (place, surface) in self.surfaces.iter_mut().zip(&humidity.surfaces) {
+        let places = self.surfaces.iter_mut().zip(of_surfaces);
+        for ((place, at_surface), surface) in places.zip(&humidity.surfaces) {
             let (temperature, air) = (at.surfaces[surface.surface], at.air[surface.zone]);
             let heat =
                 film(model, conditions, surface.surface, temperature, air).max(S::constant(LEAST_FILM));
@@ -109,7 +113,7 @@ impl<S: Real> StageFlows<S> {
             let layers = &surface.layers;
             place.to_layer = S::one() / (of_air + layers.to_surface / permeability);
             place.between = if layers.two { permeability / layers.between } else { S::zero() };
-            place.saturated = saturation_pressure(temperature);
+            *at_surface = temperature;
         }
     }
 

@@ -17,4 +17,5 @@ pub(crate) mod balances;
 mod flows;
 mod of_step;
 mod plants;
+mod saturation;
 mod surfaces;

@@ -5,7 +5,7 @@
 
 use crate::building::coefficients::humidity::{Dryer, VapourZone};
 use crate::number::real::{Mask, Real};
-use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
+use crate::physics::psychrometrics::humidity_ratio;
 use crate::weather::humidity::Plant;
 
 use super::flows::ZoneFlows;
@@ -47,22 +47,26 @@ impl<S: Real> Limits<S> {
         Self { humidify: zero, most_added: zero, dry: zero, most_dried: zero, saturated: zero }
     }
 
-    /// In a stage, with the ideal load of the zone [W].
+    /// In a stage, with the pressure of the air and the saturation pressure of the zone [Pa], and its ideal load [W].
     #[inline(always)]
-    pub(super) fn new(zone: &VapourZone<S>, flows: &ZoneFlows<S>, pressure: S, load: S) -> Self {
-        let saturated = humidity_ratio(flows.saturated, pressure);
+    pub(super) fn new(
+        zone: &VapourZone<S>,
+        flows: &ZoneFlows<S>,
+        (pressure, at_air): (S, S),
+        load: S,
+    ) -> Self {
+        let saturated = humidity_ratio(at_air, pressure);
+        if !zone.has_plants() {
+            return Self { saturated, dry: saturated, ..Self::none() };
+        }
         let target = |plant: &Plant<S>| {
-            if plant.relative {
-                humidity_ratio(plant.target * flows.saturated, pressure)
-            } else {
-                plant.target
-            }
+            if plant.relative { humidity_ratio(plant.target * at_air, pressure) } else { plant.target }
         };
         let (dry, most_dried) = match &zone.drying {
             None => (saturated, S::zero()),
             Some(Dryer::Controlled(_)) => (target(&flows.drying).min(saturated), flows.drying.capacity),
-            Some(Dryer::Coil { per_heat, temperature }) => {
-                let at_coil = humidity_ratio(saturation_pressure(*temperature), pressure);
+            Some(Dryer::Coil { per_heat, saturated: at_coil }) => {
+                let at_coil = humidity_ratio(*at_coil, pressure);
                 (at_coil.min(saturated), *per_heat * (-load).max(S::zero()))
             }
         };
@@ -87,11 +91,15 @@ impl<S: Real> Limits<S> {
         Self { humidify, dry, ..*self }
     }
 
-    /// The mode of a zone from a humidity ratio and what was taken away: the point of the law on the line
+    /// The mode of a zone, with or without plants, from a humidity ratio and what was taken away: the point of the law on the line
     /// `removed + slope ratio = constant` through both.
     #[inline(always)]
-    pub(super) fn mode(&self, ratio: S, removed: S, slope: S) -> Mode<S> {
+    pub(super) fn mode(&self, plants: bool, ratio: S, removed: S, slope: S) -> Mode<S> {
         let sum = removed + slope * ratio;
+        if !plants {
+            let below = sum.lt(slope * self.saturated);
+            return Mode { held: !below, value: S::select(below, S::zero(), self.saturated) };
+        }
         let [humidify, dry, saturated] = [self.humidify, self.dry, self.saturated].map(|at| slope * at);
         let held = |value: S| (S::Mask::splat(true), value);
         let fixed = |value: S| (S::Mask::splat(false), value);

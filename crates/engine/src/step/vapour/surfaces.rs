@@ -5,6 +5,39 @@ use crate::physics::sorption::VapourLayers;
 
 use super::flows::SurfaceFlows;
 
+/// The tangent of the sorption of a layer at the start of the step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tangent<S> {
+    /// Moisture content [kg/m2], and the humidity there [-].
+    content: S,
+    humidity: S,
+    /// Slope of the content [kg/m2].
+    capacity: S,
+}
+
+impl<S: Real> Tangent<S> {
+    pub(super) fn none() -> Self {
+        Self { content: S::zero(), humidity: S::zero(), capacity: S::zero() }
+    }
+
+    /// Of both layers at their contents [kg/m2]; that of the second stays as it is where there is none.
+    #[inline(always)]
+    pub(super) fn update(both: &mut [Self; 2], layers: &VapourLayers<S>, contents: &[S]) {
+        let used = if layers.two { 2 } else { 1 };
+        for ((tangent, &content), &depth) in both.iter_mut().zip(contents).zip(&layers.depths).take(used) {
+            let (humidity, slope) = layers.isotherm.humidity(content / depth);
+            *tangent = Self { content, humidity, capacity: depth * slope };
+        }
+    }
+
+    /// What the layer stores per humidity and length of a stage [kg/(m2 s)], and the humidity that the stage starts from [-], with its
+    /// content there [kg/m2] and one over the length [1/s].
+    #[inline(always)]
+    fn stage(&self, held: S, per_second: f64) -> (S, S) {
+        (self.capacity.scale(per_second), self.humidity + (held - self.content) / self.capacity)
+    }
+}
+
 /// What a surface takes up in a stage: `offset + slope w` [kg/(m2 s)].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Uptake<S> {
@@ -26,34 +59,34 @@ impl<S: Real> Uptake<S> {
 
     /// Eliminates both layers.
     ///
-    /// `contents` of both layers at the start of the step and of the stage [kg/m2]; humidity ratio at the start of the step with the
-    /// vapour pressure and its slope there; length of the stage [s].
+    /// Tangents of the layers, none where there is no second one, and contents at the start of the stage [kg/m2]; the vapour pressure at a
+    /// humidity ratio of zero on the tangent at the start of the step, and the slope of this tangent; the saturation pressure at the
+    /// surface; one over the length of the stage [1/s].
     ///
     /// With the heat capacities' counterparts `c = d slope / length` and `P = p_sat`, the layers satisfy
     /// `(c_1 + b P + k_2) phi_1 = c_1 phi_1h + b p + k_2 phi_2h` and `k_2 = k P c_2 / (c_2 + k P)`: nothing is subtracted.
     #[inline(always)]
     pub(super) fn new(
-        layers: &VapourLayers<S>,
+        (tangents, two): (&[Tangent<S>; 2], bool),
         flows: &SurfaceFlows<S>,
-        (contents, held): ([S; 2], [S; 2]),
-        (ratio, (pressure, pressure_slope)): (S, (S, S)),
-        length: f64,
+        held: [S; 2],
+        (at_zero, pressure_slope): (S, S),
+        (saturated, per_second): (S, f64),
     ) -> Self {
-        let (first, first_held) = humidities(layers, 0, contents[0], held[0], length);
-        let (second, second_held) = if layers.two {
-            let (capacity, held) = humidities(layers, 1, contents[1], held[1], length);
-            let inward = flows.between * flows.saturated;
+        let (first, first_held) = tangents[0].stage(held[0], per_second);
+        let (second, second_held) = if two {
+            let (capacity, held) = tangents[1].stage(held[1], per_second);
+            let inward = flows.between * saturated;
             (inward * capacity / (capacity + inward), held)
         } else {
             (S::zero(), S::zero())
         };
         let storing = first + second;
-        let inverse = S::one() / (storing + flows.to_layer * flows.saturated);
+        let inverse = S::one() / (storing + flows.to_layer * saturated);
         let kept = first * first_held + second * second_held;
-        let at_zero = pressure - pressure_slope * ratio;
         let share = flows.to_layer * inverse;
         Self {
-            offset: share * (storing * at_zero - flows.saturated * kept),
+            offset: share * (storing * at_zero - saturated * kept),
             slope: share * storing * pressure_slope,
             at_zero: inverse * kept + share * at_zero,
             rise: share * pressure_slope,
@@ -68,14 +101,4 @@ impl<S: Real> Uptake<S> {
         let humidity = self.at_zero + self.rise * ratio;
         [self.offset + self.slope * ratio, self.second * (humidity - self.second_held)]
     }
-}
-
-/// What a layer stores per humidity and length of the stage [kg/(m2 s)], and the humidity that a stage starts from on the tangent
-/// at the start of the step [-].
-#[inline(always)]
-fn humidities<S: Real>(layers: &VapourLayers<S>, layer: usize, content: S, held: S, length: f64) -> (S, S) {
-    let depth = layers.depths[layer];
-    let (humidity, slope) = layers.isotherm.humidity(content / depth);
-    let capacity = depth * slope;
-    (capacity.scale(1.0 / length), humidity + (held - content) / capacity)
 }
