@@ -331,6 +331,15 @@ def _band(opens: float, closes: float, half: float) -> dict[str, Any]:
 
 
 SECTIONS: dict[str, dict[str, Any]] = {
+    "schedules": {
+        "dry_air": {"kind": "humidity_ratio", "value": 0.0112},
+        "dry_by_day": {
+            "kind": "humidity_ratio",
+            "days": {
+                "all": [{"at": "00:00", "value": 0.012, "ramp_to": 0.011}, {"at": "12:00", "value": 0.011}]
+            },
+        },
+    },
     "air_paths": {
         "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}},
         "overflow": {"between": ["room", "attic"], "column": "T_out", "one_way": True},
