@@ -321,6 +321,14 @@ def test_nothing_is_dropped_in_silence(tmp_path: Path) -> None:
             box("MaterialProperty:PhaseChange,Brick,0,-20,0,20,Wall;"),
             "values 2: enthalpy: found 'Wall'; expected a",
         ),
+        (
+            box().replace("Year,1,1,,12,31", "Year,4,31,,12,31"),
+            r"box\.idf:6: RunPeriod 'Year': found the day 4/31",
+        ),
+        (
+            box().replace("Year,1,1,,12", "Year,1,1,3000,12"),
+            "'Year': begin_year: found 3000; expected a year",
+        ),
         (box("RunPeriod,B,13,1,,12,31,,Tuesday;"), "'B': begin_month: found 13; expected at most 12"),
     ],
 )

@@ -16,7 +16,7 @@ from mascarin.convert.faces import faces, openings
 from mascarin.convert.films import Films
 from mascarin.convert.findings import Finding
 from mascarin.convert.gains import describe_gains
-from mascarin.convert.schedules import calendar_year
+from mascarin.convert.schedules import calendar_year, day_of
 from mascarin.convert.shades import describe_shades
 from mascarin.convert.site import describe_site
 from mascarin.convert.source import read
@@ -171,8 +171,7 @@ def _period(work: Work) -> tuple[str, str]:
     for key, default in (("begin", (1, 1)), ("end", (12, 31))):
         month = item.number(f"{key}_month") if item is not None else None
         day = item.number(f"{key}_day_of_month") if item is not None else None
-        values[key] = date(
-            year, int(month or default[0]), min(int(day or default[1]), 28 if month == 2 else 31)
-        )
+        first = int(month or default[0]), int(day or default[1])
+        values[key] = date(year, *default) if item is None else day_of(item, year, *first)
     last = values["end"] + timedelta(days=1)
     return values["begin"].isoformat(), last.isoformat()

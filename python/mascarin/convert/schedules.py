@@ -14,6 +14,7 @@ from mascarin.convert.field_checks import finite
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
+from mascarin.weather.timezones import YEARS
 
 SCHEDULES: Final = (
     "Schedule:Compact",
@@ -122,6 +123,10 @@ def calendar_year(work: Work) -> int:
     if item is None:
         return 2017
     given = item.number("begin_year")
+    if given is not None and not YEARS[0] <= given <= YEARS[1]:
+        raise item.error(
+            f"begin_year: found {given:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
+        )
     if given is not None and not calendar.isleap(int(given)):
         return int(given)
     month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
@@ -129,9 +134,23 @@ def calendar_year(work: Work) -> int:
     word = item.word("day_of_week_for_start_day")
     wanted = names.index(word) if word in names else 6
     if given is not None and word not in names:
-        wanted = date(int(given), month, day).weekday()
+        wanted = day_of(item, int(given), month, day).weekday()
     years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
-    return next(one for one in years if date(one, month, day).weekday() == wanted)
+    return next(one for one in years if day_of(item, one, month, day).weekday() == wanted)
+
+
+def day_of(item: Item, in_year: int, month: int, day: int) -> date:
+    """A day of a year; 29 February counts as the 28th.
+
+    Raises
+    ------
+    InputError
+        There is no such day.
+    """
+    try:
+        return date(in_year, month, 28 if (month, day) == (2, 29) else day)
+    except (ValueError, OverflowError):
+        raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
 
 
 def holidays(work: Work) -> list[str]:
@@ -149,7 +168,7 @@ def holidays(work: Work) -> list[str]:
 def _date(item: Item, text: str, in_year: int) -> date:
     """A date such as 12/25, December 25, 25 Dec, 4th Thursday in November, Last Monday in May."""
     words = re.findall(r"[a-z]+|\d+", text.casefold())
-    numbers = [int(word) for word in words if word.isdigit()]
+    numbers = [int(word) if len(word) < 9 else 0 for word in words if word.isdigit()]  # no day is 0
     months = [_MONTHS[word] for word in words if word in _MONTHS]
     weekday = next((k for k, name in enumerate(calendar.day_name) if name.casefold() in words), None)
     try:
@@ -164,7 +183,7 @@ def _date(item: Item, text: str, in_year: int) -> date:
             return date(in_year, months[0], numbers[0])
         return date(in_year, numbers[0], numbers[1])
     except (IndexError, ValueError):
-        raise item.error(f"a date '{text}'", "a day such as 12/25", "Correct the date") from None
+        raise item.error(f"found a date '{text}'", "a day such as 12/25", "Correct the date") from None
 
 
 def _end(item: Item, text: str) -> str:
@@ -220,13 +239,13 @@ def _value(item: Item, word: str) -> float:
     try:
         return finite(word)
     except ValueError:
-        raise item.error(f"'{word}'", "a number after Until", "Correct the schedule") from None
+        raise item.error(f"found '{word}'", "a number after Until", "Correct the schedule") from None
 
 
 def _minute(item: Item, text: str) -> int:
     match = re.fullmatch(r"(\d{1,2}):(\d{2})(?::\d{2})?", text.replace(" ", ""))
     if match is None or int(match[1]) * 60 + int(match[2]) > 1440:
-        raise item.error(f"a time '{text}'", "00:01 to 24:00", "Correct the schedule")
+        raise item.error(f"found a time '{text}'", "00:01 to 24:00", "Correct the schedule")
     return int(match[1]) * 60 + int(match[2])
 
 
@@ -256,7 +275,9 @@ def _week(work: Work, item: Item, days: Iterable[tuple[str, Day]]) -> Week:
             elif word in _GROUPS or f"{word}s" in _GROUPS:
                 names = _GROUPS.get(word, _GROUPS.get(f"{word}s", ()))
             else:
-                raise item.error(f"'{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it")
+                raise item.error(
+                    f"found '{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it"
+                )
             for name in names:
                 found.setdefault(name, day)
     missing = [name for name in DAYS[:7] if name not in found]
