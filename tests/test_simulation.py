@@ -13,6 +13,7 @@ import mascarin as mc
 from mascarin import cli
 from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
+from mascarin.examples import FOLDER
 from mascarin.simulation.inactive import inactive_parameters
 from mascarin.simulation.readings import globe_temperature
 from mascarin.simulation.results import Results
@@ -327,6 +328,29 @@ def test_provenance_describes_the_run(linear: Building, climate: Climate) -> Non
     assert provenance["climate"]["timezone"] == "UTC"
     other = simulate(linear.replace({"zones.sunny.volume": 31.0}), climate, step="30min", end="2001-01-02")
     assert other.provenance.building_hash != run.provenance.building_hash
+
+
+def test_linearly_implicit_is_near_the_default_with_half_of_the_solves() -> None:
+    there = {"site.latitude": -35.0, "site.longitude": 0.0, "site.timezone": "UTC"}
+    cell, climate = mc.load(FOLDER / "lgi" / "building.yaml").replace(there), weather(4, slab_underside=22.0)
+    room, roof = "room.air_temperature", "roof.inside_temperature"
+    runs = {
+        scheme: Simulation(cell, climate, outputs=[room, roof], initial=25.0, scheme=scheme)
+        for scheme in ("sdirk2", "linearly-implicit")
+    }
+    whole, linear = (run.run() for run in runs.values())
+    assert linear.provenance.scheme == "linearly-implicit"
+    assert linear.provenance.newton_iterations < 0.65 * whole.provenance.newton_iterations
+    apart = np.abs(linear.records - whole.records)[96:]
+    assert 0.0 < apart[:, 0].max() < 0.01
+    assert apart[:, 1].max() < 0.05
+    assert linear.energy.relative_residual < 1e-10
+    members = np.tile(runs["linearly-implicit"].values, (9, 1))
+    records, *_ = runs["linearly-implicit"].ensemble(members)
+    assert np.array_equal(records[8], linear.records)
+    slopes = runs["linearly-implicit"].jacobian(["surfaces.roof.outside.absorptance"])
+    expected = runs["sdirk2"].jacobian(["surfaces.roof.outside.absorptance"])
+    assert np.array_equal(slopes[f"d {room}"], expected[f"d {room}"])
 
 
 def test_identity_differs_between_runs(linear: Building, climate: Climate) -> None:

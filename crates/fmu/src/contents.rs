@@ -232,6 +232,7 @@ impl Contents {
 fn options(settings: Settings, probes: Vec<Probe>) -> Result<Options, String> {
     let scheme = match settings.scheme.as_str() {
         "sdirk2" => Scheme::Sdirk2,
+        "linearly-implicit" => Scheme::LinearlyImplicit,
         "backward-euler" => Scheme::BackwardEuler,
         "apparent-capacity" => Scheme::ApparentCapacity,
         other => return Err(format!("unknown scheme '{other}'")),

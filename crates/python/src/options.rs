@@ -11,10 +11,11 @@ use crate::errors::EngineInputError;
 fn scheme_named(name: &str) -> PyResult<Scheme> {
     match name {
         "sdirk2" => Ok(Scheme::Sdirk2),
+        "linearly-implicit" => Ok(Scheme::LinearlyImplicit),
         "backward-euler" => Ok(Scheme::BackwardEuler),
         "apparent-capacity" => Ok(Scheme::ApparentCapacity),
         _ => Err(EngineInputError::new_err(format!(
-            "unknown scheme '{name}'; expected sdirk2, backward-euler or apparent-capacity"
+            "unknown scheme '{name}'; expected sdirk2, linearly-implicit, backward-euler or apparent-capacity"
         ))),
     }
 }

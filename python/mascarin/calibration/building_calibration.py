@@ -93,7 +93,7 @@ def calibrate(
     step : str or float
         Time step, such as ``15min`` or seconds. [s]
     scheme : str
-        ``sdirk2``, ``backward-euler`` or ``apparent-capacity``, see `Simulation`.
+        ``sdirk2``, ``linearly-implicit``, ``backward-euler`` or ``apparent-capacity``, see `Simulation`.
     initial : ``"repeat"``, float, mapping, GivenStart or MeasuredStart
         Initial state, see `Simulation`. [degC]
     first_period : str or float

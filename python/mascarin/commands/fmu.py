@@ -35,7 +35,7 @@ def fmu(
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
+    scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
     allow_outside: Outside = False,
     fmi: Literal["3.0", "2.0"] = "3.0",

@@ -58,7 +58,7 @@ def run(
     step: Step = "15min",
     interval: str | None = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
+    scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
     initial: float | None = None,
     settings: Settings = None,
     allow_outside: Outside = False,

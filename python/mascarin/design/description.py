@@ -138,7 +138,9 @@ class DesignFile(Part):
     climates: dict[Name, ClimateFile] = Field(min_length=1, description="Name -> weather file and period")
     period: Period | None = Field(None, description="Period of all climates; by default the whole files")
     step: Duration = Field("15min", description="Time step")
-    scheme: Literal["sdirk2", "backward-euler"] = Field("sdirk2", description="Time-stepping scheme")
+    scheme: Literal["sdirk2", "linearly-implicit", "backward-euler"] = Field(
+        "sdirk2", description="Time-stepping scheme"
+    )
     set: dict[str, Any] = Field(default_factory=dict, description="Path -> value for all designs")
     variables: dict[Label, Variable] = Field(min_length=1, description="Name -> what is chosen")
     objectives: dict[Label, Objective] = Field(min_length=1, description="Name -> what is good")

@@ -355,7 +355,7 @@ class StudyPlan(Part):
     observed_note: str = Field("", description="What readers of the report must know about the data")
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
     step: Duration = Field("15min", description="Time step")
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field(
+    scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = Field(
         "sdirk2", description="Time integration scheme"
     )
     initial: Initial = Field(

@@ -23,6 +23,7 @@ _GAMMA: Final = 1.0 - 0.5 * float(np.sqrt(2.0))
 
 STAGES: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...]]]] = {
     "sdirk2": ((_GAMMA, 1.0), (1.0 - _GAMMA, _GAMMA)),
+    "linearly-implicit": ((_GAMMA, 1.0), (1.0 - _GAMMA, _GAMMA)),
     "backward-euler": ((1.0,), (1.0,)),
     "apparent-capacity": ((1.0,), (1.0,)),
 }

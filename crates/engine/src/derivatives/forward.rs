@@ -126,7 +126,7 @@ fn run_with_slopes(
     let mut groups: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme);
+            let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
             if options.probes.iter().any(Output::averages_absorbed_sun) {
                 stepper.stepper.average_absorbed_sun();
             }
@@ -134,7 +134,7 @@ fn run_with_slopes(
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
-    let mut plain = Stepper::new(plan, numbers, options.scheme);
+    let mut plain = Stepper::new(plan, numbers, options.scheme.converged());
     plain.known.start();
     march_observed(plain, weather, options, watch, |plain, reached, action| {
         let solution = plain.known.solution(&reached.load);

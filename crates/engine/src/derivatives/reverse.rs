@@ -92,7 +92,7 @@ impl Trajectory {
     ) -> Result<Self, EngineError> {
         options.check(plan, numbers.len(), forcing)?;
         let weather = Weather::new(plan, forcing);
-        let mut stepper = Stepper::new(plan, numbers, options.scheme);
+        let mut stepper = Stepper::new(plan, numbers, options.scheme.converged());
         stepper.known.start();
         let mut before = stepper.begin(&options.initial);
         let mut start = Start { state: before.clone(), history: stepper.history() };
@@ -171,7 +171,7 @@ fn run_again(
     start: &Start,
     actions: &[Action],
 ) -> Result<Stretch, EngineError> {
-    let mut stepper = Stepper::new(plan, numbers, options.scheme);
+    let mut stepper = Stepper::new(plan, numbers, options.scheme.converged());
     stepper.known.start();
     stepper.set_history(&start.history);
     let (mut before, mut state, mut unused) = (start.state.clone(), start.state.clone(), Ledger::new());
@@ -215,7 +215,7 @@ impl<'a> ReversePass<'a> {
         options: &'a Options,
         records: &'a [f64],
     ) -> Self {
-        let mut fresh = DerivativeStepper::new(plan, leaves, options.scheme);
+        let mut fresh = DerivativeStepper::new(plan, leaves, options.scheme.converged());
         if options.probes.iter().any(Output::averages_absorbed_sun) {
             fresh.stepper.average_absorbed_sun();
         }

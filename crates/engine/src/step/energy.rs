@@ -36,8 +36,7 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(never)]
     pub(super) fn record_residual(&mut self, state: &State<S>, length: f64, index: usize) {
         let (model, conditions, tableau) = (&self.model, &self.weather.conditions, self.scheme.tableau());
-        let stage =
-            Stage { model, conditions, state, storage: tableau.storage, length, place: (0, index + 1) };
+        let stage = Stage { model, conditions, state, tableau, length, place: (0, index + 1) };
         if let Some(residuals) = &mut self.residuals {
             residuals.record(&self.solver, &self.flows, &stage, tableau.ratio);
         }

@@ -105,9 +105,9 @@ impl<S: Real> Stepper<'_, S> {
         known: &Unknowns<f64>,
     ) {
         let (model, conditions) = (&self.model, &self.weather.conditions);
-        let storage = self.scheme.tableau().storage;
+        let tableau = self.scheme.tableau();
         let stage =
-            Stage { model, conditions, state, storage, length: place.length, place: (0, place.stage + 1) };
+            Stage { model, conditions, state, tableau, length: place.length, place: (0, place.stage + 1) };
         let StageSolver { linearisation, system, iterate, .. } = &mut self.solver;
         iterate.set(known);
         for &w in &model.parts.nonlinear_walls {

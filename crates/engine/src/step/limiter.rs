@@ -22,7 +22,7 @@ impl<S: Real> StageSolver<'_, S> {
         }
         let model = stage.model;
         // The apparent capacity is a constant of the step: there is nothing to cross.
-        let limits = stage.storage == StorageRule::Enthalpy;
+        let limits = stage.tableau.storage == StorageRule::Enthalpy;
         for &surface in &model.parts.linearised {
             let old = self.iterate.surfaces[surface];
             self.iterate.surfaces[surface] = S::select(active, self.solution.surfaces[surface], old);

@@ -99,7 +99,7 @@ impl<S: Real> Linearisation<S> {
                 chain.links[*link] = Link { left: conductance, right: conductance, offset: S::zero() };
             }
         } else {
-            chain.linearise(numbers, &at, &start, stage.storage);
+            chain.linearise(numbers, &at, &start, stage.tableau.storage);
         }
     }
 

@@ -18,8 +18,6 @@ use crate::physics::convection::natural::ROUND_OFF;
 use crate::physics::doors;
 use crate::step::stage::Stage;
 
-/// Largest remainder that is accepted, over the largest heat flow density [-].
-const ACCEPTED: f64 = 1e-9;
 /// Heat flow density that a building has at night and in calm air; the absorbed sun is added to it [W/m2].
 const LEAST_FLOW: f64 = 10.0;
 /// Half of the second derivative of emission, which is also more than that of air flow over the area of a zone [W/(m2 K2)].
@@ -108,7 +106,7 @@ impl<S: Real> NonlinearLaws<S> {
         for &surface in &self.outdoors {
             sun = sun.max(stage.conditions.surfaces[surface].solar);
         }
-        self.limit = Limit::new((sun + S::constant(LEAST_FLOW)).scale(ACCEPTED));
+        self.limit = Limit::new((sun + S::constant(LEAST_FLOW)).scale(stage.tableau.tolerance.remainder));
     }
 
     /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].
@@ -143,7 +141,7 @@ impl<S: Real> NonlinearLaws<S> {
             let area = areas.iter().fold(S::zero(), |sum, &area| sum + area);
             small = small & left.abs().lt(self.limit.remainder * area);
         }
-        if stage.storage == StorageRule::ApparentCapacity || !small.any() {
+        if stage.tableau.storage == StorageRule::ApparentCapacity || !small.any() {
             return small;
         }
         let mut largest = S::zero();

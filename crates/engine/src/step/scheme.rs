@@ -5,7 +5,9 @@
 //! stage is the end of the step (stiffly accurate): its row of the tableau holds the weights. With two stages the sum over
 //! the first one is `(1 - g)/g (H_1 - H_n)`: enthalpies reached take the place of fluxes.
 //!
-//! Source of SDIRK2: Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068.
+//! Source of SDIRK2: Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068. Linearly implicit methods solve
+//! one linear system a stage: Hairer & Wanner (1996), Solving Ordinary Differential Equations II, ch. IV.7,
+//! doi:10.1007/978-3-642-05221-7.
 
 use crate::linear::wall::StorageRule;
 
@@ -14,6 +16,8 @@ use crate::linear::wall::StorageRule;
 pub enum Scheme {
     /// Two stages, second order, L-stable, one factorisation.
     Sdirk2,
+    /// The stages of `Sdirk2`, each by one linear solve about its guess, more only where the tangents leave out much heat.
+    LinearlyImplicit,
     /// One stage, first order, keeps the maximum principle.
     BackwardEuler,
     /// The paper's: backward Euler with the apparent capacity at the old temperature. Loses latent heat.
@@ -33,10 +37,28 @@ pub(crate) struct Tableau {
     pub(crate) nodes: &'static [f64],
     /// How the storage of phase-change cells is linearised.
     pub(crate) storage: StorageRule,
+    /// What a stage may lack.
+    pub(crate) tolerance: Tolerance,
+}
+
+/// What a solution may lack to be accepted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tolerance {
+    /// Heat that the tangents of the laws leave out, over the largest heat flow density [-].
+    pub(crate) remainder: f64,
+    /// How far the ideal loads that are missing would move the air [K]: the last stage supplies them.
+    pub(crate) load: f64,
+    /// Whether the first solution of a stage may be the last.
+    pub(crate) first: bool,
 }
 
 /// Diagonal coefficient of SDIRK2.
 const SDIRK2: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
+
+/// Tight enough for difference quotients of results.
+const TIGHT: Tolerance = Tolerance { remainder: 1e-9, load: 1e-5, first: false };
+/// Temperatures within some thousandths of a kelvin (docs/speed.md).
+const LOOSE: Tolerance = Tolerance { remainder: 1e-3, load: 1e-2, first: true };
 
 const TWO_STAGES: Tableau = Tableau {
     diagonal: SDIRK2,
@@ -44,10 +66,19 @@ const TWO_STAGES: Tableau = Tableau {
     weights: &[1.0 - SDIRK2, SDIRK2],
     nodes: &[SDIRK2, 1.0],
     storage: StorageRule::Enthalpy,
+    tolerance: TIGHT,
 };
 
-const ONE_STAGE: Tableau =
-    Tableau { diagonal: 1.0, ratio: 0.0, weights: &[1.0], nodes: &[1.0], storage: StorageRule::Enthalpy };
+const LINEARLY_IMPLICIT: Tableau = Tableau { tolerance: LOOSE, ..TWO_STAGES };
+
+const ONE_STAGE: Tableau = Tableau {
+    diagonal: 1.0,
+    ratio: 0.0,
+    weights: &[1.0],
+    nodes: &[1.0],
+    storage: StorageRule::Enthalpy,
+    tolerance: TIGHT,
+};
 
 const APPARENT: Tableau = Tableau { storage: StorageRule::ApparentCapacity, ..ONE_STAGE };
 
@@ -57,8 +88,17 @@ impl Scheme {
     pub(crate) const fn tableau(self) -> &'static Tableau {
         match self {
             Self::Sdirk2 => &TWO_STAGES,
+            Self::LinearlyImplicit => &LINEARLY_IMPLICIT,
             Self::BackwardEuler => &ONE_STAGE,
             Self::ApparentCapacity => &APPARENT,
+        }
+    }
+
+    /// The scheme whose stages are solved to the end: derivatives are those of its solutions.
+    pub(crate) const fn converged(self) -> Self {
+        match self {
+            Self::LinearlyImplicit => Self::Sdirk2,
+            Self::Sdirk2 | Self::BackwardEuler | Self::ApparentCapacity => self,
         }
     }
 
@@ -78,7 +118,9 @@ mod tests {
     /// the last stage is the end of the step and the diagonal is not zero.
     #[test]
     fn order_conditions() {
-        for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler, Scheme::ApparentCapacity] {
+        for scheme in
+            [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler, Scheme::ApparentCapacity]
+        {
             let Tableau { diagonal, ratio, weights, nodes, .. } = *scheme.tableau();
             assert_eq!(weights.len(), nodes.len());
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15, "{scheme:?}: first order");
@@ -86,7 +128,7 @@ mod tests {
             assert!((nodes[nodes.len() - 1] - 1.0).abs() < 1e-15 && (nodes[0] - diagonal).abs() < 1e-15);
             assert!((ratio * diagonal - (1.0 - diagonal)).abs() < 1e-15);
             let second: f64 = weights.iter().zip(nodes).map(|(weight, node)| weight * node).sum();
-            let expected = if scheme == Scheme::Sdirk2 { 0.5 } else { 1.0 };
+            let expected = if weights.len() == 2 { 0.5 } else { 1.0 };
             assert!((second - expected).abs() < 1e-15, "{scheme:?}: {second} is not {expected}");
         }
     }

@@ -2,9 +2,10 @@
 
 use crate::building::model::Model;
 use crate::linear::unknowns::{Unknowns, copy_ranges, line};
-use crate::linear::wall::{StorageRule, WallSystem};
+use crate::linear::wall::WallSystem;
 use crate::number::line::Line;
 use crate::number::real::Real;
+use crate::step::scheme::Tableau;
 use crate::step::state::State;
 use crate::weather::conditions::Conditions;
 
@@ -15,8 +16,8 @@ pub(crate) struct Stage<'s, S: Real> {
     pub(crate) conditions: &'s Conditions<S>,
     /// State at the start of the step.
     pub(crate) state: &'s State<S>,
-    /// How storage is linearised.
-    pub(crate) storage: StorageRule,
+    /// Of the scheme.
+    pub(crate) tableau: &'static Tableau,
     /// Effective length [s].
     pub(crate) length: f64,
     /// Step, and stage counted from 1; both zero where no step is made.

@@ -58,7 +58,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         Self {
             flows: FlowIndex::new(plan, &model.coefficients, &weather.index),
             weather,
-            ideal_loads: IdealLoads::new(&model, &solver.solution, tableau.weights.len()),
+            ideal_loads: IdealLoads::new(&model, &solver.solution, tableau),
             solver,
             guess: Guess::none(),
             vapour: VapourBalances::new(&model, tableau.weights.len()).map(Box::new),
@@ -310,8 +310,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         search: Search<S>,
     ) -> Result<S::Mask, EngineError> {
         let (model, conditions) = (&self.model, &self.weather.conditions);
-        let storage = self.scheme.tableau().storage;
-        let stage = Stage { model, conditions, state, storage, length, place };
+        let tableau = self.scheme.tableau();
+        let stage = Stage { model, conditions, state, tableau, length, place };
         let sound = self.solver.solve(&stage, search)?;
         self.known.keep(&self.solver.solution);
         if self.residuals.is_some() && place.1 > 0 {

@@ -6,7 +6,7 @@ use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 
-const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
+const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler];
 
 /// A roof of metal sheets [conductivity, thickness, nodes] over a zone.
 fn sheet(conductivity: f64, thickness: f64, nodes: usize, melts: bool) -> Plan {

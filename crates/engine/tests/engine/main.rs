@@ -18,6 +18,7 @@ mod halving;
 mod held_airs;
 mod hysteresis;
 mod levels;
+mod linearly_implicit;
 mod lone_surface;
 mod long_walls;
 mod marching;

@@ -3,8 +3,8 @@
 use crate::common::linear::cell_of_linear_laws;
 use crate::common::melting::{ceiling, ceiling_weather};
 use crate::common::{
-    SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run, try_run, values,
-    warmup,
+    ALL_SCHEMES, SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run,
+    try_run, values, warmup,
 };
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::forcing::Forcing;
@@ -56,7 +56,7 @@ fn apparent_capacity_loses_heat() {
 fn lanes_are_scalars() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let width = plan.description.parameters.len();
-    for scheme in SCHEMES {
+    for scheme in ALL_SCHEMES {
         let rows = forcing(&plan, scheme, 3 * 96, STEP, cell_weather);
         let mut options = options(scheme, STEP, cell_probes());
         options.warmup = Some(warmup(STEP));
@@ -195,7 +195,7 @@ fn melting_never_stops_a_run() {
                 ("cell", cell(gamma), cell_weather),
             ] {
                 let plan = Plan::new(description).unwrap();
-                for scheme in SCHEMES {
+                for scheme in ALL_SCHEMES {
                     let rows = forcing(&plan, scheme, 1000, dt, weather);
                     if let Err(error) =
                         try_run(&plan, &values(&plan), &rows, &options(scheme, dt, Vec::new()))

@@ -1,7 +1,7 @@
 //! Rooms of one shape, which a single run computes side by side and a pack of members one by one: the same bits.
 
 use crate::common::conditioned::{ideal_load, number};
-use crate::common::{Builder, SCHEMES, facing, forcing, options, run, values, weather};
+use crate::common::{ALL_SCHEMES, Builder, facing, forcing, options, run, values, weather};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{
     Construction, Convection, Description, Facing, Gap, Gas, Glazing, Pane, PaneOptics, ParamId, Side,
@@ -127,7 +127,7 @@ fn row(loads: bool, storing: bool) -> Plan {
 fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
     for (loads, storing) in [(false, false), (true, false), (true, true)] {
         let plan = row(loads, storing);
-        for scheme in SCHEMES {
+        for scheme in ALL_SCHEMES {
             let rows = forcing(&plan, scheme, 96, STEP, weather);
             let probes =
                 (0..ROOMS).flat_map(|zone| [Probe::AirTemperature { zone }, Probe::NetLoad { zone }]);

@@ -2,7 +2,7 @@
 
 use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
 use crate::common::melting::{melting, melting_weather};
-use crate::common::{SCHEMES, forcing, options, run, values, warmup};
+use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
 use mascarin_engine::description::HysteresisModel;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
@@ -49,7 +49,7 @@ fn cases(scheme: Scheme) -> Vec<(Plan, Vec<f64>, Options)> {
 /// The bits of a whole run, also after a state has been saved and restored in another run.
 #[test]
 fn steps_are_those_of_a_run() {
-    for scheme in SCHEMES {
+    for scheme in ALL_SCHEMES {
         let stages = scheme.weights().len();
         for (plan, rows, options) in cases(scheme) {
             let (channels, numbers) = (plan.n_channels(), values(&plan));

@@ -23,7 +23,7 @@ use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::limits::{CLOSE, Limits, TOLERANCE};
+use crate::step::ideal_loads::limits::{Limits, TOLERANCE};
 use crate::step::ideal_loads::rises::Change;
 
 /// Conductance that holds an air, over the largest of those that act on it [-].
@@ -92,6 +92,8 @@ struct Supply<S> {
 #[derive(Debug, Clone)]
 pub(crate) struct HeldAirs<S: Real> {
     airs: Vec<HeldAir<S>>,
+    /// Loads are found when what they lack moves no air by more than this [K].
+    close: f64,
     /// Heat that air carries into each zone, per degree [W/K].
     flows: Vec<S>,
     /// Rises of all unknowns of the coupled system.
@@ -101,8 +103,8 @@ pub(crate) struct HeldAirs<S: Real> {
 }
 
 impl<S: Real> HeldAirs<S> {
-    /// For a number of loads in a building with a number of rows.
-    pub(super) fn new(loads: usize, rows: usize) -> Self {
+    /// For a number of loads in a building with a number of rows; loads that are missing move an air by less than `close` [K].
+    pub(super) fn new(loads: usize, rows: usize, close: f64) -> Self {
         let zero = S::zero();
         let nothing = HeldAir {
             mode: Mode { heats: S::Mask::splat(false), cools: S::Mask::splat(false) },
@@ -121,6 +123,7 @@ impl<S: Real> HeldAirs<S> {
         };
         Self {
             airs: vec![nothing; loads],
+            close,
             flows: Vec::new(),
             rise: vec![zero; rows],
             comparable: S::Mask::splat(false),
@@ -241,7 +244,7 @@ impl<S: Real> HeldAirs<S> {
         for ((held, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
             held.learn(held.missing_at(air[zone]), active);
             let (mode, _) = held.next(limits, loads[zone], air[zone]);
-            let small = (held.missing / held.slope).abs().lt(held.conductance.scale(CLOSE));
+            let small = (held.missing / held.slope).abs().lt(held.conductance.scale(self.close));
             found = found & small & held.mode.is(mode);
             self.comparable = self.comparable & held.mode.is(mode);
         }
@@ -285,7 +288,7 @@ impl<S: Real> HeldAirs<S> {
             (air.left, air.supplied) = (air.missing, S::zero());
         }
         let begin = self.largest_left();
-        let enough = begin.scale(LEFT).max(S::constant(0.1 * CLOSE));
+        let enough = begin.scale(LEFT).max(S::constant(0.1 * self.close));
         let lacking = enough.lt(begin);
         let mut open = lacking;
         for _ in 0..MAX_ITERATIONS {

@@ -5,8 +5,6 @@ use crate::number::real::Real;
 
 /// Airs closer to their set points than this count as on them [K].
 pub(super) const TOLERANCE: f64 = 1e-8;
-/// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
-pub(super) const CLOSE: f64 = 1e-5;
 /// Magnitude of the set point without heating or cooling, which is never reached [degC].
 const NEVER: f64 = 1e6;
 

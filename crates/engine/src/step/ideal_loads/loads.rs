@@ -12,6 +12,7 @@ use crate::step::ideal_loads::held_airs::HeldAirs;
 use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::responses::Response;
 use crate::step::ideal_loads::rises::{Change, Rises};
+use crate::step::scheme::Tableau;
 
 /// What the guess of the next step is made from.
 #[derive(Debug, Clone)]
@@ -53,6 +54,8 @@ impl LoadHistory<f64> {
 pub(crate) struct IdealLoads<S: Real> {
     /// Zone of each load.
     pub(super) zones: Vec<usize>,
+    /// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
+    pub(super) close: f64,
     pub(super) limits: Vec<Limits<S>>,
     /// Response of the building to each load, where there are few.
     pub(crate) responses: Vec<Response<S>>,
@@ -82,10 +85,10 @@ pub(crate) struct IdealLoads<S: Real> {
 }
 
 impl<S: Real> IdealLoads<S> {
-    pub(crate) fn new(model: &Model<'_, S>, unknowns: &Unknowns<S>, stages: usize) -> Self {
+    pub(crate) fn new(model: &Model<'_, S>, unknowns: &Unknowns<S>, tableau: &Tableau) -> Self {
         let (zones, rows) = (&model.plan.ideal_loads, model.plan.rows());
         let zeros = |n: usize| vec![S::zero(); n];
-        let count = zones.len();
+        let (count, stages, close) = (zones.len(), tableau.weights.len(), tableau.tolerance.load);
         let nothing = Limits { set_points: [S::zero(); 2], most: [S::zero(); 2] };
         let kept = if count == 0 { 0 } else { stages };
         // Numbers with derivatives take the responses: slopes of loads follow from them without iteration.
@@ -94,9 +97,10 @@ impl<S: Real> IdealLoads<S> {
         let few = if direct { count } else { 0 };
         Self {
             zones: zones.clone(),
+            close,
             limits: vec![nothing; count],
             responses: vec![Response::new(unknowns, rows, stages); few],
-            held: (!direct).then(|| HeldAirs::new(count, rows)),
+            held: (!direct).then(|| HeldAirs::new(count, rows, close)),
             rises: (!direct && count > 0).then(|| Rises::new(model, zones, stages)),
             changes: vec![Change::none(); if direct { 0 } else { count }],
             iterates: vec![unknowns.clone(); kept],

@@ -2,7 +2,7 @@
 
 use crate::number::dense::solve_many;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::limits::{CLOSE, Limits};
+use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::loads::IdealLoads;
 
 /// What an ideal load does: it holds the air on a set point, or gives a fixed load.
@@ -54,7 +54,7 @@ impl<S: Real> IdealLoads<S> {
         let mut small = S::Mask::splat(true);
         for (p, &zone) in self.zones.iter().enumerate() {
             let change = self.correction[p] - loads[zone];
-            small = small & (change * self.gain(p, p)).abs().lt(S::constant(CLOSE));
+            small = small & (change * self.gain(p, p)).abs().lt(S::constant(self.close));
             self.correction[p] = change;
         }
         let found = (known & small) | (!known & quiet);

@@ -35,7 +35,7 @@ struct Swept<S: Real> {
     energy: Power<S>,
     /// Largest change of a temperature in any stage [K].
     change: S,
-    /// Where all stages are accepted; nowhere after the first sweep, which adds up no heat: it is never the last.
+    /// Where all stages are accepted; nowhere after a sweep that cannot be the last, which adds up no heat.
     accepted: S::Mask,
 }
 
@@ -155,7 +155,8 @@ impl<S: Real> Stepper<'_, S> {
         let tableau = self.scheme.tableau();
         let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
         let (again, responds) = (number > 0, self.ideal_loads.finds_responses(number, active));
-        let (mut energy, mut change, mut accepted) = (Power::none(), S::zero(), S::Mask::splat(again));
+        let may_end = again || tableau.tolerance.first;
+        let (mut energy, mut change, mut accepted) = (Power::none(), S::zero(), S::Mask::splat(may_end));
         if again {
             self.solver.start.begin(&self.model, state);
             self.known.restart();
@@ -183,7 +184,7 @@ impl<S: Real> Stepper<'_, S> {
                 model,
                 conditions: &weather.conditions,
                 state,
-                storage: tableau.storage,
+                tableau,
                 length: length_of_stage,
                 place: (part.step, index + 1),
             };
@@ -217,7 +218,7 @@ impl<S: Real> Stepper<'_, S> {
             if self.residuals.is_some() {
                 self.record_residual_of_sweep(state, length_of_stage, index);
             }
-            if again && index + 1 < weights.len() {
+            if may_end && index + 1 < weights.len() {
                 self.add_heat(weight * length, &mut energy);
             }
         }

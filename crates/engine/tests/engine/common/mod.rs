@@ -26,6 +26,9 @@ use mascarin_engine::real::Real;
 use mascarin_engine::state::Initial;
 
 /// All schemes.
+pub const ALL_SCHEMES: [Scheme; 4] =
+    [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler, Scheme::ApparentCapacity];
+/// Those whose stages are solved to the end.
 pub const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::BackwardEuler, Scheme::ApparentCapacity];
 
 /// Writes a description part by part.
@@ -296,7 +299,7 @@ pub fn position(plan: &Plan, path: &str) -> usize {
 /// Stage times of a scheme over the step.
 fn nodes(scheme: Scheme) -> Vec<f64> {
     match scheme {
-        Scheme::Sdirk2 => vec![1.0 - core::f64::consts::FRAC_1_SQRT_2, 1.0],
+        Scheme::Sdirk2 | Scheme::LinearlyImplicit => vec![1.0 - core::f64::consts::FRAC_1_SQRT_2, 1.0],
         Scheme::BackwardEuler | Scheme::ApparentCapacity => vec![1.0],
     }
 }
