@@ -483,8 +483,7 @@ class Building(Description):
         >>> cell.to_engine().paths[0]
         'site.altitude'
         """
-        numbers = [one for one in self.parameters() if not one.members]
-        return describe(self, numbers, step_seconds, spread_ranges(self, ranges or {}))
+        return describe(self, step_seconds, spread_ranges(self, ranges or {}))
 
     # --- how it is shown ------------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
+from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
@@ -27,6 +28,7 @@ MOST_LEVELS = 50
 MOST_DIGITS = 40
 
 
+@uncollected()
 def read(
     path: str | Path,
     kind: type[AnyPart],
