@@ -146,6 +146,7 @@ def _parameter(
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
     low, high = cut or number.plausible
+    structural = number.structural
     if not low < high:
         inactive = inactive or "its default range has no width: give a range"
     return Parameter(
@@ -159,8 +160,8 @@ def _parameter(
         description=quantity.description,
         source=source or None,
         assumed=number.assumed,
-        structural=number.structural,
-        reason=quantity.spread.reason if number.structural else inactive,
+        structural=structural,
+        reason=quantity.spread.reason if structural else inactive,
         range_reason=_range_reason(quantity.spread.reason, number, cut),
         above=quantity.limits.above,
     )
