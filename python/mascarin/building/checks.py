@@ -33,7 +33,6 @@ from mascarin.building.ventilation import VentilationUnit
 from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone import AirPath, Zone
 from mascarin.building.zone_surfaces import closed
-from mascarin.errors import InputError
 
 #: SDIRK2 satisfies the maximum principle for steps below this many times the smallest time constant.
 SDIRK2_BOUND = 2.4
@@ -361,17 +360,3 @@ def assumptions(building: Description) -> Iterator[str]:
             yield f"zones.{name}.sun: area (solar radiation over all surfaces, part of it lost through glass)"
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: view factors by areas, zero between surfaces in one plane"
-
-
-def seconds_of(step: str | float) -> float:
-    """Duration of a time step in seconds, from a number or a text such as ``15min``."""
-    try:
-        if not isinstance(step, str):
-            return float(step)
-        import pandas as pd
-
-        return float(pd.Timedelta(step).total_seconds())
-    except (TypeError, ValueError):
-        raise InputError(
-            f"step: found {step!r}; expected a duration such as '15min' or a number [s]"
-        ) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
@@ -12,7 +13,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 from mascarin._io import display
 from mascarin.building.documenting import documented, signature_of
 from mascarin.building.explaining import explained
-from mascarin.building.number import CHECK_SIGN, Number, noted_form, problem, quantity_of, shown
+from mascarin.building.number import CHECK_SIGN, Number, Quantity, noted_form, problem, quantity_of, shown
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -340,9 +341,12 @@ def derived_number(part: type[Part], key: str, value: float, source: str, *, ass
     assumed : bool
         Whether it is an assumption and does not follow from the description.
     """
-    return Number(
-        value, source=source, assumed=assumed, derived=True, quantity=quantity_of(part.model_fields[key])
-    )
+    return Number(value, source=source, assumed=assumed, derived=True, quantity=_quantity(part, key))
+
+
+@cache
+def _quantity(part: type[Part], key: str) -> Quantity | None:
+    return quantity_of(part.model_fields[key])
 
 
 def merged(faults: list[InitErrorDetails]) -> ValidationError:

@@ -69,10 +69,9 @@ def window_ratings(building: Description, step_seconds: float = 900.0) -> dict[s
     """
     if not building.windows:
         return {}
-    from mascarin import _engine
-    from mascarin.engine_errors import translated
+    from mascarin.engine_errors import plan_of, translated  # the engine, which a description needs no more of
 
     described = describe(building, step_seconds)
     with translated():
-        found = _engine.Plan(described.json).window_ratings(described.values)
+        found = plan_of(described.json).window_ratings(described.values)
     return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, found, strict=True)}

@@ -73,15 +73,11 @@ class Polygon:
             Fewer than three corners, a corner without three finite coordinates, corners that coincide, that
             enclose no area, that do not lie in one plane, or edges that cross.
         """
-        corners = []
-        for number, vertex in enumerate(vertices, start=1):
-            if len(vertex) != 3 or not all(math.isfinite(float(c)) for c in vertex):
-                raise InputError(
-                    f"surface '{name}': vertex {number} is {list(vertex)}; expected three finite coordinates "
-                    "[x east, y north, z up] in metres"
-                )
-            corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
-        return _checked(name, tuple(corners))
+        given = vertices if isinstance(vertices, tuple) else tuple(vertices)
+        try:
+            return _checked(name, given)
+        except TypeError:  # lists of coordinates
+            return _checked(name, tuple(map(tuple, given)))
 
     def _check(self) -> None:
         if len(self.vertices) < 3:
@@ -277,9 +273,17 @@ class Polygon:
 
 
 @lru_cache(maxsize=1 << 16)
-def _checked(name: str, corners: tuple[tuple[float, float, float], ...]) -> Polygon:
-    """Check a polygon once: the same polygons are needed many times for one description."""
-    polygon = Polygon(name, corners)
+def _checked(name: str, vertices: tuple[Sequence[float], ...]) -> Polygon:
+    """Make and check a polygon once: the same polygons are needed many times for one description."""
+    corners = []
+    for number, vertex in enumerate(vertices, start=1):
+        if len(vertex) != 3 or not all(math.isfinite(float(c)) for c in vertex):
+            raise InputError(
+                f"surface '{name}': vertex {number} is {list(vertex)}; expected three finite coordinates "
+                "[x east, y north, z up] in metres"
+            )
+        corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
+    polygon = Polygon(name, tuple(corners))
     polygon._check()
     return polygon
 
