@@ -183,7 +183,7 @@ def _instants(clock: Sequence[datetime], timezone: tzinfo) -> Array:
         return np.asarray(moments - offset.total_seconds(), dtype=np.float64)
     import pandas as pd
 
-    stamps = pd.DatetimeIndex(clock)
+    stamps = pd.DatetimeIndex(list(clock))
     local = stamps.tz_localize(timezone, ambiguous=np.ones(len(stamps), bool), nonexistent="shift_forward")
     return np.asarray(
         local.tz_convert("UTC").tz_localize(None).to_numpy().astype("datetime64[s]"), dtype=np.float64
