@@ -94,7 +94,7 @@ def test_a_part_that_is_used_in_two_buildings_derives_again() -> None:
         (lambda: cell(materials={}), "expected: the name of a material"),
         (lambda: mc.Building.from_dict({"name": "x"}), "x: site\n  found: nothing"),
         (lambda: mc.Building.from_dict("x.yaml"), "Read files with Building.from_yaml"),  # type: ignore[arg-type]
-        (lambda: room().check("soon"), "expected a duration"),
+        (lambda: room().check("soon"), "expected a positive time"),
     ],
 )
 def test_errors_say_where_and_what(make: Any, message: str) -> None:
@@ -271,7 +271,9 @@ def test_a_docstring_has_its_sections_in_the_order_of_numpydoc() -> None:
 
 
 def test_a_step_of_another_type_is_refused() -> None:
-    with pytest.raises(InputError, match=r"step: found \[\]; expected a duration such as '15min'"):
+    with pytest.raises(
+        InputError, match=r"step: found \[\]; expected a positive time such as 900, 15min or 1h"
+    ):
         room().check([])  # type: ignore[arg-type]
 
 

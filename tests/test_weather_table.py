@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError
 from mascarin.weather.columns import Column
 from mascarin.weather.table import read_table
-from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
+from mascarin.weather.times import epoch_seconds, stamps_of
 from mascarin.weather.timezones import parse_timezone
 
 HEADER = "time,T,G\n"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -68,6 +70,22 @@ def amount(size: float) -> str:
         if size >= factor:
             return f"{size / factor:.3g} {unit}" if size < 1000 * factor else f"{size / factor:.0f} {unit}"
     return f"{size / 1e3:.0f} kB"
+
+
+@contextlib.contextmanager
+def uncollected() -> Iterator[None]:
+    """Keep Python from looking for circles of objects meanwhile; a decorator of functions, too.
+
+    A description becomes hundreds of thousands of objects that all stay. Each search for circles among them
+    goes through all again, which takes as long as what is done with them.
+    """
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
 
 
 def _machine() -> int | None:

@@ -11,10 +11,11 @@ from pydantic import ValidationError, model_validator
 
 from mascarin._io import atomic, display
 from mascarin._io.arguments import mapping_of
+from mascarin._io.durations import seconds_of
 from mascarin._io.listing import Listing
 from mascarin.building import outputs as results
 from mascarin.building import summary
-from mascarin.building.checks import check, seconds_of
+from mascarin.building.checks import check
 from mascarin.building.derived import DERIVED
 from mascarin.building.description import Description
 from mascarin.building.engine_input import EngineDescription, describe
@@ -483,8 +484,7 @@ class Building(Description):
         >>> cell.to_engine().paths[0]
         'site.altitude'
         """
-        numbers = [one for one in self.parameters() if not one.members]
-        return describe(self, numbers, step_seconds, spread_ranges(self, ranges or {}))
+        return describe(self, step_seconds, spread_ranges(self, ranges or {}))
 
     # --- how it is shown ------------------------------------------------------------------------------------
 

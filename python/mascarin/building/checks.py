@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from mascarin._io.memory import uncollected
 from mascarin.building.air import density, heat_capacity
 from mascarin.building.description import Description
 from mascarin.building.driven import Driven
 from mascarin.building.glazing import Glazing, SimpleGlazing
 from mascarin.building.humidity_rules import humidity_lines
 from mascarin.building.inactive import sides as every_side
-from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.mesh import Mesh, choose
 from mascarin.building.parameters import parameters
 from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.plausibility import warnings
-from mascarin.building.ratings import window_ratings
+from mascarin.building.ratings import WindowRating, window_ratings
 from mascarin.building.self_shading import in_words
 from mascarin.building.site import wind_factor
-from mascarin.building.surface import Side, Surface
+from mascarin.building.surface import Side
 from mascarin.building.u_values import (
     described_u_value,
     described_window_u_value,
@@ -33,12 +33,12 @@ from mascarin.building.ventilation import VentilationUnit
 from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone import AirPath, Zone
 from mascarin.building.zone_surfaces import closed
-from mascarin.errors import InputError
 
 #: SDIRK2 satisfies the maximum principle for steps below this many times the smallest time constant.
 SDIRK2_BOUND = 2.4
 
 
+@uncollected()
 def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     """Describe a building in lines of text.
 
@@ -62,15 +62,15 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     >>> check(load(examples.FOLDER / "lgi" / "building.yaml"))[0]
     'LGI cell: 2 zones, 13 surfaces, 333 parameters'
     """
-    mesh = choose(building, step_seconds)
+    mesh, ratings = choose(building, step_seconds), window_ratings(building, step_seconds)
     return [
         f"{building.name}: {_count(len(building.zones), 'zone')}, "
         f"{_count(len(building.surfaces), 'surface')}, {_count(len(parameters(building)), 'parameter')}",
         *_zones(building),
         *_in_zones(building),
         *_surfaces(building),
-        *_windows(building),
-        *_blinds(building),
+        *_windows(building, ratings),
+        *_blinds(building, ratings),
         *_constructions(building, mesh, step_seconds),
         *_winds(building),
         *humidity_lines(building),
@@ -87,14 +87,18 @@ def _count(number: int, noun: str) -> str:
 
 def _zones(building: Description) -> Iterator[str]:
     for name, zone in building.zones.items():
+        names = dict(building.connections.sides(name))
         surfaces = [building.surfaces[surface] for surface, _ in building.connections.sides(name)]
         area = sum(surface.area or 0.0 for surface in surfaces)
-        shell = [surface for surface in surfaces if not surface.internal_mass]
-        names = {surface for surface, _ in building.connections.sides(name)}
-        total = sum(_own_area(building, surface) * u_value(building, surface) for surface in shell)
-        glazed = [window for window in building.windows.values() if window.surface in names]
+        shell = [
+            (_own_area(building, surface), building.surfaces[surface])
+            for surface, _ in building.connections.sides(name)
+            if not building.surfaces[surface].internal_mass
+        ]
+        total = sum(own * u_value(building, surface) for own, surface in shell)
+        glazed = [one for wall in names for one in building.connections.windows_in(wall).values()]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
-        meant = sum(_own_area(building, surface) * described_u_value(building, surface) for surface in shell)
+        meant = sum(own * described_u_value(building, surface) for own, surface in shell)
         meant += sum(_described_ua(building, window) for window in glazed)
         heavy = density(building.site)
         air = zone.infiltration.constant * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
@@ -197,10 +201,10 @@ def _scheduled(schedule: str | None) -> str:
     return "" if schedule is None else f", by schedule {schedule}"
 
 
-def _own_area(building: Description, surface: Surface) -> float:
+def _own_area(building: Description, surface: str) -> float:
     """Area of a surface without its windows [m2]."""
-    inside = (window for window in building.windows.values() if building.surfaces[window.surface] is surface)
-    return float(surface.area or 0.0) - sum(float(window.area or 0.0) for window in inside)
+    inside = building.connections.windows_in(surface).values()
+    return float(building.surfaces[surface].area or 0.0) - sum(float(window.area or 0.0) for window in inside)
 
 
 def _exchange(building: Description, zone: str) -> str:
@@ -224,7 +228,7 @@ def _surfaces(building: Description) -> Iterator[str]:
         )
 
 
-def _windows(building: Description) -> Iterator[str]:
+def _windows(building: Description, ratings: Mapping[str, WindowRating]) -> Iterator[str]:
     for name, window in building.windows.items():
         u = window_u_value(building, window)
         frame = f", frame {100.0 * window.frame.fraction:g} %" if window.frame is not None else ""
@@ -233,7 +237,7 @@ def _windows(building: Description) -> Iterator[str]:
             f"U {u:.3f} W/(m2 K), surface resistances of ISO 6946"
             f"{_as_described(u, described_window_u_value(building, window), ' of the glass')}"
         )
-    for name, rating in window_ratings(building).items():
+    for name, rating in ratings.items():
         yield (
             f"window {name}: glass of U {rating.u_value:.2f} W/(m2 K) and solar heat gain "
             f"{rating.solar_heat_gain:.3f} by EN 673 and EN 410, solar transmittance "
@@ -242,11 +246,11 @@ def _windows(building: Description) -> Iterator[str]:
         )
 
 
-def _blinds(building: Description) -> Iterator[str]:
+def _blinds(building: Description, ratings: Mapping[str, WindowRating]) -> Iterator[str]:
     """What closes the blinds of windows, and the U value of the glass behind them."""
     if all(window.blind is None for window in building.windows.values()):
         return
-    for name, rating in window_ratings(building).items():
+    for name, rating in ratings.items():
         blind = building.windows[name].blind
         if blind is None:
             continue
@@ -342,10 +346,9 @@ def _two_curves(material: PhaseChangeMaterial, model: str, cooling: FractionLaw,
 
 def assumptions(building: Description) -> Iterator[str]:
     """Assumed values: numbers marked as assumed, and models chosen because none is given."""
-    for path, number, source in leaves(building):
+    for number in parameters(building):
         if number.assumed:
-            unit = number.quantity.unit if number.quantity else ""
-            yield f"{path} = {number:g} {unit} ({source or 'no source'})"
+            yield f"{number.path} = {number.value:g} {number.unit} ({number.source or 'no source'})"
     outdoors = [item.side for item in every_side(building) if item.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: infrared of the weather file, else martin_berdahl, because none is given"
@@ -357,17 +360,3 @@ def assumptions(building: Description) -> Iterator[str]:
             yield f"zones.{name}.sun: area (solar radiation over all surfaces, part of it lost through glass)"
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: view factors by areas, zero between surfaces in one plane"
-
-
-def seconds_of(step: str | float) -> float:
-    """Duration of a time step in seconds, from a number or a text such as ``15min``."""
-    try:
-        if not isinstance(step, str):
-            return float(step)
-        import pandas as pd
-
-        return float(pd.Timedelta(step).total_seconds())
-    except (TypeError, ValueError):
-        raise InputError(
-            f"step: found {step!r}; expected a duration such as '15min' or a number [s]"
-        ) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
@@ -79,12 +80,18 @@ def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
     drawn = outlines(surfaces)
     if not drawn:
         return {}
-    from mascarin.building.geometry import net_areas
-
     try:
-        return dict(zip(drawn, map(float, net_areas(list(drawn.values()))), strict=True))
+        return dict(zip(drawn, _net_areas(tuple(drawn.values())), strict=True))
     except InputError as error:
         refuse(fault(("surfaces",), *_sentence(error)))
+
+
+@lru_cache(maxsize=4)
+def _net_areas(drawn: tuple[Polygon, ...]) -> tuple[float, ...]:
+    """The areas of the same polygons are needed by several rules [m2]."""
+    from mascarin.building.geometry import net_areas
+
+    return tuple(map(float, net_areas(drawn)))
 
 
 def _derived_surface(

@@ -74,7 +74,8 @@ def inherited(
         A base that is not there, or that extends one of the files before it.
     """
     plain, found = read(file)
-    lines: dict[Place, int] = {place: Line(line, str(file)) for place, line in found.items()}
+    named = {line: Line(line, str(file)) for line in set(found.values())}
+    lines: dict[Place, int] = {place: named[line] for place, line in found.items()}
     base = plain.pop(EXTENDS, None)
     if base is None:
         return Inherited(plain, lines, (file,))

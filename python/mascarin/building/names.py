@@ -13,7 +13,7 @@ from mascarin.building.number import problem, shown
 from mascarin.errors import did_you_mean
 
 #: Names that parts of the description being read may refer to, by section.
-_names: ContextVar[Mapping[str, tuple[str, ...]] | None] = ContextVar("names", default=None)
+_names: ContextVar[Mapping[str, Mapping[str, None]] | None] = ContextVar("names", default=None)
 
 
 def _name(text: str) -> str:
@@ -36,7 +36,7 @@ def known_names(description: Any) -> Iterator[None]:
     sections = {}
     for section in ("materials", "constructions", "zones", "surfaces", "schedules", "glazings", "controls"):
         named = description.get(section) if isinstance(description, Mapping) else None
-        sections[section] = tuple(map(str, named)) if isinstance(named, Mapping) else ()
+        sections[section] = dict.fromkeys(map(str, named)) if isinstance(named, Mapping) else {}
     token = _names.set(sections)
     try:
         yield

@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic_core import PydanticCustomError, core_schema
@@ -235,17 +236,17 @@ class Limits:
     at_least: float | None = None
     at_most: float | None = None
 
-    @property
+    @cached_property
     def lower(self) -> float:
         """Lower end, whether or not it belongs to the interval."""
         return next((x for x in (self.above, self.at_least) if x is not None), -math.inf)
 
-    @property
+    @cached_property
     def least(self) -> float:
         """Smallest value inside."""
         return self.lower if self.above is None else self.above + SMALLEST
 
-    @property
+    @cached_property
     def upper(self) -> float:
         """Upper end."""
         return math.inf if self.at_most is None else self.at_most

@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.part import worked_out
 from mascarin.building.surface import Side
 from mascarin.errors import InputError, did_you_mean
 
@@ -166,6 +167,10 @@ class Output:
 
 def outputs(building: Description) -> list[Output]:
     """All results of a building: zones, surfaces, sensors, in the order of the description."""
+    return list(worked_out(building, "_outputs", lambda: _found(building)))
+
+
+def _found(building: Description) -> list[Output]:
     found = [
         Output(f"{name}.{kind}", "degC", kind, zone=index)
         for index, name in enumerate(building.zones)

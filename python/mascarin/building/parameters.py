@@ -14,6 +14,7 @@ from mascarin._io.listing import Listing
 from mascarin.building.inactive import without_effect
 from mascarin.building.leaves import leaves
 from mascarin.building.number import Number
+from mascarin.building.part import worked_out
 from mascarin.building.set_points import cut_ranges
 from mascarin.errors import InputError, did_you_mean
 
@@ -110,7 +111,11 @@ def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
 
 
 def parameters(building: Description) -> list[Parameter]:
-    """All numbers of a building, in the order of the description."""
+    """All numbers of a building, in the order of the description; the list must not be changed."""
+    return worked_out(building, "_numbers", lambda: _found(building))
+
+
+def _found(building: Description) -> list[Parameter]:
     inactive, cut = without_effect(building), cut_ranges(building)
     measured = _measured_powers(building)
     inactive = {**dict.fromkeys(measured, _MEASURED), **inactive}
@@ -141,6 +146,7 @@ def _parameter(
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
     low, high = cut or number.plausible
+    structural = number.structural
     if not low < high:
         inactive = inactive or "its default range has no width: give a range"
     return Parameter(
@@ -154,8 +160,8 @@ def _parameter(
         description=quantity.description,
         source=source or None,
         assumed=number.assumed,
-        structural=number.structural,
-        reason=quantity.spread.reason if number.structural else inactive,
+        structural=structural,
+        reason=quantity.spread.reason if structural else inactive,
         range_reason=_range_reason(quantity.spread.reason, number, cut),
         above=quantity.limits.above,
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, get_args
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
@@ -12,7 +13,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 from mascarin._io import display
 from mascarin.building.documenting import documented, signature_of
 from mascarin.building.explaining import explained
-from mascarin.building.number import CHECK_SIGN, Number, noted_form, problem, quantity_of, shown
+from mascarin.building.number import CHECK_SIGN, Number, Quantity, noted_form, problem, quantity_of, shown
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 Location = tuple[int | str, ...]
+Made = TypeVar("Made")
 
 
 #: Names that completion leaves out: those of pydantic, and what only this package uses.
@@ -215,11 +217,36 @@ class Part(BaseModel, metaclass=PartType):
             return quantity.expectation
         return f"{key} ({field.description})" if field.description else key
 
+    def __getstate__(self) -> dict[Any, Any]:
+        """What is pickled: the fields; what was worked out from them is worked out again when needed."""
+        state: dict[Any, Any] = super().__getstate__()
+        fields = type(self).model_fields
+        return {**state, "__dict__": {key: value for key, value in self.__dict__.items() if key in fields}}
+
     def _fill(self, **values: Any) -> None:
         """Set what the user did not give; only while the part is being made."""
         for found in self.__dict__.keys() - type(self).model_fields.keys():
             del self.__dict__[found]  # a cached property, worked out without these values
         self.__dict__.update(values)
+
+
+def worked_out(part: Part, key: str, make: Callable[[], Made]) -> Made:
+    """What follows from a part, kept with it as a cached property is: a part is immutable.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    key : str
+        Name of what follows, which is no field.
+    make : callable
+        Works it out.
+    """
+    kept = part.__dict__
+    if key not in kept:
+        kept[key] = make()
+    made: Made = kept[key]
+    return made
 
 
 def _or_list(schema: dict[str, Any]) -> None:
@@ -314,9 +341,12 @@ def derived_number(part: type[Part], key: str, value: float, source: str, *, ass
     assumed : bool
         Whether it is an assumption and does not follow from the description.
     """
-    return Number(
-        value, source=source, assumed=assumed, derived=True, quantity=quantity_of(part.model_fields[key])
-    )
+    return Number(value, source=source, assumed=assumed, derived=True, quantity=_quantity(part, key))
+
+
+@cache
+def _quantity(part: type[Part], key: str) -> Quantity | None:
+    return quantity_of(part.model_fields[key])
 
 
 def merged(faults: list[InitErrorDetails]) -> ValidationError:

@@ -107,7 +107,8 @@ def _implausible_volumes(building: Description) -> Iterator[str]:
                 f"zones.{name}: {area:.2f} m2 of surfaces cannot enclose {volume:g} m3 "
                 f"(a sphere needs {least:.2f} m2): surfaces are missing, or the volume is too large"
             )
-        seen = enclosure(building.connections.sides(name), building.surfaces)
+        given = zone.volume is None or not zone.volume.derived
+        seen = enclosure(building.connections.sides(name), building.surfaces) if given else None
         if seen is not None:
             try:
                 drawn = enclosed_volume(seen)

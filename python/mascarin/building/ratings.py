@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from mascarin.building.description import Description
 from mascarin.building.engine_input.description import describe
-from mascarin.building.parameters import parameters
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ class WindowRating:
     diffuse_transmittance: float
 
 
-def window_ratings(building: Description) -> dict[str, WindowRating]:
+def window_ratings(building: Description, step_seconds: float = 900.0) -> dict[str, WindowRating]:
     """U value, solar heat gain and transmittance of the glass of every window, without its frame.
 
     The engine computes them with the gaps and optics of a run, with glass of 2.5 degC outside and 17.5 degC
@@ -47,6 +46,9 @@ def window_ratings(building: Description) -> dict[str, WindowRating]:
     ----------
     building : Building
         The building.
+    step_seconds : float
+        Time step of the runs, for which the building is described to the engine anyhow; ratings do not depend
+        on it. [s]
 
     Returns
     -------
@@ -67,10 +69,9 @@ def window_ratings(building: Description) -> dict[str, WindowRating]:
     """
     if not building.windows:
         return {}
-    from mascarin import _engine
-    from mascarin.engine_errors import translated
+    from mascarin.engine_errors import plan_of, translated  # the engine, which a description needs no more of
 
-    described = describe(building, parameters(building), 900.0, {})
+    described = describe(building, step_seconds)
     with translated():
-        found = _engine.Plan(described.json).window_ratings(described.values)
+        found = plan_of(described.json).window_ratings(described.values)
     return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, found, strict=True)}

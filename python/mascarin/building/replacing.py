@@ -13,6 +13,8 @@ from mascarin.errors import InputError
 
 def without_parts(value: Any) -> Any:
     """The same value with mappings in place of the parts in it, so that they are read and checked again."""
+    if isinstance(value, str | float | int):
+        return value
     if isinstance(value, Part):
         return written_value(value)
     if isinstance(value, Mapping):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from mascarin.building.derived import outlines, shade_outlines, window_outlines
 from mascarin.building.geometry import InFront
+from mascarin.building.part import worked_out
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
@@ -43,6 +44,10 @@ def obstructions(building: Description) -> dict[SideName, list[str]]:
     >>> obstructions(box())
     {}
     """
+    return worked_out(building, "_obstructions", lambda: _obstructions(building))
+
+
+def _obstructions(building: Description) -> dict[SideName, list[str]]:
     if not building.site.self_shading:
         return {}
     drawn = outlines(building.surfaces)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, model_validator
@@ -167,6 +168,12 @@ class Exposure(Part):
     )
 
 
+@cache
+def _exposure(*, exposed: bool) -> Exposure:
+    """To everything, or to nothing."""
+    return Exposure(sun=exposed, wind=exposed, sky=exposed)
+
+
 class Side(Part):
     """One side of a surface: what it faces, and how it exchanges heat with that.
 
@@ -246,8 +253,8 @@ class Side(Part):
     def exposed(self) -> Exposure:
         """Parts of the weather that act on it; none unless it faces outdoors."""
         if not self.outdoors:
-            return Exposure(sun=False, wind=False, sky=False)
-        return self.exposure or Exposure()
+            return _exposure(exposed=False)
+        return self.exposure or _exposure(exposed=True)
 
     @property
     def sunlit(self) -> bool:

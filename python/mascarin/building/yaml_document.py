@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,11 +11,12 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
+from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
 from mascarin.building.part import Part
-from mascarin.building.yaml_nodes import compose
+from mascarin.building.yaml_nodes import compose, number_of
 from mascarin.errors import InputError
 
 AnyPart = TypeVar("AnyPart", bound=Part)
@@ -25,8 +27,11 @@ MOST_VALUES = 100_000
 MOST_LEVELS = 50
 #: Longer whole numbers are no quantities; the time to read one grows with the square of its digits.
 MOST_DIGITS = 40
+#: Halves of surrogate pairs.
+_HALVES = re.compile("[\ud800-\udfff]")
 
 
+@uncollected()
 def read(
     path: str | Path,
     kind: type[AnyPart],
@@ -217,10 +222,10 @@ class _Document:
         if len(above) > MOST_LEVELS:
             self._too_deep(node.start_mark.line)
         self.lines.setdefault(place, node.start_mark.line + 1)
-        inside = above | {id(node)}
         if node.id == "mapping" and node.tag == "tag:yaml.org,2002:map":
-            return dict(self._items(node, place, inside))
+            return dict(self._items(node, place, above | {id(node)}))
         if node.id == "sequence" and node.tag == "tag:yaml.org,2002:seq":
+            inside = above | {id(node)}
             return [self._value(item, (*place, index), inside) for index, item in enumerate(node.value)]
         return self._scalar(node, place)
 
@@ -282,7 +287,7 @@ class _Document:
             )
             return None
         try:
-            return getattr(self.scalars, f"construct_yaml_{kind}")(node)
+            return number_of(self.scalars, kind, node.value)
         except (ValueError, KeyError, IndexError, OverflowError):
             found = f"the tag '{kind}' on the text '{node.value[:40]}'"
             self._refuse(line, _text(place), found, "plain values", "Remove the tag.")
@@ -291,7 +296,7 @@ class _Document:
     def _words(self, node: Any, place: Place) -> str | None:
         """A text; half of a surrogate pair, which an escape can write, is no character."""
         text: str = node.value
-        if any("\ud800" <= letter <= "\udfff" for letter in text):
+        if _HALVES.search(text):
             found = f"the text {text[:40]!r} with half of a surrogate pair"
             self._refuse(node.start_mark.line, _text(place), found, "text", "Write the letter itself.")
             return None

@@ -1,31 +1,40 @@
 """The nodes of a YAML 1.2 text, each with its line.
 
 ruamel.yaml decides what YAML 1.2 is: which texts are valid, and which words are numbers. Its scanner is
-written in Python and takes longer than everything else that is done with a description. A text is therefore
-first divided into events by libyaml, the C library behind PyYAML. What libyaml refuses, or could read in
-another way, ruamel.yaml reads alone.
+written in Python and takes longer than everything else that is done with a description. Nodes are therefore
+made by libyaml, the C library behind PyYAML. What libyaml refuses, or could read in another way, ruamel.yaml
+reads alone.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from string import ascii_letters
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ruamel.yaml import YAML
-    from ruamel.yaml.nodes import Node
+    from ruamel.yaml.nodes import ScalarNode
 
 #: Line ends of YAML 1.1 that are letters in YAML 1.2, the byte order mark, the first letter of directives,
 #: tabs, and marks with a comment after them.
 _OTHERWISE_READ = ("\x85", "\u2028", "\u2029", "\ufeff", "\n%", "\t", "\r", "|#", ">#")
 #: Names of anchors with letters that end them in YAML 1.1.
 _OTHER_ANCHORS = re.compile(r"[&*][\w-]*[^\w\s,\]}-]", re.ASCII)
+#: Tags, which are written with other letters in YAML 1.1.
+_TAGS = re.compile(r"(?:^|[\s,\[\]{}:?\"'-])!")
+#: Words that both libraries know: decimal numbers, and those whose first letter makes them text.
+_WHOLE = re.compile(r"-?[0-9]+")
+_COUNT = re.compile(r"-?(?:0|[1-9][0-9]*)")
+_DECIMAL = re.compile(r"-?[0-9]+\.[0-9]*")
+_BEGIN_WORDS = frozenset(ascii_letters) - frozenset("tTfFnN")
+_PREFIX = "tag:yaml.org,2002:"
+_COLLECTIONS = {"SequenceNode": "seq", "MappingNode": "map"}
 #: Nodes in nodes; the recursion of Python ends below this.
 _MOST_LEVELS = 100
 
 
-def compose(yaml: YAML, text: str) -> Node | None:
+def compose(yaml: YAML, text: str) -> Any:
     """Read the nodes of a text.
 
     Parameters
@@ -38,7 +47,8 @@ def compose(yaml: YAML, text: str) -> Node | None:
     Returns
     -------
     Node or None
-        The root; None of an empty text. Nodes have tags by the rules of YAML 1.2, and marks with their lines.
+        The root, of PyYAML or ruamel.yaml; None of an empty text. Nodes have tags by the rules of YAML 1.2,
+        and marks with their lines.
 
     Raises
     ------
@@ -60,18 +70,17 @@ def compose(yaml: YAML, text: str) -> Node | None:
 def _surely_read(text: str) -> bool:
     """Whether both libraries read what is in a text in the same way."""
     otherwise = text.startswith("%") or any(map(text.__contains__, _OTHERWISE_READ))
-    return not otherwise and _OTHER_ANCHORS.search(text) is None
+    return not otherwise and _OTHER_ANCHORS.search(text) is None and _TAGS.search(text) is None
 
 
-def _fast(yaml: YAML, text: str) -> Node | None:
+def _fast(yaml: YAML, text: str) -> Any:
     """The root by libyaml; None where ruamel.yaml has to decide."""
     try:
-        from yaml.cyaml import CParser
         from yaml.error import YAMLError
+
+        return _composer()(yaml, text).get_single_node()
     except (ImportError, AttributeError):  # PyYAML without its C library, or an import that was interrupted
         return None
-    try:
-        return _Composer(yaml, CParser(text)).document()
     except (YAMLError, _Undecided, ValueError):
         return None
 
@@ -80,67 +89,72 @@ class _Undecided(Exception):
     """ruamel.yaml has to decide how a text is read."""
 
 
-class _Composer:
-    """Nodes of ruamel.yaml from the events of a parser."""
+def _composer() -> Any:
+    """Class that makes nodes by libyaml, with the tags that ruamel.yaml gives to plain words."""
+    from yaml.cyaml import CParser
 
-    def __init__(self, yaml: YAML, parser: Any) -> None:
-        from ruamel.yaml import nodes
-        from yaml import events
+    class Composer(CParser):  # type: ignore[misc]  # without types
+        def __init__(self, yaml: YAML, text: str) -> None:
+            super().__init__(text)
+            self._resolver, self._level = yaml.resolver, 0
+            self._known: dict[str, str] = {}
 
-        # Imports in functions take longer than what is done with one event.
-        self._kinds, self._events = nodes, events
-        self._next, self._resolver = parser.get_event, yaml.resolver
-        self._tags: dict[tuple[str, tuple[bool, bool]], Any] = {}
-        self._anchors: dict[str, Node] = {}
+        def descend_resolver(self, _parent: object, _index: object) -> None:
+            self._level += 1
+            if self._level > _MOST_LEVELS:
+                raise _Undecided
 
-    def document(self) -> Node:
-        """The root of the only document."""
-        start = [self._next() for _ in range(2)]
-        if not isinstance(start[1], self._events.DocumentStartEvent):
-            raise _Undecided
-        root = self._node(self._next(), 0)
-        end = [self._next() for _ in range(2)]
-        if not isinstance(end[1], self._events.StreamEndEvent):
-            raise _Undecided
-        return root
+        def ascend_resolver(self) -> None:
+            self._level -= 1
 
-    def _node(self, event: Any, level: int) -> Node:
-        if isinstance(event, self._events.AliasEvent):
-            return self._anchored(event.anchor)
-        # Tags are written with other letters in YAML 1.1.
-        if event.tag is not None or event.anchor in self._anchors or level > _MOST_LEVELS:
-            raise _Undecided
-        marks = (event.start_mark, event.end_mark)
-        if isinstance(event, self._events.ScalarEvent):
-            scalar = self._kinds.ScalarNode(self._tag(event), event.value, *marks, style=event.style or None)
-            return self._noted(event, scalar)
-        if isinstance(event, self._events.SequenceStartEvent):
-            items = self._kinds.SequenceNode("tag:yaml.org,2002:seq", [], *marks)
-            self._noted(event, items).value.extend(self._until(self._events.SequenceEndEvent, level))
-            return items
-        pairs = self._kinds.MappingNode("tag:yaml.org,2002:map", [], *marks)
-        pieces = self._until(self._events.MappingEndEvent, level)
-        self._noted(event, pairs).value.extend(zip(pieces, pieces, strict=True))
-        return pairs
+        def resolve(self, kind: type, value: str | None, implicit: Any) -> str:
+            if value is None:
+                return f"{_PREFIX}{_COLLECTIONS[kind.__name__]}"
+            if not implicit[0] or value[:1] in _BEGIN_WORDS:
+                return f"{_PREFIX}str"
+            if _WHOLE.fullmatch(value):
+                return f"{_PREFIX}int"
+            if _DECIMAL.fullmatch(value):
+                return f"{_PREFIX}float"
+            if value not in self._known:
+                self._known[value] = str(self._resolver.resolve(_scalar_node(), value, implicit))
+            return self._known[value]
 
-    def _anchored(self, anchor: str) -> Node:
-        if anchor not in self._anchors:
-            raise _Undecided
-        return self._anchors[anchor]
+    return Composer
 
-    def _noted(self, event: Any, node: Node) -> Node:
-        """A node, from now on known by its anchor: an alias can be inside it."""
-        if event.anchor is not None:
-            self._anchors[event.anchor] = node
-        return node
 
-    def _until(self, end: type, level: int) -> Iterator[Node]:
-        """The nodes before an event of a kind."""
-        while not isinstance(event := self._next(), end):
-            yield self._node(event, level + 1)
+def _scalar_node() -> type[ScalarNode]:
+    from ruamel.yaml.nodes import ScalarNode
 
-    def _tag(self, event: Any) -> Any:
-        key = (event.value, event.implicit)
-        if key not in self._tags:
-            self._tags[key] = self._resolver.resolve(self._kinds.ScalarNode, *key)
-        return self._tags[key]
+    return ScalarNode
+
+
+def number_of(yaml_constructor: Any, tag: str, text: str) -> Any:
+    """The number or truth value that a plain word is.
+
+    Parameters
+    ----------
+    yaml_constructor : ruamel.yaml.constructor.SafeConstructor
+        Makes values in Python of YAML 1.2.
+    tag : str
+        ``bool``, ``int`` or ``float``.
+    text : str
+        The word.
+
+    Raises
+    ------
+    ValueError, KeyError, IndexError, OverflowError
+        The word is none.
+
+    Examples
+    --------
+    >>> from ruamel.yaml import YAML
+    >>> number_of(YAML(typ="safe", pure=True).constructor, "float", "71e3")
+    71000.0
+    """
+    if tag == "int" and _COUNT.fullmatch(text):
+        return int(text)
+    if tag == "float" and _DECIMAL.fullmatch(text):
+        return float(text)
+    node = _scalar_node()(f"{_PREFIX}{tag}", text)
+    return getattr(yaml_constructor, f"construct_yaml_{tag}")(node)

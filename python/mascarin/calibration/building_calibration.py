@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.arguments import kind_of, mapping_of, require_type
+from mascarin._io.durations import seconds_of
 from mascarin.building.ties import expanded
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
@@ -26,7 +27,6 @@ from mascarin.simulation.simulation import Simulation
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
 from mascarin.weather import Measurements
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd

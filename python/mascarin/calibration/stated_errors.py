@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.calibration.joint import ErrorStatement
 from mascarin.calibration.refining import refined
 from mascarin.calibration.sensor_errors import SensorError
 from mascarin.errors import InputError
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     from mascarin.calibration.result import Calibration

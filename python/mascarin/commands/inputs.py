@@ -127,7 +127,7 @@ def seconds(text: str) -> float:
     InputError
         The text is not a positive time.
     """
-    from mascarin.weather.times import seconds_of
+    from mascarin._io.durations import seconds_of
 
     return seconds_of(text, "--step")
 

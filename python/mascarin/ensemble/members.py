@@ -6,10 +6,11 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.building.part import worked_out
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -91,6 +92,49 @@ class Members:
         return whole.hexdigest()
 
 
+#: Numbers of the buildings of other structures that are kept between check and run: some 50 MB of them.
+_MOST_NUMBERS: Final = 100_000
+
+
+def keep_variant(building: Building, structure: Mapping[str, Any]) -> None:
+    """Check a structure; the building is kept for its run, unless there are many.
+
+    Parameters
+    ----------
+    building : Building
+        The building that varies.
+    structure : mapping of str to any
+        What is replaced, by path.
+
+    Raises
+    ------
+    InputError
+        It cannot be replaced so.
+    """
+    variants = _variants(building)
+    changed = building.replace(structure)
+    if (len(variants) + 1) * len(building.parameters()) <= _MOST_NUMBERS:
+        variants[json.dumps(structure, sort_keys=True)] = changed
+
+
+def variant(building: Building, structure: Mapping[str, Any]) -> Building:
+    """The building with a structure, as its check has left it; it is not kept any longer.
+
+    Parameters
+    ----------
+    building : Building
+        The building that varies.
+    structure : mapping of str to any
+        What is replaced, by path.
+    """
+    kept = _variants(building).pop(json.dumps(structure, sort_keys=True), None)
+    return building.replace(structure) if kept is None else kept
+
+
+def _variants(building: Building) -> dict[str, Building]:
+    return worked_out(building, "_variants", dict[str, "Building"])
+
+
 def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Members:
     """Read samples by column.
 
@@ -124,7 +168,7 @@ def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Me
     found = Members(numbers, structures)
     for structure, rows in found.groups() if structures else []:
         try:
-            building.replace(structure)
+            keep_variant(building, structure)
         except InputError as error:
             raise InputError(f"samples: member {rows[0]}: {error}") from None
     return found

@@ -265,9 +265,13 @@ def _prepared(
     clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}
     if clash:
         raise InputError(f"objectives: '{clash.pop()}' is a variable of every result; choose another name")
-    whole = hashlib.sha256(inputs.compiled(_first_structure(members)).identity.encode())
+    structure = _first_structure(members)
+    compiled = inputs.compiled(structure)
+    whole = hashlib.sha256(compiled.identity.encode())
     whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
-    return replace(inputs, identity=whole.hexdigest()), members
+    inputs = replace(inputs, identity=whole.hexdigest())
+    inputs.keep(structure, compiled)
+    return inputs, members
 
 
 def _joined(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import _engine
+from mascarin.ensemble.members import variant
 from mascarin.errors import InputError, MascarinError
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.simulation import Simulation
@@ -66,19 +67,23 @@ class EnsembleInputs:
 
     def compiled(self, structure: Mapping[str, Any]) -> Simulation:
         """Compile the building with a structure in the climate."""
-        building = self.building.replace(structure) if structure else self.building
+        building = variant(self.building, structure) if structure else self.building
         return Simulation(building, self.climate, **self.options.keywords(), ranges=self.ranges)
 
     def simulation(self, structure: Mapping[str, Any]) -> Simulation:
         """The same, kept for the next chunk."""
         key = (self.identity, repr(sorted(structure.items())))
         if key not in _COMPILED:
-            _COMPILED[key] = self.compiled(structure)
-            held = sum(simulation.compiled.forcing.nbytes for simulation in _COMPILED.values())
-            while held > _MOST_COMPILED and len(_COMPILED) > 1:
-                held -= _COMPILED.popitem(last=False)[1].compiled.forcing.nbytes
+            self.keep(structure, self.compiled(structure))
         _COMPILED.move_to_end(key)
         return _COMPILED[key]
+
+    def keep(self, structure: Mapping[str, Any], simulation: Simulation) -> None:
+        """Keep what was compiled for a structure; those of the oldest chunks are dropped."""
+        _COMPILED[self.identity, repr(sorted(structure.items()))] = simulation
+        held = sum(simulation.compiled.forcing.nbytes for simulation in _COMPILED.values())
+        while held > _MOST_COMPILED and len(_COMPILED) > 1:
+            held -= _COMPILED.popitem(last=False)[1].compiled.forcing.nbytes
 
 
 _COMPILED: OrderedDict[tuple[str, str], Simulation] = OrderedDict()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
+from mascarin._io.durations import seconds_of
 from mascarin.building.set_points import tied_set_points
 from mascarin.building.ties import expanded, spread
 from mascarin.errors import InputError, SolverError
@@ -22,7 +23,6 @@ from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

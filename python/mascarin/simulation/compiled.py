@@ -14,7 +14,7 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin._io import memory
-from mascarin.engine_errors import translated
+from mascarin.engine_errors import plan_of, translated
 from mascarin.simulation.readings import Readings
 from mascarin.weather.timezones import parse_timezone
 
@@ -99,8 +99,7 @@ class CompiledRun:
     @cached_property
     def plan(self) -> _engine.Plan:
         """The engine's form of the description; made when it is first used, also after unpickling."""
-        with translated():
-            return _engine.Plan(self.description)
+        return plan_of(self.description)
 
     def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key != "plan"}

@@ -9,8 +9,8 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin._io import memory
+from mascarin._io.durations import seconds_of
 from mascarin.engine_errors import translated
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io import display
+from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
@@ -18,7 +19,6 @@ from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
 from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.arguments import names_of
+from mascarin._io.durations import seconds_of
 from mascarin.progress import reporting
 from mascarin.simulation import coarse
 from mascarin.simulation.compiled import MEMORY, CompiledRun
@@ -23,7 +24,6 @@ from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
-from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, Rules, solve
 from mascarin.calibration.building_problem import fit_parameter, problem_of
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
 from mascarin.study.comfort_step import require_rooms
 from mascarin.study.periods import overlap
 from mascarin.validation.observation import require_comparable
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.calibration import Rules
 from mascarin.calibration.joint import ErrorStatement
 from mascarin.calibration.refining import refined
@@ -15,7 +16,6 @@ from mascarin.calibration.sensor_errors import error_columns
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.description import DiscrepancyPlan
 from mascarin.study.kept import kept, kept_series
-from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

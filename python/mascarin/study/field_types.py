@@ -14,7 +14,7 @@ from mascarin.errors import InputError, did_you_mean
 
 def _duration(text: str) -> str:
     """A length of time that can be read."""
-    from mascarin.weather.times import seconds_of
+    from mascarin._io.durations import seconds_of
 
     try:
         seconds_of(text)

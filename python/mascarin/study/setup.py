@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
+from mascarin._io.durations import seconds_of
 from mascarin.building.ties import expanded, with_ties
 from mascarin.errors import InputError
 from mascarin.simulation.initial import Initial, MeasuredStart
@@ -25,7 +26,6 @@ from mascarin.study.periods import Timeline
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import Observation, observe
-from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -86,13 +88,8 @@ def forcing(
         A value in the period is missing or impossible, or a column is unknown.
     """
     out = np.empty((*steps.stage.shape, len(CHANNELS) + len(channels)))
-    reach = 5.0 * completed.grid.interval + 3600.0
     first = steps.first
-    sun = SunPath.over(float(site.latitude), float(site.longitude), first - reach, steps.last + reach, first)
-    _fill_sun(out, sun, steps.stage, first, source.grid)
-    for name in SOURCE_CHANNELS[:7]:
-        out[..., CHANNELS.index(name)] = _weather(completed, name, steps)
-    _fill_radiation(out, completed, sun, steps)
+    out[..., : len(CHANNELS)] = _at_place(completed, site, steps)
     for place, name in enumerate(channels, start=len(CHANNELS)):
         record = record_of(source, measured, name)
         record.grid.require(first, steps.last, f"{record.file}: {name}")
@@ -100,6 +97,38 @@ def forcing(
             require_range(record, name, limits[name], first, steps.last)
         out[..., place] = column_values(record, name, steps)
     return out
+
+
+def _at_place(completed: WeatherRecord, site: SiteLike, steps: Steps) -> Array:
+    """Weather and sun without measured columns; the last one is kept, for other buildings at the place."""
+    latitude, longitude = float(site.latitude), float(site.longitude)
+    key = (latitude, longitude, steps.first, steps.last, len(steps.stage), steps.weights)
+    if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
+        return _LAST[0].values
+    out = np.empty((*steps.stage.shape, len(CHANNELS)))
+    reach = 5.0 * completed.grid.interval + 3600.0
+    sun = SunPath.over(latitude, longitude, steps.first - reach, steps.last + reach, steps.first)
+    _fill_sun(out, sun, steps.stage, steps.first, completed.grid)
+    for name in SOURCE_CHANNELS[:7]:
+        out[..., CHANNELS.index(name)] = _weather(completed, name, steps)
+    _fill_radiation(out, completed, sun, steps)
+    if out.nbytes <= _MOST_KEPT:
+        _LAST[:] = [_Kept(completed, key, out)]
+    return out
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """Weather at the stages of the steps of a period."""
+
+    record: WeatherRecord
+    key: tuple[object, ...]
+    values: Array
+
+
+_LAST: Final[list[_Kept]] = []
+#: A year in steps of 15 min takes 10 MB. [B]
+_MOST_KEPT: Final = 16 * 2**20
 
 
 def _fill_sun(out: Array, sun: SunPath, stage: Array, origin: float, grid: Grid) -> None:

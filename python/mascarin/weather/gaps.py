@@ -8,11 +8,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array
 from mascarin.weather.quality import runs
 from mascarin.weather.record import Record
-from mascarin.weather.times import seconds_of
 
 R = TypeVar("R", bound=Record)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import tzinfo
+from datetime import datetime, timedelta, tzinfo
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
@@ -17,10 +17,9 @@ from mascarin.weather.climate import Climate
 from mascarin.weather.forcing import column_means, column_values, record_of
 from mascarin.weather.measurements import Measurements
 from mascarin.weather.steps import Steps
+from mascarin.weather.times import local_time
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from mascarin.building.courses import ColumnCourse
     from mascarin.building.schedule import Schedule
 
@@ -157,30 +156,34 @@ def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
     StraightPieces
         Times from the start of the span [s].
     """
-    import pandas as pd
-
-    ends = pd.to_datetime([first, last], unit="s", utc=True).tz_convert(timezone).tz_localize(None)
-    days = pd.date_range(
-        ends[0].normalize() - pd.Timedelta(days=1), ends[1].normalize() + pd.Timedelta(days=1)
-    )
-    starts: list[pd.Timestamp] = []
+    day, end = (local_time(seconds, timezone).date() for seconds in (first, last))
+    day, end = day - timedelta(days=1), end + timedelta(days=1)
+    starts: list[datetime] = []
     values: list[tuple[float, float]] = []
-    for day in days:
+    while day <= end:
+        midnight = datetime(day.year, day.month, day.day)  # by the local clock
         for minute, _, begin, finish in schedule.pieces(
-            day.weekday(), holiday=schedule.is_holiday(day.date()), season=schedule.season(day.date())
+            day.weekday(), holiday=schedule.is_holiday(day), season=schedule.season(day)
         ):
-            starts.append(day + pd.Timedelta(minutes=minute))
+            starts.append(midnight + timedelta(minutes=minute))
             values.append((begin, finish))
-    stamps = pd.DatetimeIndex([*starts, days[-1] + pd.Timedelta(days=1)])
-    knots = _instants(stamps, timezone) - first
+        day += timedelta(days=1)
+    knots = _instants([*starts, datetime(day.year, day.month, day.day)], timezone) - first
     pairs = np.array(values)
     # Where clocks go forward, the pieces in the skipped hour have no length.
     real = np.diff(knots) > 0.0
     return StraightPieces(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
 
 
-def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
+def _instants(clock: Sequence[datetime], timezone: tzinfo) -> Array:
     """Seconds since 1970-01-01 UTC of local times; the first one where an hour occurs twice."""
+    offset = timezone.utcoffset(None)
+    if offset is not None:  # clocks never change, and pandas takes longer to import than a run
+        moments = np.array(clock, dtype="datetime64[us]").astype(np.int64) * 1e-6
+        return np.asarray(moments - offset.total_seconds(), dtype=np.float64)
+    import pandas as pd
+
+    stamps = pd.DatetimeIndex(list(clock))
     local = stamps.tz_localize(timezone, ambiguous=np.ones(len(stamps), bool), nonexistent="shift_forward")
     return np.asarray(
         local.tz_convert("UTC").tz_localize(None).to_numpy().astype("datetime64[s]"), dtype=np.float64

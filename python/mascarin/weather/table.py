@@ -13,11 +13,12 @@ import numpy as np
 
 from mascarin._io import memory
 from mascarin._io.arguments import require_type
+from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash, read_frame, with_time_column
 from mascarin.weather.layout import EMPTY
-from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
+from mascarin.weather.times import epoch_seconds, stamps_of
 from mascarin.weather.timezones import (
     YEARS,
     fixed_offset,

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io.memory import uncollected
 from mascarin.building.course_uses import courses
 from mascarin.building.description import Description
 from mascarin.building.engine_input.air import (
@@ -37,7 +39,8 @@ from mascarin.building.engine_input.windows import (
 from mascarin.building.engine_input.zones import describe_zone
 from mascarin.building.mesh import Mesh, choose
 from mascarin.building.number import Interval
-from mascarin.building.parameters import Parameter
+from mascarin.building.parameters import parameters
+from mascarin.building.part import worked_out
 from mascarin.building.schedule import schedule_channel
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import CloudFactor, CloudLayer, Site
@@ -83,14 +86,27 @@ class EngineDescription:
 
 
 def describe(
-    building: Description,
-    parameters: Sequence[Parameter],
-    step_seconds: float,
-    ranges: Mapping[str, Interval],
+    building: Description, step_seconds: float, ranges: Mapping[str, Interval] | None = None
 ) -> EngineDescription:
-    """Describe a building to the engine; see `Building.to_engine`."""
+    """Describe a building to the engine; see `Building.to_engine`.
+
+    The last description is kept with the building: its check and its run need the same one.
+    """
+    kept = worked_out(building, "_described", dict[Any, EngineDescription])
+    key = (step_seconds, tuple(sorted((ranges or {}).items())))
+    if key not in kept:
+        kept.clear()
+        kept[key] = _describe(building, step_seconds, ranges or {})
+    found = kept[key]
+    return replace(found, paths=list(found.paths), values=found.values.copy(), channels=list(found.channels))
+
+
+@uncollected()
+def _describe(
+    building: Description, step_seconds: float, ranges: Mapping[str, Interval]
+) -> EngineDescription:
     mesh = choose(building, step_seconds, ranges)
-    leaves = [parameter for parameter in parameters if not parameter.structural]
+    leaves = [parameter for parameter in parameters(building) if not parameter.structural]
     ids = {leaf.path: index for index, leaf in enumerate(leaves)}
     columns = channels(building)
     schedules = list(courses(building))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.geometry.flat import TOLERANCE
+from mascarin.building.geometry.flat import TOLERANCE, edges
 from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.polygon import Polygon
 from mascarin.errors import InputError
@@ -92,9 +93,22 @@ def net_areas(polygons: Sequence[Polygon]) -> Array:
     InputError
         The surfaces in a surface leave nothing of it.
     """
+    return net_of(polygons, parents(polygons))
+
+
+def net_of(polygons: Sequence[Polygon], within: Sequence[int | None]) -> Array:
+    """Areas without the other surfaces inside the polygons, given the `parents`; see `net_areas`.
+
+    Parameters
+    ----------
+    polygons : sequence of Polygon
+        Any surfaces.
+    within : sequence of int or None
+        Their direct parents.
+    """
     areas = np.array([p.area for p in polygons])
     net = areas.copy()
-    for i, parent in enumerate(parents(polygons)):
+    for i, parent in enumerate(within):
         if parent is not None:
             net[parent] -= areas[i]
     for polygon, left in zip(polygons, net, strict=True):
@@ -122,15 +136,23 @@ def open_edges(polygons: Sequence[Polygon]) -> list[OpenEdge]:
     list of OpenEdge
         Empty if the volume is closed within :data:`TOLERANCE`.
     """
-    shell = [f for f, parent in zip(polygons, parents(polygons), strict=True) if parent is None]
-    if not shell:
+    return _gaps([f for f, parent in zip(polygons, parents(polygons), strict=True) if parent is None])
+
+
+def _gaps(shell: Sequence[Polygon]) -> list[OpenEdge]:
+    """The open edges of polygons of which none lies in another one."""
+    owners = [(polygon.name, *edge) for polygon in shell for edge in edges(polygon.vertices)]
+    # Most edges are covered by one that runs from end to start between the same corners.
+    backwards = Counter((end, start) for _, start, end in owners)
+    forwards = Counter((start, end) for _, start, end in owners)
+    left = [one for one in owners if forwards[one[1:]] != 1 or backwards[one[1:]] != 1]
+    if not left:
         return []
-    names = [polygon.name for polygon in shell for _ in polygon.points]
-    starts = np.concatenate([polygon.points for polygon in shell])
-    ends = np.concatenate([np.roll(polygon.points, -1, axis=0) for polygon in shell])
+    starts, ends = (np.array([one[k] for one in owners]) for k in (1, 2))
     gaps = []
-    for name, start, end in zip(names, starts, ends, strict=True):
-        gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in _uncovered(start, end, starts, ends)]
+    for name, start, end in left:
+        pieces = _uncovered(np.array(start), np.array(end), starts, ends)
+        gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in pieces]
     return gaps
 
 
@@ -173,7 +195,9 @@ def volume(polygons: Sequence[Polygon]) -> float:
     InputError
         There are gaps between the polygons, or they point out of the zone.
     """
-    gaps = open_edges(polygons)
+    within = parents(polygons)
+    shell = [polygon for polygon, parent in zip(polygons, within, strict=True) if parent is None]
+    gaps = _gaps(shell)
     wrong = _reversed(polygons) if gaps else []
     if wrong:
         raise InputError(
@@ -189,7 +213,7 @@ def volume(polygons: Sequence[Polygon]) -> float:
             f"the surfaces do not enclose the zone: {len(gaps)} open edges ({shown}{more}); "
             "expected every edge to belong to two surfaces; complete the vertices or give the volume"
         )
-    total = _signed_volume(polygons)
+    total = _signed_volume(polygons[0], shell)
     if total <= 0.0:
         raise InputError(
             f"the surfaces enclose {total:.3f} m3: their normals point out of the zone; "
@@ -200,12 +224,11 @@ def volume(polygons: Sequence[Polygon]) -> float:
     return total
 
 
-def _signed_volume(polygons: Sequence[Polygon]) -> float:
-    origin = polygons[0].points[0]
-    total = 0.0
-    for polygon, parent in zip(polygons, parents(polygons), strict=True):
-        if parent is None:
-            total -= polygon.area * float((polygon.points[0] - origin) @ polygon.normal) / 3.0
+def _signed_volume(first: Polygon, shell: Sequence[Polygon]) -> float:
+    """Volume from the polygons that lie in no other one, about a corner of one of them."""
+    origin, total = first.vertices[0], 0.0
+    for polygon in shell:
+        total += polygon.area * polygon.above(origin) / 3.0
     return total
 
 
@@ -233,8 +256,10 @@ def _reversed(polygons: Sequence[Polygon]) -> list[str]:
                 pending.append(other)
     for wrong in ({k for k, turn in turned.items() if turn}, {k for k, turn in turned.items() if not turn}):
         mended = [p.reversed() if k in wrong else p for k, p in enumerate(polygons)]
-        if 0 < len(wrong) < len(polygons) and not open_edges(mended) and _signed_volume(mended) > 0.0:
-            return [polygons[k].name for k in sorted(wrong)]
+        if 0 < len(wrong) < len(polygons):
+            shell = [p for p, parent in zip(mended, parents(mended), strict=True) if parent is None]
+            if not _gaps(shell) and _signed_volume(mended[0], shell) > 0.0:
+                return [polygons[k].name for k in sorted(wrong)]
     return []
 
 
@@ -256,7 +281,10 @@ def check_convex(polygons: Sequence[Polygon]) -> None:
     InputError
         A corner is behind a polygon.
     """
+    corners = np.concatenate([polygon.points for polygon in polygons])
     for polygon in polygons:
+        if float(np.min(polygon.height_of(corners))) >= -TOLERANCE:
+            continue
         for other in polygons:
             heights = polygon.height_of(other.points)
             worst = int(np.argmin(heights))

@@ -29,7 +29,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.geometry.enclosure import check_convex, net_areas, open_edges, parents
+from mascarin.building.geometry.enclosure import check_convex, net_areas, net_of, open_edges, parents
 from mascarin.building.geometry.polygon import Polygon, coplanar
 from mascarin.errors import InputError
 
@@ -61,14 +61,14 @@ def exchange_areas(polygons: Sequence[Polygon]) -> Array:
     InputError
         The zone is not convex.
     """
+    return _net_exchange(polygons, parents(polygons))
+
+
+def _net_exchange(polygons: Sequence[Polygon], within: Sequence[int | None]) -> Array:
     check_convex(polygons)
-    n = len(polygons)
-    gross = np.zeros((n, n))
-    for i in range(n):
-        for j in range(i + 1, n):
-            gross[i, j] = gross[j, i] = _exchange_area(polygons[i], polygons[j])
-    algebra = np.eye(n)
-    for child, parent in enumerate(parents(polygons)):
+    gross = _gross(_shape(polygons))
+    algebra = np.eye(len(polygons))
+    for child, parent in enumerate(within):
         if parent is not None:
             algebra[parent, child] = -1.0
     net = algebra @ gross @ algebra.T
@@ -94,7 +94,8 @@ def closed_exchange_areas(polygons: Sequence[Polygon]) -> Array:
     InputError
         The zone is not convex or not closed.
     """
-    exchange, areas = exchange_areas(polygons), net_areas(polygons)
+    within = parents(polygons)
+    exchange, areas = _net_exchange(polygons, within), net_of(polygons, within)
     sums = exchange.sum(axis=1) / areas
     worst = int(np.argmax(np.abs(sums - 1.0)))
     if abs(sums[worst] - 1.0) > CLOSURE_LIMIT:
@@ -132,20 +133,33 @@ def view_factors(polygons: Sequence[Polygon]) -> Array:
 # --- the contour integral --------------------------------------------------------------------------------
 
 
-def _exchange_area(a: Polygon, b: Polygon) -> float:
-    """A F between two polygons that see each other completely. [m2]"""
-    if coplanar(a, b):
-        return 0.0
-    origin = a.vertices[0]
-    return _relative_exchange_area(
-        *(tuple(_from(origin, corner) for corner in one.vertices) for one in (a, b))
+Shape = tuple[tuple[Point, ...], ...]
+
+
+def _shape(polygons: Sequence[Polygon]) -> Shape:
+    """Corners from the first one of all [m]: rooms of one shape are the same wherever they are."""
+    x, y, z = polygons[0].vertices[0]
+    return tuple(
+        tuple((round(u - x, 12), round(v - y, 12), round(w - z, 12)) for u, v, w in one.vertices)
+        for one in polygons
     )
 
 
-def _from(origin: Point, corner: Point) -> Point:
-    """A corner relative to another one [m]: rooms of one shape give the same numbers wherever they are."""
-    x, y, z = (round(to - at, 12) for at, to in zip(origin, corner, strict=True))
-    return x, y, z
+@lru_cache(maxsize=1024)
+def _gross(shape: Shape) -> Array:
+    """Exchange areas between polygons, none subtracted from another: equal rooms are worked out once. [m2]"""
+    polygons = [Polygon("", corners) for corners in shape]
+    found = np.zeros((len(polygons), len(polygons)))
+    for i, one in enumerate(polygons):
+        for j, other in enumerate(polygons[:i]):
+            found[i, j] = found[j, i] = _exchange_area(other, one)
+    found.flags.writeable = False
+    return found
+
+
+def _exchange_area(a: Polygon, b: Polygon) -> float:
+    """A F between two polygons that see each other completely. [m2]"""
+    return 0.0 if coplanar(a, b) else _relative_exchange_area(*_shape((a, b)))
 
 
 @lru_cache(maxsize=16384)

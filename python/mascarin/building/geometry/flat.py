@@ -8,21 +8,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 #: Distance below which two points, lines or planes of a building are the same. [m]
 TOLERANCE: Final = 1e-3
 
 Point: TypeAlias = Sequence[float]
 """Two coordinates. [m]"""
+Corner = TypeVar("Corner", bound=Sequence[float])
 
 
-def edges(outline: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
+def edges(outline: Sequence[Corner]) -> Iterator[tuple[Corner, Corner]]:
     """Both ends of each edge of an outline.
 
     Parameters
     ----------
-    outline : sequence of (x, y)
+    outline : sequence of (x, y) or (x, y, z)
         Corners in order. [m]
     """
     return zip(outline, [*outline[1:], outline[0]], strict=True)

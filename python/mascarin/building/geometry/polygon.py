@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,14 @@ from mascarin.building.geometry.flat import (
     inside,
     middles_of_pieces,
     on_outline,
+)
+from mascarin.building.geometry.space import (
+    Triple,
+    dot,
+    height,
+    subtracted,
+    vector_area,
+    vector_product,
 )
 from mascarin.errors import InputError
 
@@ -64,36 +73,32 @@ class Polygon:
             Fewer than three corners, a corner without three finite coordinates, corners that coincide, that
             enclose no area, that do not lie in one plane, or edges that cross.
         """
-        corners = []
-        for number, vertex in enumerate(vertices, start=1):
-            if len(vertex) != 3 or not all(math.isfinite(float(c)) for c in vertex):
-                raise InputError(
-                    f"surface '{name}': vertex {number} is {list(vertex)}; expected three finite coordinates "
-                    "[x east, y north, z up] in metres"
-                )
-            corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
-        return _checked(name, tuple(corners))
+        given = vertices if isinstance(vertices, tuple) else tuple(vertices)
+        try:
+            return _checked(name, given)
+        except TypeError:  # lists of coordinates
+            return _checked(name, tuple(map(tuple, given)))
 
     def _check(self) -> None:
         if len(self.vertices) < 3:
             raise InputError(f"surface '{self.name}': {len(self.vertices)} vertices; expected at least 3")
-        sides = np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1)
-        for number, length in enumerate(sides, start=1):
+        for number, (corner, other) in enumerate(edges(self.vertices), start=1):
+            length = math.dist(corner, other)
             if length < TOLERANCE:
                 following = number % len(self.vertices) + 1
                 raise InputError(
                     f"surface '{self.name}': vertices {number} and {following} are {length:.2g} m apart; "
                     f"expected at least {TOLERANCE} m; remove one of them"
                 )
-        vector = self._vector_area
-        size = float(np.max(sides))
-        reach = float(np.max(np.linalg.norm(self.points - self.points[0], axis=1)))
-        if float(np.linalg.norm(vector)) < max(TOLERANCE * size, SLENDER * reach**2):
+        size = max(math.dist(corner, other) for corner, other in edges(self.vertices))
+        reach = max(math.dist(corner, self.vertices[0]) for corner in self.vertices)
+        if self.area < max(TOLERANCE * size, SLENDER * reach**2):
             raise InputError(
                 f"surface '{self.name}': its vertices enclose no area; expected corners once around it"
             )
-        offsets = np.abs((self.points - self.points.mean(axis=0)) @ self.normal)
-        worst = int(np.argmax(offsets))
+        middle = [sum(along) / len(self.vertices) for along in zip(*self.vertices, strict=True)]
+        offsets = [abs(height(corner, middle, self._unit)) for corner in self.vertices]
+        worst = offsets.index(max(offsets))
         if offsets[worst] > TOLERANCE:
             raise InputError(
                 f"surface '{self.name}' is not plane: vertex {worst + 1} lies {offsets[worst]:.4f} m off "
@@ -120,33 +125,41 @@ class Polygon:
         return np.array(self.vertices, dtype=np.float64)
 
     @cached_property
-    def _vector_area(self) -> Array:
-        # Newell: half the sum of the cross products, taken about the first corner for accuracy.
-        p = self.points - self.points[0]
-        total: Array = 0.5 * np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
-        return total
+    def box(self) -> tuple[Triple, Triple]:
+        """Least and largest coordinates of the corners. [m]"""
+        along = list(zip(*self.vertices, strict=True))
+        (x, y, z), (u, v, w) = map(min, along), map(max, along)
+        return (x, y, z), (u, v, w)
+
+    @cached_property
+    def _vector_area(self) -> Triple:
+        return vector_area(self.vertices)
 
     @cached_property
     def area(self) -> float:
         """Area inside the outline. [m2]"""
-        return float(np.linalg.norm(self._vector_area))
+        return math.hypot(*self._vector_area)
+
+    @cached_property
+    def _unit(self) -> Triple:
+        x, y, z = self._vector_area
+        return x / self.area, y / self.area, z / self.area
 
     @cached_property
     def normal(self) -> Array:
         """Unit normal by the right-hand rule, shape (3,). [-]"""
-        unit: Array = self._vector_area / self.area
-        return unit
+        return np.array(self._unit)
 
     @cached_property
     def tilt(self) -> float:
         """Angle of the normal from straight up: 0 up, 90 vertical, 180 down. [deg]"""
-        up = float(self.normal[2])
-        return math.degrees(math.atan2(math.hypot(self.normal[0], self.normal[1]), up))
+        east, north, up = self._unit
+        return math.degrees(math.atan2(math.hypot(east, north), up))
 
     @cached_property
     def azimuth(self) -> float:
         """Direction of the normal, clockwise from north, in [0, 360); 0 for a horizontal polygon. [deg]"""
-        east, north = float(self.normal[0]), float(self.normal[1])
+        east, north, _ = self._unit
         if math.hypot(east, north) < 1e-9:
             return 0.0
         angle = math.degrees(math.atan2(east, north)) % 360.0
@@ -155,18 +168,30 @@ class Polygon:
     @cached_property
     def centroid(self) -> Array:
         """Centre of area, shape (3,). [m]"""
-        p = self.points - self.points[0]
-        triangles = 0.5 * np.cross(p[1:-1], p[2:]) @ self.normal
-        centre: Array = self.points[0] + triangles @ (p[1:-1] + p[2:]) / (3.0 * triangles.sum())
-        return centre
+        first = self.vertices[0]
+        p = [subtracted(corner, first) for corner in self.vertices]
+        weights = [0.5 * dot(vector_product(a, b), self._unit) for a, b in pairwise(p[1:])]
+        total = 3.0 * sum(weights)
+        return np.array(
+            [
+                first[k]
+                + sum(w * (a[k] + b[k]) for w, (a, b) in zip(weights, pairwise(p[1:]), strict=True)) / total
+                for k in range(3)
+            ]
+        )
 
     @cached_property
     def perimeter(self) -> float:
         """Length of the outline. [m]"""
-        return float(np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1).sum())
+        return sum(math.dist(corner, other) for corner, other in edges(self.vertices))
 
     def reversed(self) -> Polygon:
         """The same outline with the opposite normal."""
+        return self._back
+
+    @cached_property
+    def _back(self) -> Polygon:
+        # Kept: a wall between two zones is seen from both, again and again.
         return Polygon(self.name, self.vertices[::-1])
 
     def in_plane(self, points: Array) -> Array:
@@ -182,22 +207,41 @@ class Polygon:
         array, shape (m, 2)
             Coordinates along the first edge and across it. [m]
         """
-        coordinates: Array = (points - self.points[0]) @ self._frame.T
+        coordinates: Array = (points - self.points[0]) @ np.array(self._frame).T
         return coordinates
 
     @cached_property
-    def _frame(self) -> Array:
-        """Unit vectors along the first edge and across it, shape (2, 3)."""
-        along = self.points[1] - self.points[0]
-        along = along - (along @ self.normal) * self.normal
-        along = along / np.linalg.norm(along)
-        return np.stack([along, np.cross(self.normal, along)])
+    def _frame(self) -> tuple[Triple, Triple]:
+        """Unit vectors along the first edge and across it."""
+        edge = subtracted(self.vertices[1], self.vertices[0])
+        off = dot(edge, self._unit)
+        x, y, z = (e - off * n for e, n in zip(edge, self._unit, strict=True))
+        length = math.hypot(x, y, z)
+        along = (x / length, y / length, z / length)
+        return along, vector_product(self._unit, along)
 
     @cached_property
     def outline(self) -> list[list[float]]:
         """Corners in the frame of `in_plane`. [m]"""
-        corners: list[list[float]] = self.in_plane(self.points).tolist()
-        return corners
+        return self._flat(self)
+
+    def _flat(self, other: Polygon) -> list[list[float]]:
+        """Corners of a polygon in the frame of `in_plane`. [m]"""
+        first, (along, across) = self.vertices[0], self._frame
+        apart = (subtracted(corner, first) for corner in other.vertices)
+        return [[dot(one, along), dot(one, across)] for one in apart]
+
+    def above(self, point: Triple) -> float:
+        """Signed distance of a point from the plane, positive on the side of the normal. [m]"""
+        return height(point, self.vertices[0], self._unit)
+
+    def farthest(self, other: Polygon) -> float:
+        """Largest distance of a corner of another polygon from the plane. [m]"""
+        return max(abs(height(corner, self.vertices[0], self._unit)) for corner in other.vertices)
+
+    def turned(self, other: Polygon) -> float:
+        """Cosine of the angle between the normals. [-]"""
+        return dot(self._unit, other._unit)
 
     def height_of(self, points: Array) -> Array:
         """Signed distances of points from the plane, positive on the side of the normal, shape (m,). [m]"""
@@ -206,11 +250,9 @@ class Polygon:
 
     def contains(self, other: Polygon) -> bool:
         """Whether another polygon lies in this one: same plane, same normal, inside the outline."""
-        if float(self.normal @ other.normal) < 1.0 - 1e-6:
+        if self.turned(other) < 1.0 - 1e-6 or self.farthest(other) > TOLERANCE:
             return False
-        if float(np.max(np.abs(self.height_of(other.points)))) > TOLERANCE:
-            return False
-        corners = self.in_plane(other.points).tolist()
+        corners = self._flat(other)
         if not all(inside(self.outline, point) for point in corners):
             return False
         crossing = any(cross(a, b, c, d) for a, b in edges(self.outline) for c, d in edges(corners))
@@ -222,7 +264,7 @@ class Polygon:
             return False
         if self.contains(other) or other.contains(self):
             return True
-        here, there = self.outline, self.in_plane(other.points).tolist()
+        here, there = self.outline, self._flat(other)
         return any(
             inside(outline, middle) and not on_outline(outline, middle)
             for outline, cut in ((here, there), (there, here))
@@ -231,14 +273,21 @@ class Polygon:
 
 
 @lru_cache(maxsize=1 << 16)
-def _checked(name: str, corners: tuple[tuple[float, float, float], ...]) -> Polygon:
-    """Check a polygon once: the same polygons are needed many times for one description."""
-    polygon = Polygon(name, corners)
+def _checked(name: str, vertices: tuple[Sequence[float], ...]) -> Polygon:
+    """Make and check a polygon once: the same polygons are needed many times for one description."""
+    corners = []
+    for number, vertex in enumerate(vertices, start=1):
+        if len(vertex) != 3 or not all(math.isfinite(float(c)) for c in vertex):
+            raise InputError(
+                f"surface '{name}': vertex {number} is {list(vertex)}; expected three finite coordinates "
+                "[x east, y north, z up] in metres"
+            )
+        corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
+    polygon = Polygon(name, tuple(corners))
     polygon._check()
     return polygon
 
 
 def coplanar(a: Polygon, b: Polygon) -> bool:
     """Whether two polygons lie in one plane, whichever way their normals point."""
-    same_plane = float(np.max(np.abs(a.height_of(b.points)))) < TOLERANCE
-    return same_plane and abs(float(a.normal @ b.normal)) > 1.0 - 1e-6
+    return a.farthest(b) < TOLERANCE and abs(a.turned(b)) > 1.0 - 1e-6
