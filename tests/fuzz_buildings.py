@@ -18,6 +18,7 @@ import pandas as pd
 
 from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
+from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 
@@ -262,6 +263,9 @@ def _check(
     off = float(np.abs(other.records[:, place] - alone.records).max())
     if off > ORDER:
         problems.append(f"another order of the objects that changes the records by {off:.3g}")
+    if not passive:
+        problems += _linearly_implicit(building, weather, alone)
+        found.runs += 1
     if passive:
         air = weather.data["air_temperature"]
         low, high = min(float(air.min()), 9.0, 12.0), max(float(air.max()), 9.0, 12.0)
@@ -274,6 +278,24 @@ def _check(
     found.faults += [f"{problem}: {tree!r}" for problem in problems]
 
 
+def _linearly_implicit(building: Building, weather: Climate, alone: Results) -> list[str]:
+    """What does not hold in a run with one linear solve a stage, beside the run of the default scheme."""
+    run = Simulation(building, weather, step=STEP, scheme="linearly-implicit").run()
+    if not np.isfinite(run.records).all():
+        return ["records of the linearly implicit scheme that are not finite"]
+    problems = []
+    if not run.energy.closure <= CLOSED and not any("balance" in line for line in run.warnings):
+        problems.append(f"linearly implicit: a relative energy-balance residual of {run.energy.closure:.3g}")
+    airs = [k for k, output in enumerate(run.outputs) if output.kind == "air_temperature"]
+    off = run.records[:, airs] - alone.records[:, airs]
+    rms = float(np.sqrt(np.mean(off**2, axis=0)).max())
+    if rms > NEAR:
+        problems.append(f"linearly implicit: airs that differ from the default scheme by {rms:.3g} K (rms)")
+    return problems
+
+
+#: Airs of the linearly implicit scheme beside the default one, root mean square. [K]
+NEAR = 0.1
 #: Records of the same building in another order: the solver stops at other residuals. [K]
 ORDER = 1e-3
 #: Residuals of the solver, by which a temperature can pass a limit. [K]

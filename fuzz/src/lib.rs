@@ -61,8 +61,8 @@ impl Ready {
         });
         let options = Options {
             dt: call.dt,
-            scheme: [Scheme::Sdirk2, Scheme::BackwardEuler, Scheme::ApparentCapacity]
-                [usize::from(call.scheme % 3)],
+            scheme: [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler, Scheme::ApparentCapacity]
+                [usize::from(call.scheme % 4)],
             initial: Initial::Everywhere(call.initial),
             warmup,
             probes: call.probes,
