@@ -6,7 +6,8 @@ A row of N rooms, and an office of rooms on several storeys (no chain: a room to
 and with ideal loads. Both programs get the same polygons, layers, panes, laws of convection (TARP inside, ISO
 15099 at panes, DOE-2 outside), mass of outdoor air and infrared radiation of the sky, 15 min steps and one
 thread. The time is that of the processor for the whole process, start included; beside it the parts of
-Mascarin. Leave the machine alone meanwhile. (`bench/energyplus.py` says where to get EnergyPlus.)
+Mascarin, and the same with the linearly implicit scheme. Leave the machine alone meanwhile.
+(`bench/energyplus.py` says where to get EnergyPlus.)
 """
 
 from __future__ import annotations
@@ -462,7 +463,7 @@ import json, sys, time
 marks = [time.process_time()]
 import mascarin as mc, numpy as np, pandas as pd
 from mascarin.simulation import Simulation
-folder, weather, days = sys.argv[1], sys.argv[2], int(sys.argv[3])
+folder, weather, days, scheme = sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4]
 marks.append(time.process_time())
 building = mc.load(folder + "/building.yaml")
 marks.append(time.process_time())
@@ -470,7 +471,8 @@ climate = mc.Climate.from_epw(weather, typical=True)
 marks.append(time.process_time())
 names = [f"{zone}.air_temperature" for zone in building.zones]
 end = {} if days >= 365 else {"end": pd.Timestamp("2001-01-01") + pd.Timedelta(days=days)}
-simulation = Simulation(building, climate, step="15min", start="2001-01-01", outputs=names, **end)
+options = {"step": "15min", "start": "2001-01-01", "scheme": scheme, **end}
+simulation = Simulation(building, climate, outputs=names, **options)
 marks.append(time.process_time())
 run = simulation.run()
 marks.append(time.process_time())
@@ -496,12 +498,17 @@ def measured(words: list[str], folder: Path) -> float:
 
 @dataclass(frozen=True)
 class Result:
-    """What one building took in both programs, and how far apart the airs are."""
+    """What one building took in both programs, and how far apart the airs are.
+
+    `quick` and `quick_run`: the whole process and the run with the linearly implicit scheme.
+    """
 
     rooms: int
     loads: bool
     ours: float
     parts: dict[str, float]
+    quick: float
+    quick_run: float
     theirs: float
     difference: float
 
@@ -511,7 +518,10 @@ def compare(grid: Grid, loads: bool, days: int, weather: Path, energyplus: Path 
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "building.yaml").write_text(_yaml(description(grid, loads)))
-        ours = measured([sys.executable, "-c", CHILD, str(folder), str(weather), str(days)], folder)
+        words = [sys.executable, "-c", CHILD, str(folder), str(weather), str(days)]
+        quick = measured([*words, "linearly-implicit"], folder)
+        quick_run = json.loads((folder / "parts.json").read_text())["run"]
+        ours = measured([*words, "sdirk2"], folder)
         parts = json.loads((folder / "parts.json").read_text())
         theirs = difference = float("nan")
         if energyplus is not None:
@@ -528,7 +538,7 @@ def compare(grid: Grid, loads: bool, days: int, weather: Path, energyplus: Path 
             air = _hourly(folder / "out" / "eplusout.eso", grid.rooms)
             mine = np.load(folder / "mascarin.npy")
             difference = float(np.sqrt(np.mean((mine - air[:, : mine.shape[1]]) ** 2)))
-    return Result(len(grid.rooms), loads, ours, parts, theirs, difference)
+    return Result(len(grid.rooms), loads, ours, parts, quick, quick_run, theirs, difference)
 
 
 def _yaml(parts: dict[str, Any]) -> str:
@@ -592,6 +602,8 @@ def main() -> None:
                     f"{found.parts['memory']:.0f} MB",
                     f"{found.theirs:.1f} s",
                     f"{found.theirs / found.ours:.1f}",
+                    f"{found.quick_run:.2f} s",
+                    f"{found.theirs / found.quick:.1f}",
                     f"{found.difference:.2f} K",
                 ]
             )
@@ -604,6 +616,8 @@ def main() -> None:
         "run",
         "memory",
         "EnergyPlus",
+        "ratio",
+        "run, linearly implicit",
         "ratio",
         "airs apart (rms)",
     ]
