@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from mascarin._io.memory import amount
 from mascarin.building.air_rules import air_faults
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
 from mascarin.building.course_uses import schedule_uses
@@ -31,6 +32,11 @@ Faults = Iterator["InitErrorDetails"]
 VIEW_FACTOR_TOLERANCE = 0.05
 #: Largest deviation from one of the sum of given fractions of the sun; the engine scales them [-].
 FRACTION_TOLERANCE = 0.02
+#: Surfaces of one zone, glass and frames of windows included. All exchange radiation with each other.
+MOST_SURFACES = 1000
+#: What one zone takes with that many surfaces, measured: memory, which grows with the square of their number
+#: [B], and processor time of a day in steps of 15 min, which grows with the cube [s].
+_MEMORY_OF_MOST, _TIME_OF_MOST = 92e6, 36.0
 
 
 def faults(building: Description) -> Faults:
@@ -39,6 +45,7 @@ def faults(building: Description) -> Faults:
     yield from _one_namespace(building)
     yield from _layers_have_what_they_need(building)
     yield from _zones_have_surfaces(building)
+    yield from _zones_have_not_too_many_surfaces(building)
     yield from _emissivities_where_exchange_is(building)
     yield from _convection_suits_its_side(building)
     yield from _sensors_inside_walls(building)
@@ -109,6 +116,26 @@ def _zones_have_surfaces(building: Description) -> Faults:
                 "a zone that no surface faces",
                 "at least one side with 'zone: " + zone + "'",
                 "Add a surface that faces it, or remove the zone.",
+            )
+
+
+def _zones_have_not_too_many_surfaces(building: Description) -> Faults:
+    """Refuse what would compute for days, before anything is made for it."""
+    counts = Counter(side.zone for _, side in _sides(building) if side.zone is not None)
+    for window in building.windows.values():
+        for side in building.surfaces[window.surface].sides:
+            if side.zone is not None:
+                counts[side.zone] += 1 if window.frame is None else 2
+    for zone, count in counts.items():
+        if count > MOST_SURFACES:
+            times = count / MOST_SURFACES
+            size, minutes = amount(_MEMORY_OF_MOST * times**2), _TIME_OF_MOST * times**3 / 60.0
+            yield fault(
+                ("zones", zone),
+                f"{count} surfaces, all of which exchange radiation: a run would take {size} of memory and "
+                f"about {minutes:.2g} min for each day",
+                f"at most {MOST_SURFACES} surfaces in a zone, glass and frames of windows included",
+                "Join surfaces of one construction and direction, or split the zone.",
             )
 
 
