@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::lanes::Lanes;
 use crate::number::macros::{add_assign, chain_rule};
-use crate::number::real::{Equations, LinearSystem, Logistic, Real};
+use crate::number::real::{Equations, LinearSystem, Logistic, Real, SteadyTerm};
 
 /// A number with `K` forward derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ impl<const K: usize> Dual<K> {
     /// f(self) from the value and slope of f.
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
-        Self { value, slope: self.slope.map(|s| s * slope) }
+        Self { value, slope: Lanes(self.slope).scale(slope).0 }
     }
 }
 
@@ -37,20 +37,14 @@ impl<const K: usize> Add for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            slope: core::array::from_fn(|i| self.slope[i] + other.slope[i]),
-        }
+        Self { value: self.value + other.value, slope: (Lanes(self.slope) + Lanes(other.slope)).0 }
     }
 }
 impl<const K: usize> Sub for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            slope: core::array::from_fn(|i| self.slope[i] - other.slope[i]),
-        }
+        Self { value: self.value - other.value, slope: (Lanes(self.slope) - Lanes(other.slope)).0 }
     }
 }
 impl<const K: usize> Mul for Dual<K> {
@@ -58,10 +52,8 @@ impl<const K: usize> Mul for Dual<K> {
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            slope: core::array::from_fn(|i| self.slope[i] * other.value + self.value * other.slope[i]),
-        }
+        let slope = Lanes(self.slope).scale(other.value) + Lanes(other.slope).scale(self.value);
+        Self { value: self.value * other.value, slope: slope.0 }
     }
 }
 impl<const K: usize> Div for Dual<K> {
@@ -80,7 +72,7 @@ impl<const K: usize> Neg for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, slope: self.slope.map(|s| -s) }
+        Self { value: -self.value, slope: (-Lanes(self.slope)).0 }
     }
 }
 add_assign!([const K: usize] Dual<K>);
@@ -128,8 +120,18 @@ pub struct EquationSlopes<const K: usize> {
 impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
     #[inline(always)]
     fn begin(&mut self, equations: usize) {
-        self.rows.clear();
         self.rows.resize(equations, Lanes::zero());
+        self.rows.fill(Lanes::zero());
+    }
+
+    #[inline(always)]
+    fn add_steady(&mut self, terms: &[SteadyTerm<Dual<K>>], known: &[f64]) {
+        for &SteadyTerm { number, between: [a, b], equations, factors } in terms {
+            let difference = known[a] - known[b];
+            for (equation, factor) in equations.into_iter().zip(factors) {
+                self.add(equation, number, factor * difference);
+            }
+        }
     }
 
     #[inline(always)]
@@ -146,9 +148,14 @@ impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
         solution: [&mut [Dual<K>]; 3],
     ) {
         system.solve(&mut self.rows, &mut self.scratch);
-        let found = self.rows.iter().zip(at);
-        for (unknown, (slope, &value)) in solution.into_iter().flatten().zip(found) {
-            *unknown = Dual { value, slope: slope.0 };
+        let (mut rows, mut values) = (&self.rows[..], at);
+        for unknowns in solution {
+            let (own, rest) = rows.split_at(unknowns.len());
+            let (own_values, rest_values) = values.split_at(unknowns.len());
+            for ((unknown, slope), &value) in unknowns.iter_mut().zip(own).zip(own_values) {
+                *unknown = Dual { value, slope: slope.0 };
+            }
+            (rows, values) = (rest, rest_values);
         }
     }
 }
@@ -203,5 +210,18 @@ mod tests {
         equations.solve(0, &Triangle, &[1.0, 3.0], [&mut x, &mut y, &mut []]);
         assert_eq!(x[0], Dual { value: 1.0, slope: [0.5, -0.375] });
         assert_eq!(y[0], Dual { value: 3.0, slope: [0.0, 0.75] });
+    }
+
+    #[test]
+    fn a_steady_term_is_added_to_both_of_its_equations() {
+        // p = 10 is multiplied by 5 - 3, and -2 and 3 times that are added: slopes 2 (-2) and 2 (3).
+        let number = Dual::<1>::variable(10.0, 0);
+        let term = SteadyTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
+        let mut equations = EquationSlopes::default();
+        equations.begin(2);
+        equations.add_steady(&[term], &[5.0, 1.0, 3.0]);
+        let (mut x, mut y) = ([Dual::zero()], [Dual::zero()]);
+        equations.solve(0, &Triangle, &[0.0; 2], [&mut x, &mut y, &mut []]);
+        assert_eq!((y[0].slope, x[0].slope), ([6.0 / 4.0], [(-4.0 - 6.0 / 4.0) / 2.0]));
     }
 }
