@@ -29,7 +29,7 @@ impl<const K: usize> Dual<K> {
     /// f(self) from the value and slope of f.
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
-        Self { value, slope: Lanes(self.slope).scale(slope).0 }
+        Self { value, slope: self.slope.map(|s| s * slope) }
     }
 }
 
@@ -37,14 +37,20 @@ impl<const K: usize> Add for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self { value: self.value + other.value, slope: (Lanes(self.slope) + Lanes(other.slope)).0 }
+        Self {
+            value: self.value + other.value,
+            slope: core::array::from_fn(|i| self.slope[i] + other.slope[i]),
+        }
     }
 }
 impl<const K: usize> Sub for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self { value: self.value - other.value, slope: (Lanes(self.slope) - Lanes(other.slope)).0 }
+        Self {
+            value: self.value - other.value,
+            slope: core::array::from_fn(|i| self.slope[i] - other.slope[i]),
+        }
     }
 }
 impl<const K: usize> Mul for Dual<K> {
@@ -52,8 +58,10 @@ impl<const K: usize> Mul for Dual<K> {
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let slope = Lanes(self.slope).scale(other.value) + Lanes(other.slope).scale(self.value);
-        Self { value: self.value * other.value, slope: slope.0 }
+        Self {
+            value: self.value * other.value,
+            slope: core::array::from_fn(|i| self.slope[i] * other.value + self.value * other.slope[i]),
+        }
     }
 }
 impl<const K: usize> Div for Dual<K> {
@@ -72,7 +80,7 @@ impl<const K: usize> Neg for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, slope: (-Lanes(self.slope)).0 }
+        Self { value: -self.value, slope: self.slope.map(|s| -s) }
     }
 }
 add_assign!([const K: usize] Dual<K>);

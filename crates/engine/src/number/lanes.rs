@@ -17,19 +17,12 @@ pub struct LaneMask<const N: usize>([bool; N]);
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
-        // A loop: the functions of arrays are not always inlined, and are then compiled without wide instructions.
-        for number in &mut self.0 {
-            *number = f(*number);
-        }
-        self
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(core::array::from_fn(|i| f(self.0[i])))
     }
     #[inline(always)]
-    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        for (number, other) in self.0.iter_mut().zip(other.0) {
-            *number = f(*number, other);
-        }
-        self
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(core::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 }
 
