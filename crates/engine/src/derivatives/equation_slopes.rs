@@ -3,65 +3,32 @@
 //! Each term of each balance ([`crate::balance::terms`]) is differentiated by its coefficients with the product rule; the
 //! temperatures are constants, those of the solution. Equations count heat into a node as positive, in the order and scale of
 //! [`crate::linear::stage_matrix`]: of cells and of surfaces outside the zones per square metre, of all others whole; the equation
-//! of a surface held at a temperature is that temperature.
+//! of a surface held at a temperature is that temperature. Terms that are the same in all stages but for the solution are left to
+//! [`super::steady_terms`].
 
-use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink};
-use crate::building::coefficients::{Coefficients, Matter};
+use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink, Stage};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
 use crate::linear::building_system::is_held;
+use crate::linear::stage_matrix::StageMatrix;
 use crate::linear::wall::{Link, Storage};
 use crate::number::line::Line;
 use crate::number::real::{Equations, Real};
-use crate::physics::longwave::Emission;
-use crate::step::Stepper;
 
-/// Which constant coefficients have derivatives (terms are not differentiated by the others), and scales.
+/// Which areas have derivatives (terms are not differentiated by the others), and scales.
 #[derive(Debug, Clone)]
 pub(super) struct Carries {
-    /// By wall: its area, conductances, heat capacities.
+    /// By wall: its area.
     area: Vec<bool>,
-    links: Vec<bool>,
-    capacity: Vec<bool>,
-    /// By zone: exchange areas between its surfaces, and the slope of a linear law of emission.
-    exchange: Vec<bool>,
-    emission: Vec<bool>,
     /// Scales of the equations of surfaces.
     scales: BySurface<Scale>,
 }
 
-/// Whether one of some numbers has derivatives.
-fn any<S: Real>(numbers: impl IntoIterator<Item = S>) -> bool {
-    numbers.into_iter().any(S::carries)
-}
-
 impl Carries {
-    pub(super) fn new<S: Real>(stepper: &Stepper<'_, S>) -> Self {
-        let model = &stepper.model;
-        let Coefficients { walls, zones, .. } = &model.coefficients;
-        let heat = |matter: &Matter<S>| match *matter {
-            Matter::Solid { capacity, .. } => capacity,
-            Matter::Pcm(_) => S::zero(),
-        };
-        let cells = walls.iter().map(|wall| wall.cells.iter());
+    pub(super) fn new<S: Real>(model: &Model<'_, S>) -> Self {
         Self {
-            area: walls.iter().map(|wall| wall.area.carries()).collect(),
-            links: stepper
-                .solver
-                .system
-                .walls
-                .iter()
-                .map(|chain| any(chain.links.iter().map(|link| link.left)))
-                .collect(),
-            capacity: cells
-                .map(|mut cells| cells.any(|cell| cell.thickness.carries() || heat(&cell.matter).carries()))
-                .collect(),
-            exchange: zones.iter().map(|zone| any(zone.exchange.iter().copied())).collect(),
-            emission: zones
-                .iter()
-                .map(|zone| matches!(zone.emission, Emission::Linearised(reference) if reference.carries()))
-                .collect(),
+            area: model.coefficients.walls.iter().map(|wall| wall.area.carries()).collect(),
             scales: model
                 .plan
                 .surfaces
@@ -75,7 +42,7 @@ impl Carries {
 
 /// Scale of an equation.
 #[derive(Debug, Clone, Copy)]
-enum Scale {
+pub(super) enum Scale {
     /// Heat per square metre [W/m2].
     PerArea,
     /// Heat [W].
@@ -85,7 +52,7 @@ enum Scale {
 }
 
 impl Scale {
-    fn of<S: Real>(model: &Model<'_, S>, surface: SurfaceId) -> Self {
+    pub(super) fn of<S: Real>(model: &Model<'_, S>, surface: SurfaceId) -> Self {
         match model.plan.surfaces[surface].role {
             SurfaceRole::Zone { .. } => Self::Whole,
             _ if is_held(model, surface) => Self::Held,
@@ -103,9 +70,8 @@ pub(super) struct EquationSlopes<'a, S: Real> {
     at: &'a [f64],
     /// Whether the size of the current term has derivatives: an area, a share, or the number 1.
     size_carries: bool,
-    /// The current wall and zone.
+    /// The current wall.
     wall: usize,
-    zone: usize,
 }
 
 impl<'a, S: Real> EquationSlopes<'a, S> {
@@ -117,7 +83,25 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
         at: &'a [f64],
     ) -> Self {
         equations.begin(at.len());
-        Self { model, carries, equations, at, size_carries: false, wall: 0, zone: 0 }
+        Self { model, carries, equations, at, size_carries: false, wall: 0 }
+    }
+
+    /// Heat that the cells of the walls of constant properties hold when the stage begins.
+    #[inline(always)]
+    pub(super) fn hold_heat(&mut self, stage: &Stage<'_, S>, matrix: &StageMatrix<'_>) {
+        for &w in &self.model.parts.linear_walls {
+            let (cells, chain) = (self.model.cells(w), &matrix.system.walls[w]);
+            let contents = stage.start.cells[cells.clone()].iter().zip(&stage.first.cells[cells.clone()]);
+            let laws = chain.rate.iter().zip(&chain.storage);
+            for ((cell, (&start, &first)), (rate, storage)) in cells.zip(contents).zip(laws) {
+                let heat = rate * storage.capacity;
+                self.equations.add(cell, start, heat * (1.0 - stage.ratio));
+                // In the first stage `first` has no meaning yet.
+                if stage.ratio != 0.0 {
+                    self.equations.add(cell, first, heat * stage.ratio);
+                }
+            }
+        }
     }
 
     #[inline(always)]
@@ -181,35 +165,34 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     }
 
     #[inline(always)]
-    fn begin_zone(&mut self, zone: usize) {
-        self.zone = zone;
+    fn takes_wall(&self, wall: usize) -> bool {
+        self.model.plan.walls[wall].nonlinear
     }
 
     #[inline(always)]
     fn takes_radiation(&self) -> bool {
-        self.carries.exchange[self.zone] || self.carries.emission[self.zone]
+        false
     }
 
     #[inline(always)]
-    fn store_heat(&mut self, node: Node, [area, thickness]: [S; 2], capacity: S, held: Held<S>) {
-        let heat = thickness.lane(0) * capacity.lane(0) / held.length;
+    fn counts(&self) -> bool {
+        false
+    }
+
+    /// Of the airs: cells of walls of constant properties are steady terms.
+    #[inline(always)]
+    fn store_heat(&mut self, node: Node, _sizes: [S; 2], capacity: S, held: Held<S>) {
+        let heat = capacity.lane(0) / held.length;
         let mut start = held.start.lane(0);
         self.size_carries = false;
         if held.ratio == 0.0 {
-            self.add(node, 1.0, area, heat * (start - self.temperature(node)), [(held.start, heat)]);
+            self.add(node, 1.0, S::one(), 0.0, [(held.start, heat)]);
         } else {
             start += (held.first.lane(0) - start) * held.ratio;
             let slopes = [(held.start, heat * (1.0 - held.ratio)), (held.first, heat * held.ratio)];
-            self.add(node, 1.0, area, heat * (start - self.temperature(node)), slopes);
+            self.add(node, 1.0, S::one(), 0.0, slopes);
         }
-        if matches!(node, Node::Air(_)) || self.carries.capacity[self.wall] {
-            let rise = (start - self.temperature(node)) / held.length;
-            let row = self.row(node);
-            self.equations.add(row, capacity, thickness.lane(0) * rise);
-            if let Node::Cell(_) = node {
-                self.equations.add(row, thickness, capacity.lane(0) * rise);
-            }
-        }
+        self.equations.add(self.row(node), capacity, (start - self.temperature(node)) / held.length);
     }
 
     #[inline(always)]
@@ -237,17 +220,12 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         self.add(Node::Cell(cell), 1.0, area, 0.0, slopes);
     }
 
+    /// Between airs: links of walls of constant properties are steady terms.
     #[inline(always)]
     fn conduct(&mut self, ends: [Node; 2], area: S, conductance: S) {
         let difference = self.temperature(ends[0]) - self.temperature(ends[1]);
-        let heat = conductance.lane(0) * difference;
-        let of_path = matches!(ends[0], Node::Air(_));
-        self.size_carries = !of_path && self.carries.area[self.wall];
-        if of_path || self.carries.links[self.wall] {
-            self.between(ends, area, heat, [(conductance, difference)]);
-        } else if self.size_carries {
-            self.between(ends, area, heat, []);
-        }
+        self.size_carries = false;
+        self.between(ends, area, conductance.lane(0) * difference, [(conductance, difference)]);
     }
 
     #[inline(always)]
@@ -295,23 +273,9 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         }
     }
 
+    /// Steady terms.
     #[inline(always)]
-    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: S, [from, to]: [&Line<S>; 2]) {
-        let ends = surfaces.map(Node::Surface);
-        let [a, b] = ends.map(|node| self.temperature(node));
-        if self.carries.exchange[self.zone] {
-            self.size_carries = true;
-            self.between(ends, area, Line::of(from).at(a) - Line::of(to).at(b), []);
-        }
-        // The exact law depends on the solution only. A linear law is the same at both ends: its offsets cancel.
-        if self.carries.emission[self.zone] {
-            let heat = area.lane(0) * (a - b);
-            for (node, sign) in ends.into_iter().zip([-1.0, 1.0]) {
-                let row = self.row(node);
-                self.equations.add(row, from.slope, sign * heat);
-            }
-        }
-    }
+    fn radiate(&mut self, _surfaces: [SurfaceId; 2], _area: S, _emission: [&Line<S>; 2]) {}
 
     #[inline(always)]
     fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>) {

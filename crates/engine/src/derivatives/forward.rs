@@ -79,10 +79,13 @@ pub fn slopes_along(
         .collect::<Result<_, _>>()?;
     let groups: Vec<_> = parts.into_iter().flatten().collect();
     let records = groups[0].records.iter().map(|record| record.value).collect();
-    let slopes = groups.iter().flat_map(|group| {
-        (0..group.parameters).flat_map(|k| group.records.iter().map(move |record| record.slope[k]))
-    });
-    Ok(Jacobian { records, slopes: slopes.collect() })
+    let mut slopes = Vec::with_capacity(directions.len() * groups[0].records.len());
+    for group in &groups {
+        for k in 0..group.parameters {
+            slopes.extend(group.records.iter().map(|record| record.slope[k]));
+        }
+    }
+    Ok(Jacobian { records, slopes })
 }
 
 /// Number of parameters whose slopes are computed together.

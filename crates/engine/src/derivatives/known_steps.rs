@@ -11,6 +11,7 @@ use crate::error::EngineError;
 use crate::linear::stage_matrix::StageMatrix;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Equations, Real};
+use crate::number::tape::{Taped, add_steady_weights};
 use crate::run::Action;
 use crate::step::known_solution::StagePlace;
 use crate::step::stage_solutions::Solution;
@@ -19,6 +20,7 @@ use crate::step::{Scheme, Stepper};
 use crate::weather::conditions::{Instant, Weather};
 
 use super::equation_slopes::{Carries, EquationSlopes};
+use super::steady_terms::{KnownValues, Parts, SteadyTerms};
 
 /// A stepper whose numbers have derivatives, and the plain matrices at the known solutions.
 #[derive(Debug, Clone)]
@@ -28,8 +30,9 @@ pub(super) struct DerivativeStepper<'a, S: Real> {
     matrices: Vec<StageMatrix<'a>>,
     equations: S::Equations,
     carries: Carries,
-    /// The solution of the current stage: cells, surfaces, airs [degC].
-    at: Vec<f64>,
+    steady: SteadyTerms<S>,
+    /// What is known of each stage.
+    known: Vec<KnownValues>,
     /// Responses of all unknowns to each ideal load [K/W].
     responses: Vec<Vec<f64>>,
     scratch: Vec<f64>,
@@ -41,11 +44,14 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         let plain: Vec<f64> = numbers.iter().map(|number| number.lane(0)).collect();
         let matrix = StageMatrix::new(plan, &plain, scheme.tableau().diagonal);
         let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
+        let known = KnownValues::new(&stepper.model);
+        let steady = SteadyTerms::find(&stepper, &known);
         Self {
             matrices: vec![matrix; scheme.weights().len()],
             equations: S::Equations::default(),
-            carries: Carries::new(&stepper),
-            at: vec![0.0; unknowns],
+            carries: Carries::new(&stepper.model),
+            steady,
+            known: vec![known; scheme.weights().len()],
             responses: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
             scratch: Vec::new(),
             stepper,
@@ -141,16 +147,23 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
 
     /// One stage: the slopes of its equations at the solution, and from them the slopes of the solution.
     #[inline(always)]
-    fn stage(&mut self, state: &State<S>, place: StagePlace, known: &Unknowns<f64>) {
-        let Self { stepper, matrices, equations, carries, at, .. } = self;
-        let matrix = &mut matrices[place.stage];
+    fn stage(&mut self, state: &State<S>, place: StagePlace, solved: &Unknowns<f64>) {
+        let Self { stepper, matrices, equations, carries, steady, known, .. } = self;
+        let (matrix, values) = (&mut matrices[place.stage], &mut known[place.stage]);
         let new = matrix.factor_linear_walls(place.length);
-        stepper.write_known_solution(state, place, known, matrix, at);
-        stepper.linearise_known_stage(state, place, known);
+        stepper.linearise_known_stage(state, place, solved);
+        let Parts { solution, cooling, emission } = values.parts();
+        stepper.write_known_solution(solved, solution);
+        stepper.write_known_cells(&steady.walls, (state, place, solved), matrix, [solution, cooling]);
+        stepper.write_emission(&steady.surfaces, solved, emission);
         let Balances { walls, laws, conditions, .. } = stepper.balances();
         matrix.factor((laws, walls, conditions), place.length, new);
+        let contents = stepper.stage_of(state, place);
+        let at = values.solution();
         let mut slopes = EquationSlopes::new(&stepper.model, carries, equations, at);
-        stepper.balances().visit(&stepper.stage_of(state, place), &mut slopes);
+        stepper.balances().visit(&contents, &mut slopes);
+        slopes.hold_heat(&contents, matrix);
+        equations.add_steady(&steady.terms, values.all());
         stepper.store_solution(
             #[inline(always)]
             |solution| equations.solve(place.stage, matrix, at, solution),
@@ -182,9 +195,12 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
             stepper.set_response(p, &rows[first_air..]);
         }
     }
+}
 
-    /// Weights on the equations of a stage from weights on its solution, in place.
-    pub(super) fn solve_transposed(&mut self, stage: usize, weights: &mut [f64]) {
-        self.matrices[stage].solve_transposed(weights, &mut self.scratch);
+impl DerivativeStepper<'_, Taped> {
+    /// Weights on the equations of a stage from weights on its solution, in place; those on the numbers of steady terms are added.
+    pub(super) fn pull(&mut self, stage: usize, equations: &mut [f64], weights: &mut [f64]) {
+        self.matrices[stage].solve_transposed(equations, &mut self.scratch);
+        add_steady_weights(&self.steady.terms, self.known[stage].all(), equations, weights);
     }
 }

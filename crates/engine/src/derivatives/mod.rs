@@ -4,7 +4,7 @@
 //! - Reverse (`reverse`): the operations of each step are recorded on a tape. Result: one quantity by all parameters.
 //!
 //! Both start from the known solutions of a run of plain numbers (`known_steps`): only the slopes of the equations are
-//! differentiated (`equation_slopes`), and the slopes of the solution follow by the implicit function theorem. Where no
+//! differentiated (`equation_slopes`, `steady_terms`), and the slopes of the solution follow by the implicit function theorem. Where no
 //! solution is known (a halved step), Newton's iteration itself is differentiated, with one more iteration, so that its
 //! slopes converge too. At a switch (the ends of a melting range, a curve of hysteresis, windward and leeward, the start of
 //! a load) the slope is the one-sided one of the branch taken.
@@ -15,6 +15,7 @@ mod equation_slopes;
 mod forward;
 mod known_steps;
 mod reverse;
+mod steady_terms;
 
 pub use forward::{Direction, Jacobian, jacobian, slopes_along};
 pub use reverse::Trajectory;

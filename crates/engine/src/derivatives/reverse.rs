@@ -277,12 +277,13 @@ impl<'a> ReversePass<'a> {
                 record.add_weight(*weight, &mut self.weights);
             }
         }
-        Tape::propagate(&mut self.weights, self.base, |stage, weights| {
-            stepper.solve_transposed(stage, weights);
+        Tape::propagate(&mut self.weights, self.base, |stage, equations, weights| {
+            stepper.pull(stage, equations, weights);
         });
         let before = &mut self.weights[self.base - self.state.len()..self.base];
-        self.state.copy_from_slice(before);
-        before.fill(0.0);
+        for (mine, weight) in self.state.iter_mut().zip(before) {
+            *mine = core::mem::take(weight);
+        }
         if !known {
             // The stepper holds factors whose entries are about to be removed from the tape.
             self.stepper = self.fresh.clone();
@@ -297,7 +298,7 @@ impl<'a> ReversePass<'a> {
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         start.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
-        Tape::propagate(&mut self.weights, leaves.len() + 1, |_, _| {});
+        Tape::propagate(&mut self.weights, leaves.len() + 1, |_, _, _| {});
         self.weights[1..=leaves.len()].to_vec()
     }
 }

@@ -140,6 +140,9 @@ impl<S: Real> ThickWalls<S> {
     /// Completes a solution that was found without the couplings; `solve` replaces a right-hand side by such a solution.
     #[inline(always)]
     pub(crate) fn complete(&self, solution: &mut [S], solve: impl Fn(&mut [S])) {
+        if self.is_empty() {
+            return;
+        }
         let mut change = solution.to_vec();
         let mut heat = vec![S::zero(); solution.len()];
         let mut round = S::zero();
@@ -168,6 +171,9 @@ impl ThickWalls<f64> {
         transposed: bool,
         mut solve: impl FnMut(&mut [R]),
     ) {
+        if self.is_empty() {
+            return;
+        }
         let mut change = solution.to_vec();
         let mut heat = vec![R::zero(); solution.len()];
         let mut round = 0.0;

@@ -296,7 +296,7 @@ impl<S: Real> PhaseChange<S> {
         for PcmLayer { law, cells } in &self.layers {
             let temperatures = &at.cells[cells.clone()];
             let (points, storage) = (&mut self.points[cells.clone()], &mut storage[cells.clone()]);
-            wall.pcm[*law].at_all(temperatures, &start.memory[cells.clone()], points);
+            wall.pcm[*law].at_all(temperatures, &start.memory[cells.clone()], points, false);
             for ((storage, point), &temperature) in storage.iter_mut().zip(points).zip(temperatures) {
                 *storage = Storage::tangent(temperature, point.enthalpy, point.capacity);
             }

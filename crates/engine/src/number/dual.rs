@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::lanes::Lanes;
 use crate::number::macros::{add_assign, chain_rule};
-use crate::number::real::{Equations, LinearSystem, Logistic, Real};
+use crate::number::real::{Equations, LinearSystem, Logistic, Real, SteadyTerm};
 
 /// A number with `K` forward derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,8 +128,18 @@ pub struct EquationSlopes<const K: usize> {
 impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
     #[inline(always)]
     fn begin(&mut self, equations: usize) {
-        self.rows.clear();
         self.rows.resize(equations, Lanes::zero());
+        self.rows.fill(Lanes::zero());
+    }
+
+    #[inline(always)]
+    fn add_steady(&mut self, terms: &[SteadyTerm<Dual<K>>], known: &[f64]) {
+        for &SteadyTerm { number, between: [a, b], equations, factors } in terms {
+            let difference = known[a] - known[b];
+            for (equation, factor) in equations.into_iter().zip(factors) {
+                self.add(equation, number, factor * difference);
+            }
+        }
     }
 
     #[inline(always)]
@@ -146,9 +156,14 @@ impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
         solution: [&mut [Dual<K>]; 3],
     ) {
         system.solve(&mut self.rows, &mut self.scratch);
-        let found = self.rows.iter().zip(at);
-        for (unknown, (slope, &value)) in solution.into_iter().flatten().zip(found) {
-            *unknown = Dual { value, slope: slope.0 };
+        let (mut rows, mut values) = (&self.rows[..], at);
+        for unknowns in solution {
+            let (own, rest) = rows.split_at(unknowns.len());
+            let (own_values, rest_values) = values.split_at(unknowns.len());
+            for ((unknown, slope), &value) in unknowns.iter_mut().zip(own).zip(own_values) {
+                *unknown = Dual { value, slope: slope.0 };
+            }
+            (rows, values) = (rest, rest_values);
         }
     }
 }
@@ -203,5 +218,18 @@ mod tests {
         equations.solve(0, &Triangle, &[1.0, 3.0], [&mut x, &mut y, &mut []]);
         assert_eq!(x[0], Dual { value: 1.0, slope: [0.5, -0.375] });
         assert_eq!(y[0], Dual { value: 3.0, slope: [0.0, 0.75] });
+    }
+
+    #[test]
+    fn a_steady_term_is_added_to_both_of_its_equations() {
+        // p = 10 is multiplied by 5 - 3, and -2 and 3 times that are added: slopes 2 (-2) and 2 (3).
+        let number = Dual::<1>::variable(10.0, 0);
+        let term = SteadyTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
+        let mut equations = EquationSlopes::default();
+        equations.begin(2);
+        equations.add_steady(&[term], &[5.0, 1.0, 3.0]);
+        let (mut x, mut y) = ([Dual::zero()], [Dual::zero()]);
+        equations.solve(0, &Triangle, &[0.0; 2], [&mut x, &mut y, &mut []]);
+        assert_eq!((y[0].slope, x[0].slope), ([6.0 / 4.0], [(-4.0 - 6.0 / 4.0) / 2.0]));
     }
 }

@@ -16,7 +16,7 @@ use core::mem::ManuallyDrop;
 use core::ops::{Add, Div, Mul, Neg, Range, Sub};
 
 use crate::number::macros::{add_assign, chain_rule};
-use crate::number::real::{Equations, LinearSystem, Logistic, Real};
+use crate::number::real::{Equations, LinearSystem, Logistic, Real, SteadyTerm};
 
 thread_local! {
     // Emptied by each recording at its end; a value without a destructor is reached faster.
@@ -36,6 +36,11 @@ const NOWHERE: u32 = 0;
 struct Entry {
     of: [u32; 2],
     slope: [f64; 2],
+}
+
+impl Entry {
+    /// A variable: no operation.
+    const VARIABLE: Self = Self { of: [NOWHERE; 2], slope: [0.0; 2] };
 }
 
 /// A term of an equation: `slope` times the number at `of` is added to it.
@@ -61,18 +66,20 @@ pub(crate) struct Tape {
     solves: Vec<Solve>,
     /// Memory of the terms of earlier solves, to be used again.
     unused: Vec<Vec<Term>>,
+    /// Entries of variables, to be copied: the unknowns of a stage are many.
+    variables: Vec<Entry>,
 }
 
 impl Tape {
     const fn new() -> Self {
-        Self { entries: Vec::new(), solves: Vec::new(), unused: Vec::new() }
+        Self { entries: Vec::new(), solves: Vec::new(), unused: Vec::new(), variables: Vec::new() }
     }
 
     /// Begins a recording on the tape of this thread.
     pub(crate) fn record() -> Recording {
         with_tape(|tape| {
             *tape = Self::new();
-            tape.entries.push(Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
+            tape.entries.push(Entry::VARIABLE);
         });
         Recording(PhantomData)
     }
@@ -81,7 +88,7 @@ impl Tape {
     pub(crate) fn reserve(numbers: usize) -> u32 {
         with_tape(|tape| {
             let first = tape.entries.len();
-            tape.entries.resize(first + numbers, Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
+            tape.entries.resize(first + numbers, Entry::VARIABLE);
             narrow(first)
         })
     }
@@ -100,11 +107,11 @@ impl Tape {
     }
 
     /// Propagates weights from the end of the tape back to the entry `to`. Those of the entries passed become zero.
-    /// `transposed` turns weights on the unknowns of a stage into weights on its equations.
+    /// `transposed` turns weights on the unknowns of a stage into weights on its equations, and may add to those on the entries before.
     pub(crate) fn propagate(
         weights: &mut Vec<f64>,
         to: usize,
-        mut transposed: impl FnMut(usize, &mut [f64]),
+        mut transposed: impl FnMut(usize, &mut [f64], &mut [f64]),
     ) {
         with_tape(|tape| {
             if weights.len() < tape.entries.len() {
@@ -116,7 +123,7 @@ impl Tape {
                 end = solve.unknowns.start;
                 let (before, unknowns) = weights.split_at_mut(end);
                 let unknowns = &mut unknowns[..solve.unknowns.len()];
-                transposed(solve.stage, unknowns);
+                transposed(solve.stage, unknowns, before);
                 for term in &solve.terms {
                     before[term.of as usize] += term.slope * unknowns[term.equation as usize];
                 }
@@ -139,6 +146,19 @@ impl Tape {
     }
 }
 
+/// Adds the weights on the numbers of steady terms, from weights on the equations of a stage.
+pub(crate) fn add_steady_weights(
+    terms: &[SteadyTerm<Taped>],
+    known: &[f64],
+    equations: &[f64],
+    weights: &mut [f64],
+) {
+    for &SteadyTerm { number, between: [a, b], equations: [i, j], factors } in terms {
+        let slope = (known[a] - known[b]) * (factors[0] * equations[i] + factors[1] * equations[j]);
+        weights[number.place as usize] += number.slope * slope;
+    }
+}
+
 /// A recording on the tape of this thread. Its end releases the memory of the tape, also after an error or a panic.
 // Not Send: it belongs to the tape of one thread.
 #[derive(Debug)]
@@ -158,7 +178,7 @@ impl Drop for Recording {
 pub fn memory() -> usize {
     with_tape(|tape| {
         let terms = tape.solves.iter().map(|solve| &solve.terms).chain(&tape.unused);
-        tape.entries.capacity() * size_of::<Entry>()
+        (tape.entries.capacity() + tape.variables.capacity()) * size_of::<Entry>()
             + tape.solves.capacity() * size_of::<Solve>()
             + tape.unused.capacity() * size_of::<Vec<Term>>()
             + terms.map(|terms| terms.capacity() * size_of::<Term>()).sum::<usize>()
@@ -179,6 +199,10 @@ impl Equations<Taped> for EquationTerms {
         self.equations = equations;
     }
 
+    /// They need no place on the tape, see [`add_steady_weights`].
+    #[inline(always)]
+    fn add_steady(&mut self, _terms: &[SteadyTerm<Taped>], _known: &[f64]) {}
+
     #[inline(always)]
     fn add(&mut self, equation: usize, number: Taped, factor: f64) {
         if number.place != NOWHERE && factor != 0.0 {
@@ -190,11 +214,20 @@ impl Equations<Taped> for EquationTerms {
     fn solve<L: LinearSystem>(&mut self, stage: usize, _system: &L, at: &[f64], solution: [&mut [Taped]; 3]) {
         with_tape(|tape| {
             let first = tape.entries.len();
-            tape.entries.resize(first + self.equations, Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
+            if tape.variables.len() < self.equations {
+                tape.variables.resize(self.equations, Entry::VARIABLE);
+            }
+            tape.entries.extend_from_slice(&tape.variables[..self.equations]);
             let terms = core::mem::replace(&mut self.terms, tape.unused.pop().unwrap_or_default());
             tape.solves.push(Solve { stage, terms, unknowns: first..tape.entries.len() });
-            for (k, (unknown, &value)) in solution.into_iter().flatten().zip(at).enumerate() {
-                *unknown = Taped::new(value, narrow(first + k));
+            let (mut values, mut place) = (at, narrow(first));
+            for unknowns in solution {
+                let (own, rest) = values.split_at(unknowns.len());
+                for (unknown, &value) in unknowns.iter_mut().zip(own) {
+                    *unknown = Taped::new(value, place);
+                    place += 1;
+                }
+                values = rest;
             }
         });
     }
@@ -217,7 +250,7 @@ pub struct Taped {
 impl Taped {
     /// A variable: a number with an entry of its own.
     pub(crate) fn variable(value: f64) -> Self {
-        Self::new(value, push(Entry { of: [NOWHERE; 2], slope: [0.0; 2] }))
+        Self::new(value, push(Entry::VARIABLE))
     }
 
     /// Adds to the weight on the entry that this depends on.
@@ -347,7 +380,7 @@ mod tests {
         let result = f(x, y);
         let mut weights = vec![0.0; Tape::len()];
         result.add_weight(1.0, &mut weights);
-        Tape::propagate(&mut weights, 3, |_, _| {});
+        Tape::propagate(&mut weights, 3, |_, _, _| {});
         [result.value, weights[1], weights[2]]
     }
 
@@ -391,6 +424,17 @@ mod tests {
         let exp = Real::exp(2.0);
         assert_eq!(value, 16.0 + exp / 4.0);
         assert!((by_x - (16.0 + exp / 4.0)).abs() < 1e-14 && (by_y - (4.0 - exp / 16.0)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_steady_term_collects_the_weights_on_both_of_its_equations() {
+        let _recording = Tape::record();
+        // 7 p with p = 1.5 is multiplied by 5 - 3, and -2 and 3 times that are added to equations of weights 0.5 and -2.
+        let number = Taped::variable(1.5).scale(7.0);
+        let term = SteadyTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
+        let mut weights = [0.0; 2];
+        add_steady_weights(&[term], &[5.0, 1.0, 3.0], &[0.5, -2.0], &mut weights);
+        assert_eq!(weights, [0.0, 7.0 * 2.0 * (-2.0 * 0.5 + 3.0 * -2.0)]);
     }
 
     #[test]

@@ -4,9 +4,11 @@
 //! (`derivatives`).
 
 use crate::balance::terms::{Contents, Stage as StageContents};
+use crate::building::ids::SurfaceId;
 use crate::input::forcing::Forcing;
 use crate::linear::stage_matrix::StageMatrix;
-use crate::linear::unknowns::Unknowns;
+use crate::linear::unknowns::{Unknowns, copy_ranges};
+use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
 use crate::step::newton::StageSolver;
@@ -117,33 +119,52 @@ impl<S: Real> Stepper<'_, S> {
         linearisation.linearise_surfaces(model, conditions, iterate, true);
     }
 
-    /// The solution of a stage as one list: cells, surfaces, airs [degC]. The temperatures of the cells of constant walls
-    /// follow from the others; `matrix` has their factors.
+    /// The solution of a stage as one list: cells, surfaces, airs [degC]; of cells those of nonlinear walls.
     #[inline(always)]
-    pub(crate) fn write_known_solution(
-        &self,
-        state: &State<S>,
-        place: StagePlace,
-        known: &Unknowns<f64>,
-        matrix: &StageMatrix<'_>,
-        at: &mut [f64],
-    ) {
-        let (cells, rest) = at.split_at_mut(self.model.plan.n_cells);
+    pub(crate) fn write_known_solution(&self, known: &Unknowns<f64>, solution: &mut [f64]) {
+        let (cells, rest) = solution.split_at_mut(self.model.plan.n_cells);
         let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
         surfaces.copy_from_slice(&known.surfaces);
         air.copy_from_slice(&known.air);
-        cells.copy_from_slice(&known.cells);
-        for &w in &self.model.parts.linear_walls {
-            let (wall, chain) = (&self.model.plan.walls[w], &matrix.system.walls[w]);
-            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
-            for (i, cell) in own.iter_mut().enumerate() {
-                let k = wall.first_cell + i;
-                let start = state.cells[k].lane(0);
-                let held = start + (self.solver.solution.cells[k].lane(0) - start) * place.ratio;
-                *cell = chain.rate[i] * chain.storage[i].capacity * held;
+        copy_ranges(&self.model.parts.nonlinear_cells, cells, &known.cells);
+    }
+
+    /// The temperatures of the cells of some walls of constant properties, which follow from those of their surfaces [degC], and how
+    /// fast they have cooled in the stage [K/s]. `matrix` has the factors of the walls.
+    #[inline(always)]
+    pub(crate) fn write_known_cells(
+        &self,
+        walls: &[usize],
+        (state, place, known): (&State<S>, StagePlace, &Unknowns<f64>),
+        matrix: &StageMatrix<'_>,
+        [cells, cooling]: [&mut [f64]; 2],
+    ) {
+        let rate = 1.0 / place.length;
+        for &w in walls {
+            let (range, chain) = (self.model.cells(w), &matrix.system.walls[w]);
+            let (own, cooling) = (&mut cells[range.clone()], &mut cooling[range.clone()]);
+            let contents = state.cells[range.clone()].iter().zip(&self.solver.solution.cells[range]);
+            let laws = chain.rate.iter().zip(&chain.storage);
+            for (((cell, held), (start, first)), (rate, storage)) in
+                own.iter_mut().zip(cooling.iter_mut()).zip(contents).zip(laws)
+            {
+                *held = start.lane(0) + (first.lane(0) - start.lane(0)) * place.ratio;
+                *cell = rate * storage.capacity * *held;
             }
             chain.forward(own);
             chain.back(known.surfaces.pair(w), own);
+            for (held, &reached) in cooling.iter_mut().zip(&*own) {
+                *held = (*held - reached) * rate;
+            }
+        }
+    }
+
+    /// Black emission of some surfaces at a solution [W/m2].
+    #[inline(always)]
+    pub(crate) fn write_emission(&self, surfaces: &[SurfaceId], known: &Unknowns<f64>, emission: &mut [f64]) {
+        let laws = &self.solver.linearisation.laws.surfaces;
+        for &surface in surfaces {
+            emission[surface.index()] = Line::of(&laws[surface].emission).at(known.surfaces[surface]);
         }
     }
 

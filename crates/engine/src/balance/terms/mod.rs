@@ -139,6 +139,18 @@ pub(crate) trait Sink<S: Real> {
     #[inline(always)]
     fn begin_zone(&mut self, _zone: usize) {}
 
+    /// Whether the sink takes the terms of a wall.
+    #[inline(always)]
+    fn takes_wall(&self, _wall: usize) -> bool {
+        true
+    }
+
+    /// Whether the sink counts the heat that enters the building, see [`Self::count`].
+    #[inline(always)]
+    fn counts(&self) -> bool {
+        true
+    }
+
     /// Whether the sink takes the radiation between the surfaces of the zone: their pairs are many.
     #[inline(always)]
     fn takes_radiation(&self) -> bool {
@@ -202,10 +214,12 @@ impl<S: Real> Balances<'_, S> {
         self.sun_inside(sink);
         self.exterior_surfaces(sink);
         self.imposed_temperatures(sink);
-        self.windows(sink);
+        if sink.counts() {
+            self.windows(sink);
+            self.gains(sink);
+        }
         self.zones(stage, sink);
         self.outdoor_air(sink);
-        self.gains(sink);
         self.air_paths(sink);
         self.mechanical_air(sink);
         self.bridges(sink);
@@ -220,6 +234,9 @@ impl<S: Real> Balances<'_, S> {
     fn cells(&self, stage: &Stage<'_, S>, sink: &mut impl Sink<S>) {
         for (w, (wall, chain)) in self.model.plan.walls.iter().zip(self.walls).enumerate() {
             let (numbers, first, n) = (&self.model.coefficients.walls[w], wall.first_cell, wall.len());
+            if !sink.takes_wall(w) {
+                continue;
+            }
             sink.begin_wall(w);
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let (k, sizes) = (first + i, [numbers.area, cell.thickness]);

@@ -348,13 +348,19 @@ impl ZoneFronts<f64> {
     /// Eliminates the surfaces of the fronts from right-hand sides of any kind.
     #[inline(always)]
     pub(crate) fn forward_values<R: Real>(&self, right: &mut [R]) {
-        self.all.iter().for_each(|front| front.forward_values(right));
+        // A loop: a closure is not always inlined, and is then compiled without wide instructions.
+        for front in &self.all {
+            front.forward_values(right);
+        }
     }
 
     /// Solves for the eliminated surfaces of right-hand sides of any kind.
     #[inline(always)]
     pub(crate) fn back_values<R: Real>(&self, right: &mut [R]) {
-        self.all.iter().for_each(|front| front.back_values(right));
+        // A loop: a closure is not always inlined, and is then compiled without wide instructions.
+        for front in &self.all {
+            front.back_values(right);
+        }
     }
 
     /// The transpose of [`Self::back_values`].

@@ -212,6 +212,31 @@ impl<S: Real> SurfaceConvection<S> {
         self.law.calm()
     }
 
+    /// Heat flow at `d = T_surface - T_air` [K], in numbers with derivatives. Where none of its numbers has any, it is that of plain
+    /// numbers: most surfaces do not depend on the few parameters that slopes are computed by.
+    #[inline(always)]
+    pub(crate) fn tangent_flux(&self, d: S, forced: &Forced<S>) -> ConvectiveFlux<S> {
+        if const { S::DERIVATIVES } && !self.carries(d, forced) {
+            let ConvectiveFlux { flux, slope } = self.plain_flux(d.lane(0), forced.map(|part| part.lane(0)));
+            return ConvectiveFlux { flux: S::constant(flux), slope: S::constant(slope) };
+        }
+        self.flux(d, forced)
+    }
+
+    /// Whether one of the numbers of the heat flow has derivatives.
+    #[inline(always)]
+    fn carries(&self, d: S, forced: &Forced<S>) -> bool {
+        let mut carries = d.carries() || forced.iter().any(|part| part.carries());
+        self.map(|number| carries |= number.carries());
+        carries
+    }
+
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    fn plain_flux(&self, d: f64, forced: Forced<f64>) -> ConvectiveFlux<f64> {
+        self.flux_of(|number| number.lane(0), d, &forced)
+    }
+
     /// Heat flow at `d = T_surface - T_air` [K].
     #[inline(always)]
     pub fn flux(&self, d: S, forced: &Forced<S>) -> ConvectiveFlux<S> {

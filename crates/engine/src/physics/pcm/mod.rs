@@ -67,6 +67,9 @@ pub struct PcmCoefficients<S> {
     conductivity: [S; 2],
     /// Sensible, of solid and liquid per volume as built [J/(m3 K)].
     volumetric_heat: [S; 2],
+    /// What they are larger by in the liquid.
+    conductivity_rise: S,
+    heat_rise: S,
     law: Law<S>,
 }
 
@@ -114,9 +117,13 @@ impl<S: Real> PcmCoefficients<S> {
                 Law::Table(Table::new(temperatures, points, *melting_range, shift, factor))
             }
         };
+        let conductivity = [conductivity[0], conductivity[1] * (liquid / solid)];
+        let volumetric_heat = specific_heat.map(|id| solid * values.get(id));
         Self {
-            conductivity: [conductivity[0], conductivity[1] * (liquid / solid)],
-            volumetric_heat: specific_heat.map(|id| solid * values.get(id)),
+            conductivity_rise: conductivity[1] - conductivity[0],
+            heat_rise: volumetric_heat[1] - volumetric_heat[0],
+            conductivity,
+            volumetric_heat,
             law,
         }
     }
@@ -124,14 +131,21 @@ impl<S: Real> PcmCoefficients<S> {
     /// Properties at a temperature [degC].
     pub fn at(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
         let mut point = PcmPoint::zero();
-        self.at_all(&[temperature], &[*memory], core::slice::from_mut(&mut point));
+        self.at_all(&[temperature], &[*memory], core::slice::from_mut(&mut point), true);
         point
     }
 
-    /// Properties at several temperatures [degC]; a law that remembers takes a memory for each.
+    /// Properties at several temperatures [degC]; a law that remembers takes a memory for each. Unless `curved`, slopes by temperature
+    /// may be constants for derivatives: a tangent needs no more of them.
     // One copy only: inlining all laws at every call would multiply compile time.
     #[inline(never)]
-    pub fn at_all(&self, temperatures: &[S], memory: &[PcmMemory<S>], points: &mut [PcmPoint<S>]) {
+    pub fn at_all(
+        &self,
+        temperatures: &[S],
+        memory: &[PcmMemory<S>],
+        points: &mut [PcmPoint<S>],
+        curved: bool,
+    ) {
         S::vectorised(
             #[inline(always)]
             || {
@@ -141,22 +155,32 @@ impl<S: Real> PcmCoefficients<S> {
                         // The usual curve has a loop of its own without the other curves, which is faster.
                         if let Some(tanh) = curve.tanh() {
                             for (point, &temperature) in places {
-                                *point = self.without_hysteresis(*latent, temperature, tanh.at(temperature));
+                                *point = self.without_hysteresis(
+                                    *latent,
+                                    temperature,
+                                    curved,
+                                    tanh.at(temperature),
+                                );
                             }
                         } else {
                             for (point, &temperature) in places {
-                                *point = self.without_hysteresis(*latent, temperature, curve.at(temperature));
+                                *point = self.without_hysteresis(
+                                    *latent,
+                                    temperature,
+                                    curved,
+                                    curve.at(temperature),
+                                );
                             }
                         }
                     }
                     Law::Hysteresis(latent, hysteresis) => {
                         for ((point, &temperature), memory) in places.zip(memory) {
-                            *point = self.with_hysteresis(*latent, hysteresis, temperature, memory);
+                            *point = self.with_hysteresis(*latent, hysteresis, (temperature, curved), memory);
                         }
                     }
                     Law::Table(table) => {
                         for (point, &temperature) in places {
-                            *point = self.tabulated(table, temperature);
+                            *point = self.tabulated(table, (temperature, curved));
                         }
                     }
                 }
@@ -165,10 +189,17 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
-    fn without_hysteresis(&self, latent: Latent<S>, temperature: S, point: CurvePoint<S>) -> PcmPoint<S> {
+    fn without_hysteresis(
+        &self,
+        latent: Latent<S>,
+        temperature: S,
+        curved: bool,
+        point: CurvePoint<S>,
+    ) -> PcmPoint<S> {
         let CurvePoint { fraction, slope, molten } = point;
-        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
-        self.point(temperature, [enthalpy, capacity], [fraction, slope], molten)
+        let slope = if curved { slope } else { slope.fixed() };
+        let (enthalpy, capacity) = self.heat(latent, (temperature, curved), fraction, slope);
+        self.point((temperature, curved), [enthalpy, capacity], [fraction, slope], molten)
     }
 
     #[inline(always)]
@@ -176,37 +207,38 @@ impl<S: Real> PcmCoefficients<S> {
         &self,
         latent: Latent<S>,
         hysteresis: &Hysteresis<S>,
-        temperature: S,
+        (temperature, curved): (S, bool),
         memory: &PcmMemory<S>,
     ) -> PcmPoint<S> {
         let (fraction, slope) = hysteresis.at(temperature, memory);
-        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
-        self.point(temperature, [enthalpy, capacity], [fraction, slope], S::zero())
+        let slope = if curved { slope } else { slope.fixed() };
+        let (enthalpy, capacity) = self.heat(latent, (temperature, curved), fraction, slope);
+        self.point((temperature, curved), [enthalpy, capacity], [fraction, slope], S::zero())
     }
 
     #[inline(always)]
-    fn tabulated(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
+    fn tabulated(&self, table: &Table<S>, (temperature, curved): (S, bool)) -> PcmPoint<S> {
         let TablePoint { enthalpy, capacity, fraction, fraction_slope, molten } =
             table.at(temperature, self.volumetric_heat);
-        self.point(temperature, [enthalpy, capacity], [fraction, fraction_slope], molten)
+        self.point((temperature, curved), [enthalpy, capacity], [fraction, fraction_slope], molten)
     }
 
     #[inline(always)]
     fn point(
         &self,
-        temperature: S,
+        (temperature, curved): (S, bool),
         [enthalpy, capacity]: [S; 2],
         [fraction, slope]: [S; 2],
         molten: S,
     ) -> PcmPoint<S> {
-        let spread = self.conductivity[1] - self.conductivity[0];
+        let spread = self.conductivity_rise;
         PcmPoint {
             enthalpy,
             capacity,
             liquid_fraction: fraction,
             fraction_slope: slope,
             conductivity: self.conductivity[0] + fraction * spread,
-            conductivity_slope: spread * slope,
+            conductivity_slope: if curved { spread } else { spread.fixed() } * slope,
             potential: self.conductivity[0] * temperature + spread * molten,
         }
     }
@@ -214,12 +246,14 @@ impl<S: Real> PcmCoefficients<S> {
     /// Enthalpy [J/m3] of a temperature and a liquid fraction, and its slope when the fraction has that slope: the
     /// enthalpy whose derivative is the apparent capacity of the paper's eq. 2, relative to the melting temperature.
     #[inline(always)]
-    fn heat(&self, latent: Latent<S>, temperature: S, fraction: S, slope: S) -> (S, S) {
+    fn heat(&self, latent: Latent<S>, (temperature, curved): (S, bool), fraction: S, slope: S) -> (S, S) {
         let excess = temperature - latent.reference;
-        let step = self.volumetric_heat[1] - self.volumetric_heat[0];
+        let step = self.heat_rise;
         let jump = latent.heat + step * excess;
         let enthalpy = self.volumetric_heat[0] * excess + fraction * jump;
-        (enthalpy, self.volumetric_heat[0] + step * fraction + slope * jump)
+        let of_slope = |number: S| if curved { number } else { number.fixed() };
+        let sensible = of_slope(self.volumetric_heat[0]) + of_slope(step) * of_slope(fraction);
+        (enthalpy, sensible + slope * of_slope(jump))
     }
 
     /// Whether a point holds the integral of the conductivity.
@@ -346,7 +380,7 @@ impl<S: Real> PcmCoefficients<S> {
                 return (enthalpy + capacity * (temperature - place), capacity);
             }
         };
-        self.heat(*latent, temperature, fraction, slope)
+        self.heat(*latent, (temperature, true), fraction, slope)
     }
 }
 
