@@ -199,7 +199,7 @@ impl Equations<Taped> for EquationTerms {
         self.equations = equations;
     }
 
-    /// They need no place on the tape, see [`add_steady_weights`].
+    /// They need no place on the tape, see `add_steady_weights`.
     #[inline(always)]
     fn add_steady(&mut self, _terms: &[SteadyTerm<Taped>], _known: &[f64]) {}
 
