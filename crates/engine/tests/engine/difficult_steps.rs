@@ -10,7 +10,7 @@ use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
 
-const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler];
+const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
 /// Parameters of the slopes.
 const PARAMETERS: [&str; 3] = ["law.melting_temperature", "surfaces.north.area", "tarp.factor"];
 
