@@ -105,4 +105,4 @@ def test_only_dataclasses_of_this_package_are_read() -> None:
     with pytest.raises(ValueError, match="os"):
         kept._class("os:system")
     with pytest.raises(TypeError, match="seconds_of"):
-        kept._class("mascarin.weather.times:seconds_of")
+        kept._class("mascarin._io.durations:seconds_of")
