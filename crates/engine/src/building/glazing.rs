@@ -312,22 +312,14 @@ impl<S: Real> Glass<S> {
         Self { horizon: optics.beam.horizon(sine), optics, gaps, blind: None }
     }
 
-    /// Number of gaps whose conductance depends on temperature.
-    pub fn filled_gaps(&self) -> usize {
-        self.gaps.len()
-    }
-
     /// The gap and its link, where there is one gap, whose conductance depends on temperature, and no blind.
     pub(crate) fn only_gap(&self) -> Option<&(usize, GasGap<S>)> {
         if let ([gap], None) = (&self.gaps[..], &self.blind) { Some(gap) } else { None }
     }
 
-    /// Convective conductances of the gaps at predicted temperatures [W/(m2 K)].
-    #[inline(always)]
-    pub fn expect(&self, cells: &[S], convection: &mut [S]) {
-        for ((link, gap), convection) in self.gaps.iter().zip(convection) {
-            *convection = gap.convection(cells[link - 1], cells[*link]);
-        }
+    /// The gaps whose conductance depends on temperature, with their links.
+    pub(crate) fn gaps(&self) -> &[(usize, GasGap<S>)] {
+        &self.gaps
     }
 
     /// Gives the number of each gap's link and the tangent of its heat flow at the temperatures of the cells.

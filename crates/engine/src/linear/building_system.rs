@@ -7,7 +7,7 @@
 use crate::building::coefficients::{Boundary, BridgeEnd};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::step_maps::StepMaps;
@@ -43,6 +43,8 @@ pub(crate) struct BuildingSystem<'a, S> {
     pub(crate) single_walls: Vec<usize>,
     pub(super) single_windows: Vec<usize>,
     pub(crate) thick_walls: ThickWalls<S>,
+    /// Places in the coupled matrix of the two entries between the surfaces of each wall; nowhere where there are none.
+    across: Vec<[usize; 2]>,
 }
 
 impl<'a, S: Real> BuildingSystem<'a, S> {
@@ -69,6 +71,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
             zone_fronts,
             thick_walls: ThickWalls::new(model),
+            across: (0..count).map(|w| entries_across(plan, w)).collect(),
         }
     }
 
@@ -207,7 +210,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             self.zone_fronts.write_exterior_laws(laws);
         }
         self.zone_fronts.write_windows(&solution.cells, &mut self.walls);
-        if !model.plan.ideal_loads.is_empty() {
+        if S::DERIVATIVES || model.loads_by_responses() {
             self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
         }
         let mut sum = S::zero();
@@ -332,10 +335,10 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
                 ExteriorSurfaces::Both(solve_pair(outer, inner, source, &response))
             }
             [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
-                for (e, (mine, other)) in [(outer, inner), (inner, outer)].into_iter().enumerate() {
+                for (e, mine) in [outer, inner].into_iter().enumerate() {
                     if matrix {
                         self.coupled.add_diagonal(mine, -(area * response.own(e)));
-                        self.coupled.add(mine, other, -(area * response.other(e)));
+                        self.coupled.add_at(self.across[w][e], -(area * response.other(e)));
                     }
                     self.coupled.right[mine] += area * source[e];
                 }
@@ -386,6 +389,17 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.coupled.right[row] += area * (source[e] + response.other(e) * offset);
         ExteriorSurfaces::One { side: o, line: Line { offset, slope } }
     }
+}
+
+/// Places in the coupled matrix of the entries between the two surfaces of a wall, in the rows of the outside and of the inside
+/// surface; nowhere where these are not both unknowns of it.
+fn entries_across(plan: &Plan, w: usize) -> [usize; 2] {
+    let rows = SurfaceId::pair(w).map(|surface| match plan.surfaces[surface].role {
+        SurfaceRole::Zone { row, .. } => row.checked_sub(plan.own_rows),
+        SurfaceRole::Exterior => None,
+    });
+    let place = |[row, column]: [Option<usize>; 2]| plan.pattern.place(row?, column?);
+    [rows, [rows[1], rows[0]]].map(|entry| place(entry).unwrap_or(plan.pattern.nowhere()))
 }
 
 /// Whether an exterior surface has an imposed temperature.

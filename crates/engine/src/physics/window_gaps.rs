@@ -13,7 +13,7 @@
 
 use crate::input::description::Gas;
 use crate::number::newton::falling_root;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{Chunk, Mask, Real};
 use crate::physics::constants::{GAS_CONSTANT, GRAVITY, KELVIN, SIGMA};
 
 /// Temperature differences across a gap are rounded off within this [K].
@@ -61,6 +61,14 @@ fn properties(gas: Gas) -> Properties {
 #[derive(Debug, Clone)]
 pub(crate) struct GasGap<S> {
     gas: Properties,
+    shape: GapShape<S>,
+    /// Long-wave exchange factor of its two surfaces [-].
+    exchange: S,
+}
+
+/// What the convection of a gap depends on beside its gas.
+#[derive(Debug, Clone)]
+struct GapShape<S> {
     /// One over its thickness [1/m].
     inverse_thickness: S,
     /// Rayleigh number times viscosity, conductivity and the cube of temperature, over specific heat and difference.
@@ -72,8 +80,26 @@ pub(crate) struct GasGap<S> {
     circulation: [S; 2],
     /// Tilt of the outside normal [deg].
     tilt: S,
-    /// Long-wave exchange factor of its two surfaces [-].
-    exchange: S,
+}
+
+/// A gas at the mean temperature of a gap.
+struct GasState<S> {
+    /// [K].
+    temperature: S,
+    /// [W/(m K)].
+    conductivity: S,
+    /// [Pa s].
+    viscosity: S,
+    /// [J/(kg K)].
+    specific_heat: S,
+}
+
+/// Several gaps, as many as fill a register: each number of all of them in a row.
+#[derive(Debug, Clone)]
+pub(crate) struct GapRegister<S> {
+    /// Conductivity, viscosity and specific heat: `a` and `b` of [`Properties`].
+    gas: [[Box<[S]>; 2]; 3],
+    shape: GapShape<Box<[S]>>,
 }
 
 /// Heat flow through a gap about two temperatures: `left T_outer - right T_inner + offset` [W/m2].
@@ -102,14 +128,16 @@ impl<S: Real> GasGap<S> {
         let (aspect, density) = (height / thickness, pressure.scale(gas.molar_mass / GAS_CONSTANT));
         Self {
             gas,
-            inverse_thickness: S::one() / thickness,
-            buoyancy: (density * density * thickness * thickness * thickness).scale(GRAVITY),
-            aspect,
-            circulation: [
-                aspect.powf(S::constant(-0.272)).scale(0.242),
-                aspect.scale(Real::powf(0.242, -1.0 / 0.272)),
-            ],
-            tilt,
+            shape: GapShape {
+                inverse_thickness: S::one() / thickness,
+                buoyancy: (density * density * thickness * thickness * thickness).scale(GRAVITY),
+                aspect,
+                circulation: [
+                    aspect.powf(S::constant(-0.272)).scale(0.242),
+                    aspect.scale(Real::powf(0.242, -1.0 / 0.272)),
+                ],
+                tilt,
+            },
             exchange,
         }
     }
@@ -134,8 +162,9 @@ impl<S: Real> GasGap<S> {
             });
         let mut gap = each(width.exp(), height);
         // The difference is shared by all gaps. A single pane has less than one gap, and no gas that circulates.
-        gap.buoyancy = gap.buoyancy * rated.number.min(S::one()) / rated.number.max(S::one());
-        gap.inverse_thickness = gap.inverse_thickness * (rated.gas / rated.number) / as_rated(&gap);
+        gap.shape.buoyancy = gap.shape.buoyancy * rated.number.min(S::one()) / rated.number.max(S::one());
+        gap.shape.inverse_thickness =
+            gap.shape.inverse_thickness * (rated.gas / rated.number) / as_rated(&gap);
         let mean = KELVIN + RATED_TEMPERATURE;
         gap.exchange = (rated.radiation / rated.number).scale(1.0 / (4.0 * SIGMA * mean * mean * mean));
         gap
@@ -144,15 +173,11 @@ impl<S: Real> GasGap<S> {
     /// Conductance of the gas [W/(m2 K)] between surfaces at two temperatures [degC].
     #[inline(always)]
     pub(crate) fn convection(&self, outer: S, inner: S) -> S {
-        let mean = (outer + inner).scale(0.5) + S::constant(KELVIN);
-        let linear = |[a, b]: [f64; 2]| S::constant(a) + mean.scale(b);
-        let conductivity = linear(self.gas.conductivity);
-        let difference = (outer - inner).smooth_abs(ROUND_OFF);
-        let rayleigh = self.buoyancy * linear(self.gas.specific_heat) * difference
-            / (linear(self.gas.viscosity) * conductivity * (mean * mean * mean));
-        // Tilt 0 points up: heat that flows outwards flows up.
-        let inclination = S::select(outer.lt(inner), self.tilt, S::constant(180.0) - self.tilt);
-        self.nusselt(rayleigh, inclination) * conductivity * self.inverse_thickness
+        let temperature = mean_temperature(outer, inner);
+        let linear = |[a, b]: [f64; 2]| S::constant(a) + temperature.scale(b);
+        let Properties { conductivity, viscosity, specific_heat, .. } = self.gas;
+        let [conductivity, viscosity, specific_heat] = [conductivity, viscosity, specific_heat].map(linear);
+        self.shape.convection(&GasState { temperature, conductivity, viscosity, specific_heat }, outer, inner)
     }
 
     /// Tangent of the heat flow at two temperatures [degC], with a given conductance of the gas [W/(m2 K)].
@@ -164,6 +189,72 @@ impl<S: Real> GasGap<S> {
     /// Long-wave exchange factor of its two surfaces [-].
     pub(crate) fn exchange(&self) -> S {
         self.exchange
+    }
+}
+
+/// Absolute mean temperature of a gap between surfaces at two temperatures [degC].
+#[inline(always)]
+fn mean_temperature<S: Real>(outer: S, inner: S) -> S {
+    (outer + inner).scale(0.5) + S::constant(KELVIN)
+}
+
+impl<S: Real> GapRegister<S> {
+    /// Some gaps; the last one again where they do not fill a register.
+    pub(crate) fn new(gaps: &[&GasGap<S>]) -> Self {
+        let all = |number: &dyn Fn(&GasGap<S>) -> S| -> Box<[S]> {
+            let last = gaps.len() - 1;
+            (0..S::CHUNK).map(|place| number(gaps[place.min(last)])).collect()
+        };
+        let line =
+            |of: fn(&Properties) -> [f64; 2]| [0, 1].map(|term| all(&|gap| S::constant(of(&gap.gas)[term])));
+        Self {
+            gas: [line(|gas| gas.conductivity), line(|gas| gas.viscosity), line(|gas| gas.specific_heat)],
+            shape: GapShape {
+                inverse_thickness: all(&|gap| gap.shape.inverse_thickness),
+                buoyancy: all(&|gap| gap.shape.buoyancy),
+                aspect: all(&|gap| gap.shape.aspect),
+                circulation: [0, 1].map(|k| all(&|gap| gap.shape.circulation[k])),
+                tilt: all(&|gap| gap.shape.tilt),
+            },
+        }
+    }
+
+    /// [`GasGap::convection`] of all of them.
+    #[inline(always)]
+    pub(crate) fn convection<V: Chunk<S>>(&self, outer: V, inner: V) -> V {
+        let temperature = mean_temperature(outer, inner);
+        let linear = |[a, b]: &[Box<[S]>; 2]| V::load(a) + temperature * V::load(b);
+        let [conductivity, viscosity, specific_heat] = &self.gas;
+        let gas = GasState {
+            temperature,
+            conductivity: linear(conductivity),
+            viscosity: linear(viscosity),
+            specific_heat: linear(specific_heat),
+        };
+        let GapShape { inverse_thickness, buoyancy, aspect, circulation: [factor, onset], tilt } =
+            &self.shape;
+        let shape = GapShape {
+            inverse_thickness: V::load(inverse_thickness),
+            buoyancy: V::load(buoyancy),
+            aspect: V::load(aspect),
+            circulation: [V::load(factor), V::load(onset)],
+            tilt: V::load(tilt),
+        };
+        shape.convection(&gas, outer, inner)
+    }
+}
+
+impl<S: Real> GapShape<S> {
+    /// Conductance of a gas [W/(m2 K)] between surfaces at two temperatures [degC].
+    #[inline(always)]
+    fn convection(&self, gas: &GasState<S>, outer: S, inner: S) -> S {
+        let GasState { temperature, conductivity, viscosity, specific_heat } = *gas;
+        let difference = (outer - inner).smooth_abs(ROUND_OFF);
+        let rayleigh = self.buoyancy * specific_heat * difference
+            / (viscosity * conductivity * (temperature * temperature * temperature));
+        // Tilt 0 points up: heat that flows outwards flows up.
+        let inclination = S::select(outer.lt(inner), self.tilt, S::constant(180.0) - self.tilt);
+        self.nusselt(rayleigh, inclination) * conductivity * self.inverse_thickness
     }
 
     /// Nusselt number [-]. Inclination [deg] of the gap from the horizontal: heat flows upwards below 90 deg.
@@ -272,6 +363,7 @@ fn nusselt_below_60<S: Real>(rayleigh: S, inclination: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::lanes::Lanes;
 
     fn gap(gas: Gas, thickness: f64, tilt: f64) -> GasGap<f64> {
         GasGap::new(gas, 101_325.0, [thickness, 1.0], tilt, [0.84, 0.84])
@@ -300,7 +392,7 @@ mod tests {
     fn nusselt_numbers_by_hand() {
         let gap = gap(Gas::Air, 1.0 / 60.0, 90.0);
         for (rayleigh, inclination, expected) in [(2e4, 90.0, 1.688_83), (1e4, 0.0, 2.391_09)] {
-            let found = gap.nusselt(rayleigh, inclination);
+            let found = gap.shape.nusselt(rayleigh, inclination);
             assert!((found - expected).abs() < 1e-5, "{found} is not {expected}");
         }
     }
@@ -327,9 +419,35 @@ mod tests {
         assert!((up.convection(20.0, 0.0) / still - 1.0).abs() < 1e-9);
         for angle in [60.0, 90.0] {
             let [below, above] =
-                [-1e-7, 1e-7].map(|d| gap(Gas::Air, 1.0 / 60.0, 90.0).nusselt(2e4, angle + d));
+                [-1e-7, 1e-7].map(|d| gap(Gas::Air, 1.0 / 60.0, 90.0).shape.nusselt(2e4, angle + d));
             let most = if angle < 61.0 { 0.15 } else { 1e-6 };
             assert!((below / above - 1.0).abs() < most, "{angle}: {below} and {above}");
+        }
+    }
+
+    /// Gaps in a register have the bits that each has alone, whatever stands beside it: other gases, widths and tilts.
+    #[test]
+    fn gaps_side_by_side() {
+        let gaps: Vec<GasGap<f64>> = [
+            (Gas::Air, 0.012, 90.0),
+            (Gas::Argon, 0.016, 30.0),
+            (Gas::Krypton, 0.2, 75.0),
+            (Gas::Xenon, 0.01, 0.0),
+            (Gas::Air, 0.3, 120.0),
+        ]
+        .map(|(gas, thickness, tilt)| gap(gas, thickness, tilt))
+        .to_vec();
+        let register = GapRegister::new(&gaps.iter().collect::<Vec<_>>());
+        for (outer, inner) in [(0.0, 20.0), (35.0, 20.0), (20.0, 20.0)] {
+            let [all_outer, all_inner] = [outer, inner].map(Lanes::<8>::constant);
+            let found = register.convection(all_outer, all_inner);
+            for (place, gap) in gaps.iter().enumerate() {
+                assert_eq!(
+                    found.lane(place).to_bits(),
+                    gap.convection(outer, inner).to_bits(),
+                    "gap {place}"
+                );
+            }
         }
     }
 }

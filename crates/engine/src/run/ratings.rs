@@ -58,14 +58,15 @@ fn rated(glass: &Glass<f64>, layout: &GlassPlan, mut links: Vec<f64>) -> WindowR
         }
         (all, depth + SURFACES[1])
     };
-    let mut convection = vec![0.0; glass.filled_gaps()];
     for _ in 0..ITERATIONS {
         let (places, whole) = depths(&links);
         let across = whole - SURFACES[0] - SURFACES[1];
         let at = |place: &f64| SIDES[0] + (SIDES[1] - SIDES[0]) * (place - SURFACES[0]) / across;
         let temperatures: Vec<f64> = places.iter().map(at).collect();
         let cells = &temperatures[1..temperatures.len() - 1];
-        glass.expect(cells, &mut convection);
+        let gaps = glass.gaps().iter();
+        let convection: Vec<f64> =
+            gaps.map(|(link, gap)| gap.convection(cells[link - 1], cells[*link])).collect();
         glass.linearise(cells, &convection, |link, tangent| {
             let (outer, inner) = (temperatures[link], temperatures[link + 1]);
             let flow = tangent.left * outer - tangent.right * inner + tangent.offset;

@@ -63,7 +63,7 @@ impl<S: Real> Stepper<'_, S> {
     pub(crate) fn begin_known_step(&mut self, state: &State<S>) {
         self.forget();
         self.solver.start.load.copy_from_slice(&state.load);
-        self.solver.linearisation.extrapolate_gaps(&self.model, 0, &state.cells);
+        self.solver.linearisation.extrapolate_gaps(0, &state.cells);
     }
 
     /// The weather of a stage.

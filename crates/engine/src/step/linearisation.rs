@@ -1,6 +1,5 @@
 //! The laws of a building linearised about an iterate.
 
-use crate::building::glazing::Glass;
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
 use crate::linear::laws::LinearisedLaws;
@@ -12,6 +11,7 @@ use crate::physics::air_flow;
 use crate::physics::doors;
 use crate::physics::longwave::Emission;
 use crate::physics::window_gaps::GapTangent;
+use crate::step::gap_convection::GapConvection;
 use crate::step::stage::Stage;
 use crate::weather::conditions::Conditions;
 
@@ -19,34 +19,26 @@ use crate::weather::conditions::Conditions;
 #[derive(Debug, Clone)]
 pub(crate) struct Linearisation<S> {
     pub(crate) laws: LinearisedLaws<S>,
-    /// Convective conductance of the gaps of each wall that is a window, expected in each stage [W/(m2 K)].
-    gap_convection: Vec<Vec<Vec<S>>>,
+    gap_convection: GapConvection<S>,
 }
 
 impl<S: Real> Linearisation<S> {
     /// With the laws of a building that never change; the others are zero.
     pub(crate) fn new(model: &Model<'_, S>, stages: usize) -> Self {
-        let walls = model.coefficients.walls.iter();
-        let gaps = walls.map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
-        let zeros = |n: usize| vec![S::zero(); n];
-        Self { laws: LinearisedLaws::new(model), gap_convection: vec![gaps.map(zeros).collect(); stages] }
+        Self { laws: LinearisedLaws::new(model), gap_convection: GapConvection::new(model, stages) }
     }
 
     /// Evaluates the convection in gaps at the cell temperatures that are expected in a stage: those of the step's start in
     /// the first, so that a step depends on the state and the weather only.
     #[inline(always)]
-    pub(crate) fn extrapolate_gaps(&mut self, model: &Model<'_, S>, stage: usize, expected: &[S]) {
-        for &w in &model.plan.windows {
-            if let Some(glass) = &model.coefficients.walls[w].glass {
-                glass.expect(&expected[model.cells(w)], &mut self.gap_convection[stage][w]);
-            }
-        }
+    pub(crate) fn extrapolate_gaps(&mut self, stage: usize, expected: &[S]) {
+        self.gap_convection.expect(stage, expected);
     }
 
     /// Convective conductance of the only gap of a window, expected in a stage [W/(m2 K)].
     #[inline(always)]
     pub(crate) fn gap_convection(&self, stage: usize, w: usize) -> S {
-        self.gap_convection[stage][w][0]
+        self.gap_convection.of_wall(stage, w)[0]
     }
 
     /// Convection that depends on the wind alone; zone fronts evaluate that of their surfaces, unless `all` is asked for.
@@ -88,7 +80,7 @@ impl<S: Real> Linearisation<S> {
             let links = &mut chain.links;
             glass.linearise(
                 at.cells,
-                &self.gap_convection[stage.index()][w],
+                self.gap_convection.of_wall(stage.index(), w),
                 #[inline(always)]
                 |link, GapTangent { left, right, offset }| links[link] = Link { left, right, offset },
             );

@@ -4,6 +4,7 @@ mod accept;
 pub mod control;
 mod energy;
 pub(crate) mod film;
+mod gap_convection;
 mod guess;
 mod halving;
 pub(crate) mod history;

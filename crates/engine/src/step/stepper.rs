@@ -277,7 +277,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         solver.system.step_maps.begin();
         self.known.restart();
         self.guess.first(model, state, node, &mut solver.iterate);
-        solver.linearisation.extrapolate_gaps(model, 0, &state.cells);
+        solver.linearisation.extrapolate_gaps(0, &state.cells);
     }
 
     /// What the second stage starts from; its end is guessed on a straight line.
@@ -297,7 +297,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let StageSolver { linearisation, iterate, solution, .. } = &mut self.solver;
         let known = [state.view(), solution.view()];
         iterate.extrapolate(&self.model, &known, 1.0 / self.scheme.tableau().diagonal, &state.memory);
-        linearisation.extrapolate_gaps(&self.model, 1, &iterate.cells);
+        linearisation.extrapolate_gaps(1, &iterate.cells);
     }
 
     /// Solves a stage in the weather that is set.

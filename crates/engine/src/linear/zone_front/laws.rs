@@ -173,6 +173,9 @@ impl<S: Real> Laws<S> {
     /// Reads the wind at the surfaces.
     #[inline(always)]
     pub(super) fn set_wind(&mut self, conditions: &Conditions<S>) {
+        if self.nonlinear.is_empty() && self.by_wind.is_empty() {
+            return;
+        }
         let [first, second] = &mut self.forced;
         for ((&place, first), second) in self.places[..self.count].iter().zip(first).zip(second) {
             [*first, *second] = conditions.surfaces[SurfaceId::from_index(place)].forced;
