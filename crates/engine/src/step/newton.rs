@@ -107,7 +107,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
     // One copy only: inlining multiplies compile time, and it is by far the largest part of a step.
     #[inline(never)]
     pub(crate) fn solve(&mut self, stage: &Stage<'_, S>, search: Search<S>) -> Result<S::Mask, EngineError> {
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 self.begin(stage);
