@@ -183,7 +183,8 @@ impl<'a, S: Real> StageSolver<'a, S> {
             }
         }
         self.finish(stage);
-        if S::LANES > 1 {
+        // Known when it is compiled: lanes have no nested iteration.
+        if const { S::LANES > 1 } {
             return self.fail(stage, active);
         }
         let error = self.not_converged(stage, active);

@@ -32,7 +32,7 @@ impl<S: Real> IdealLoads<S> {
     /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right; in the other
     /// active lanes whose responses are known (with `all`, in every active one) the loads are corrected.
     #[inline(always)]
-    pub(crate) fn correct(
+    pub(super) fn correct(
         &mut self,
         air: &[S],
         loads: &mut [S],
