@@ -131,24 +131,22 @@ fn run_with_slopes(
         .map(|(numbers, parameters)| {
             let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
             if options.probes.iter().any(Output::averages_absorbed_sun) {
-                stepper.stepper.average_absorbed_sun();
+                stepper.follower.average_absorbed_sun();
             }
-            let state = stepper.stepper.begin(&options.initial);
+            let state = stepper.follower.begin(&options.initial);
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme.converged());
     plain.known.start();
     march_observed(plain, weather, options, watch, |plain, reached, action| {
-        let solution = plain.known.solution(&reached.load);
         for Group { stepper, state, slopes } in &mut groups {
-            stepper.take(action, state, weather, options.dt, solution)?;
+            stepper.take(action, state, weather, options.dt, &plain.known);
             // The values are those of the plain run, as in reverse: rounding and tolerances must not add up.
             state.change_by(reached, |number, value| number.value = value);
             if action.row(options).is_some() {
-                slopes
-                    .records
-                    .extend(options.probes.iter().map(|probe| probe.read(plan, &stepper.stepper, state)));
+                let step = stepper.follower.readings();
+                slopes.records.extend(options.probes.iter().map(|probe| probe.read(plan, &step, state)));
             }
         }
         Ok(())

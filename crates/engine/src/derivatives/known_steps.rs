@@ -1,105 +1,119 @@
-//! Steps of numbers with derivatives, where the solution of the step is known from a plain run.
+//! Steps of numbers with derivatives along the solutions of a plain run.
 //!
 //! Only the slopes of the equations of a stage are differentiated ([`super::equation_slopes`]). The slopes of the solution
 //! follow from them by one solve with the plain matrix of the stage (implicit function theorem: Griewank & Walther (2008),
 //! ch. 15, doi:10.1137/1.9780898717761). Nothing is iterated, and no elimination is computed with derivatives.
 
-use crate::balance::ledger::Ledger;
 use crate::balance::terms::Balances;
 use crate::building::plan::Plan;
-use crate::error::EngineError;
 use crate::linear::stage_matrix::StageMatrix;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Equations, Real};
 use crate::number::tape::{Taped, add_steady_weights};
 use crate::run::Action;
-use crate::step::known_solution::StagePlace;
-use crate::step::stage_solutions::Solution;
+use crate::step::Scheme;
+use crate::step::follower::{Follower, StagePlace};
+use crate::step::stage_solutions::{KnownPart, StageSolutions};
 use crate::step::state::State;
-use crate::step::{Scheme, Stepper};
 use crate::weather::conditions::{Instant, Weather};
 
 use super::equation_slopes::{Carries, EquationSlopes};
 use super::steady_terms::{KnownValues, Parts, SteadyTerms};
 
-/// A stepper whose numbers have derivatives, and the plain matrices at the known solutions.
+/// A follower whose numbers have derivatives, and the plain matrices at the known solutions.
 #[derive(Debug, Clone)]
 pub(super) struct DerivativeStepper<'a, S: Real> {
-    pub(super) stepper: Stepper<'a, S>,
-    /// Matrices of the stages at their solutions, in plain numbers.
-    matrices: Vec<StageMatrix<'a>>,
+    pub(super) follower: Follower<'a, S>,
+    /// What is known of each stage of a part; where the equations are solved once more after the step, of each stage of all its parts.
+    stages: Vec<KnownStage<'a>>,
+    /// Stages of a part.
+    count: usize,
     equations: S::Equations,
     carries: Carries,
     steady: SteadyTerms<S>,
-    /// What is known of each stage.
-    known: Vec<KnownValues>,
     /// Responses of all unknowns to each ideal load [K/W].
     responses: Vec<Vec<f64>>,
     scratch: Vec<f64>,
 }
 
+/// A stage at its known solution, in plain numbers.
+#[derive(Debug, Clone)]
+struct KnownStage<'a> {
+    matrix: StageMatrix<'a>,
+    values: KnownValues,
+}
+
 impl<'a, S: Real> DerivativeStepper<'a, S> {
     pub(super) fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
-        let stepper = Stepper::new(plan, numbers, scheme);
+        let follower = Follower::new(plan, numbers, scheme);
         let plain: Vec<f64> = numbers.iter().map(|number| number.lane(0)).collect();
         let matrix = StageMatrix::new(plan, &plain, scheme.tableau().diagonal);
         let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
-        let known = KnownValues::new(&stepper.model);
-        let steady = SteadyTerms::find(&stepper, &known);
+        let values = KnownValues::new(&follower.model);
+        let count = scheme.weights().len();
         Self {
-            matrices: vec![matrix; scheme.weights().len()],
             equations: S::Equations::default(),
-            carries: Carries::new(&stepper.model),
-            steady,
-            known: vec![known; scheme.weights().len()],
+            carries: Carries::new(&follower.model),
+            steady: SteadyTerms::find(&follower, &values),
+            stages: vec![KnownStage { matrix, values }; count],
+            count,
             responses: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
             scratch: Vec::new(),
-            stepper,
+            follower,
         }
     }
 
-    /// Takes an action whose solution is known; without one, by the iteration itself.
+    /// Takes an action whose solution is known.
     pub(super) fn take(
         &mut self,
         action: Action,
         state: &mut State<S>,
         weather: &Weather<'_>,
         dt: f64,
-        solution: Option<Solution<'_>>,
-    ) -> Result<(), EngineError> {
-        let Some(solution) = solution else {
-            return action.take(&mut self.stepper, state, weather, dt, &mut Ledger::new());
-        };
-        match action {
-            Action::WarmUp(step) | Action::Step(step) => self.step(state, weather, step, dt, solution),
-            // Made in parts, whose solutions are not kept.
-            Action::FirstStep => {
-                return action.take(&mut self.stepper, state, weather, dt, &mut Ledger::new());
+        known: &StageSolutions<f64>,
+    ) {
+        // A step in many parts is rare: what was known of its stages is not kept.
+        self.stages.truncate(self.count);
+        let step = match action {
+            Action::WarmUp(step) | Action::Step(step) => step,
+            Action::FirstStep => 0,
+            Action::Balance => {
+                return self.balance_surfaces(state, &weather.at(0, 0), known);
             }
-            Action::Balance => self.balance_surfaces(state, &weather.at(0, 0), solution),
+        };
+        self.follower.begin_step(state, weather.row(step, 0), dt);
+        for (k, part) in known.parts().enumerate() {
+            let first = if const { S::Equations::SOLVED_LATER } { k * self.count } else { 0 };
+            while self.stages.len() < first + self.count {
+                let another = self.stages[0].clone();
+                self.stages.push(another);
+            }
+            self.part(state, weather, dt, (&part, first));
+            // Rounding and tolerances must not add up.
+            if let Some(reached) = part.reached {
+                state.change_by(reached, |number, value| *number = number.with_value(value));
+            }
         }
-        Ok(())
     }
 
-    /// One step of length `dt` [s].
+    /// One part of a step of length `dt` [s]; `first` is the place of its first stage.
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
-    fn step(
+    fn part(
         &mut self,
         state: &mut State<S>,
         weather: &Weather<'_>,
-        step: usize,
         dt: f64,
-        solution: Solution<'_>,
+        (known, first): (&KnownPart<'_>, usize),
     ) {
+        let length = dt * known.part.share;
         S::vectorised(
             #[inline(always)]
             || {
-                self.stepper.control_vents(state, weather.row(step, 0), dt);
-                self.stepper.begin_known_step(state);
-                let plan = self.stepper.model.plan;
+                self.follower.begin_part(state);
+                let plan = self.follower.model.plan;
                 let controlled =
-                    !plan.ideal_loads.is_empty() && self.stepper.set_ideal_loads(weather, step, solution);
+                    !plan.ideal_loads.is_empty() && self.follower.set_ideal_loads(weather, known);
                 // Responses do not contain the effect of a load on the convection extrapolated in gaps: with windows a second
                 // round adds its slope.
                 let rounds = match (controlled, plan.windows.is_empty()) {
@@ -108,91 +122,100 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                     (true, false) => 2,
                 };
                 for round in 0..=rounds {
-                    for (place, known) in self.stepper.stage_places(dt).zip(solution.stages) {
+                    for (place, solved) in self.follower.stage_places(length).zip(known.stages) {
                         if place.stage > 0 {
-                            self.stepper.store_first_stage(state);
+                            self.follower.store_first_stage(state);
                         }
-                        self.stepper.conditions_of_stage(state, weather, step, place.stage);
-                        self.stage(state, place, known);
+                        self.follower.conditions_of_stage(state, weather, known.part, place.stage);
+                        self.stage(state, place, (solved, first + place.stage));
                         if round == rounds {
-                            self.stepper.note_vapour(place.stage);
+                            self.follower.note_vapour(place.stage);
                         }
                     }
                     if round < rounds {
-                        self.respond(dt);
-                        self.stepper.correct_ideal_loads();
+                        self.respond(length, first);
+                        self.follower.correct_ideal_loads();
                     }
                 }
-                self.stepper.end_known_step(state);
-                self.stepper.begin_vapour();
-                self.stepper.advance_vapour(state, dt, &mut Ledger::new());
+                self.follower.end_part(state, known.part, length);
             },
         );
     }
 
     /// Brings the surfaces of a state into balance with the weather.
-    fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: Solution<'_>) {
-        S::vectorised_search(
-            #[inline(always)]
-            || {
-                self.stepper.begin_known_step(state);
-                self.stepper.conditions_now(now);
-                self.stepper.control_vents(state, now.row, 0.0);
-                self.stepper.drive_vents(state);
-                self.stage(state, StagePlace::instant(), &solution.stages[0]);
-                self.stepper.end_known_balance(state);
-            },
-        );
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>, known: &StageSolutions<f64>) {
+        self.follower.begin_balance(state, now);
+        for solved in known.parts().flat_map(|part| part.stages) {
+            self.stage(state, StagePlace::instant(), (solved, 0));
+        }
+        self.follower.end_balance(state);
     }
 
     /// One stage: the slopes of its equations at the solution, and from them the slopes of the solution.
+    // One copy only, the largest part of a step: inlining multiplies the size of the library.
+    #[inline(never)]
+    fn stage(&mut self, state: &State<S>, place: StagePlace, (solved, number): (&Unknowns<f64>, usize)) {
+        S::vectorised(
+            #[inline(always)]
+            || self.solve_stage(state, place, (solved, number)),
+        );
+    }
+
     #[inline(always)]
-    fn stage(&mut self, state: &State<S>, place: StagePlace, solved: &Unknowns<f64>) {
-        let Self { stepper, matrices, equations, carries, steady, known, .. } = self;
-        let (matrix, values) = (&mut matrices[place.stage], &mut known[place.stage]);
+    fn solve_stage(
+        &mut self,
+        state: &State<S>,
+        place: StagePlace,
+        (solved, number): (&Unknowns<f64>, usize),
+    ) {
+        let Self { follower, stages, equations, carries, steady, .. } = self;
+        let KnownStage { matrix, values } = &mut stages[number];
         let new = matrix.factor_linear_walls(place.length);
-        stepper.linearise_known_stage(state, place, solved);
+        follower.linearise_known_stage(state, place, solved);
         let Parts { solution, cooling, emission } = values.parts();
-        stepper.write_known_solution(solved, solution);
-        stepper.write_known_cells(&steady.walls, (state, place, solved), matrix, [solution, cooling]);
-        stepper.write_emission(&steady.surfaces, solved, emission);
-        let Balances { walls, laws, conditions, .. } = stepper.balances();
+        follower.write_known_solution(solved, solution);
+        follower.write_known_cells(&steady.walls, (state, place, solved), matrix, [solution, cooling]);
+        follower.write_emission(&steady.surfaces, solved, emission);
+        let Balances { walls, laws, conditions, .. } = follower.balances();
         matrix.factor((laws, walls, conditions), place.length, new);
-        let contents = stepper.stage_of(state, place);
+        let contents = follower.stage_of(state, place);
         let at = values.solution();
-        let mut slopes = EquationSlopes::new(&stepper.model, carries, equations, at);
-        stepper.balances().visit(&contents, &mut slopes);
+        let mut slopes = EquationSlopes::new(&follower.model, carries, equations, at);
+        follower.balances().visit(&contents, &mut slopes);
         slopes.hold_heat(&contents, matrix);
         equations.add_steady(&steady.terms, values.all());
-        stepper.store_solution(
+        follower.store_solution(
             #[inline(always)]
-            |solution| equations.solve(place.stage, matrix, at, solution),
+            |solution| equations.solve(number, matrix, at, solution),
         );
     }
 
     /// Responses of the airs at the end of the step to each ideal load, by the matrices of the stages.
     #[inline(always)]
-    fn respond(&mut self, dt: f64) {
-        let Self { stepper, matrices, responses, scratch, .. } = self;
-        let plan = stepper.model.plan;
+    fn respond(&mut self, length: f64, first: usize) {
+        let Self { follower, stages, count, responses, scratch, .. } = self;
+        let stages = &stages[first..first + *count];
+        let plan = follower.model.plan;
         let first_air = plan.n_cells + plan.surfaces.len();
         for (p, (&zone, rows)) in plan.ideal_loads.iter().zip(responses).enumerate() {
             rows.fill(0.0);
-            for (place, matrix) in stepper.stage_places(dt).zip(&*matrices) {
-                if let Some(first) = place.stage.checked_sub(1) {
+            for (place, KnownStage { matrix, .. }) in follower.stage_places(length).zip(stages) {
+                if let Some(before) = place.stage.checked_sub(1) {
                     // Heat capacities at the solution of the first stage, not of this one.
-                    matrices[first].stored_for_next_stage(rows, place.ratio);
+                    stages[before].matrix.stored_for_next_stage(rows, place.ratio);
                 }
-                let numbers = &stepper.model.coefficients.zones[zone];
+                let numbers = &follower.model.coefficients.zones[zone];
                 let radiated =
-                    numbers.radiated_part(stepper.ideal_load(zone)).map_or(0.0, |part| part.lane(0));
+                    numbers.radiated_part(follower.ideal_load(zone)).map_or(0.0, |part| part.lane(0));
                 rows[first_air + zone] += 1.0 - radiated;
                 for (&surface, &share) in plan.zones[zone].surfaces.iter().zip(&numbers.radiant_shares) {
                     rows[plan.n_cells + surface.index()] += radiated * share.lane(0);
                 }
                 matrix.solve_values(rows, scratch);
             }
-            stepper.set_response(p, &rows[first_air..]);
+            follower.set_response(p, &rows[first_air..]);
         }
     }
 }
@@ -200,7 +223,8 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
 impl DerivativeStepper<'_, Taped> {
     /// Weights on the equations of a stage from weights on its solution, in place; those on the numbers of steady terms are added.
     pub(super) fn pull(&mut self, stage: usize, equations: &mut [f64], weights: &mut [f64]) {
-        self.matrices[stage].solve_transposed(equations, &mut self.scratch);
-        add_steady_weights(&self.steady.terms, self.known[stage].all(), equations, weights);
+        let KnownStage { matrix, values } = &self.stages[stage];
+        matrix.solve_transposed(equations, &mut self.scratch);
+        add_steady_weights(&self.steady.terms, values.all(), equations, weights);
     }
 }

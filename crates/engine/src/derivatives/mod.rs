@@ -4,10 +4,9 @@
 //! - Reverse (`reverse`): the operations of each step are recorded on a tape. Result: one quantity by all parameters.
 //!
 //! Both start from the known solutions of a run of plain numbers (`known_steps`): only the slopes of the equations are
-//! differentiated (`equation_slopes`, `steady_terms`), and the slopes of the solution follow by the implicit function theorem. Where no
-//! solution is known (a halved step), Newton's iteration itself is differentiated, with one more iteration, so that its
-//! slopes converge too. At a switch (the ends of a melting range, a curve of hysteresis, windward and leeward, the start of
-//! a load) the slope is the one-sided one of the branch taken.
+//! differentiated (`equation_slopes`, `steady_terms`), and the slopes of the solution follow by the implicit function theorem. A step that
+//! was made in parts is followed part by part. At a switch (the ends of a melting range, a curve of hysteresis, windward and leeward, the
+//! start of a load) the slope is the one-sided one of the branch taken.
 //!
 //! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., doi:10.1137/1.9780898717761.
 

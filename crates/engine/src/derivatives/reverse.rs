@@ -18,8 +18,9 @@ use crate::run::options::Options;
 use crate::run::outputs::Output;
 use crate::step::Stepper;
 use crate::step::control::RunControl;
+use crate::step::halving::Part;
 use crate::step::history::History;
-use crate::step::stage_solutions::{Solution, read_solution};
+use crate::step::stage_solutions::StageSolutions;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
@@ -48,31 +49,34 @@ struct Start {
     history: History<f64>,
 }
 
-/// Successive actions: the numbers of the state before each of them and of its solution.
+/// Successive actions: the numbers of the state before each of them, and of its solution.
 #[derive(Debug, Default)]
 struct Stretch {
     states: Vec<f64>,
+    /// Parts of the steps, and the numbers of their solutions.
+    parts: Vec<Part>,
     solutions: Vec<f64>,
-    /// Where the numbers of each solution end; an unknown solution has none.
-    ends: Vec<usize>,
+    /// Where the parts of each action end, and their numbers.
+    ends: Vec<[usize; 2]>,
 }
 
 impl Stretch {
-    /// Adds an action that a stepper has taken, from the state before it to a state with these loads.
-    fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>, load: &[f64]) {
+    /// Adds an action that a stepper has taken, from the state before it.
+    fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>) {
         before.write(&mut self.states);
-        if let Some(solution) = stepper.known.solution(load) {
-            solution.write(&stepper.model.parts.nonlinear_cells, &mut self.solutions);
-        }
-        self.ends.push(self.solutions.len());
+        let cells = &stepper.model.parts.nonlinear_cells;
+        stepper.known.write(cells, (&mut self.parts, &mut self.solutions));
+        self.ends.push([self.parts.len(), self.solutions.len()]);
     }
 
-    /// The actions from the last to the first: numbers of the state before each and of its solution.
-    fn reversed(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+    /// The actions from the last to the first: numbers of the state before each, parts and numbers of its solution.
+    fn reversed(&self) -> impl Iterator<Item = (&[f64], (&[Part], &[f64]))> {
         let size = self.states.len() / self.ends.len().max(1);
         (0..self.ends.len()).rev().map(move |k| {
-            let first = k.checked_sub(1).map_or(0, |before| self.ends[before]);
-            (&self.states[k * size..(k + 1) * size], &self.solutions[first..self.ends[k]])
+            let [part, number] = k.checked_sub(1).map_or([0; 2], |before| self.ends[before]);
+            let [last_part, last_number] = self.ends[k];
+            let solution = (&self.parts[part..last_part], &self.solutions[number..last_number]);
+            (&self.states[k * size..(k + 1) * size], solution)
         })
     }
 }
@@ -107,7 +111,7 @@ impl Trajectory {
                 last = Stretch::default();
             }
             actions.push(action);
-            last.push(&before, stepper, &reached.load);
+            last.push(&before, stepper);
             before.copy_from(reached);
             if last.ends.len() == length {
                 next = stepper.history();
@@ -139,7 +143,7 @@ impl Trajectory {
         // Dropped last: its end releases the tape, also after an error.
         let _recording = Tape::record();
         let leaves: Vec<_> = numbers.iter().map(|&number| Taped::variable(number)).collect();
-        let mut pass = ReversePass::new(plan, &leaves, &weather, options, weights);
+        let mut pass = ReversePass::new(plan, &leaves, &weather, options, (&self.run.state, weights));
         let first_of_last = self.starts.len() * self.length;
         pass.over(&self.actions[first_of_last..], &self.last, watch)?;
         for (k, start) in self.starts.iter().enumerate().rev() {
@@ -179,15 +183,13 @@ fn run_again(
     for action in actions {
         before.copy_from(&state);
         action.take(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
-        stretch.push(&before, &stepper, &state.load);
+        stretch.push(&before, &stepper);
     }
     Ok(stretch)
 }
 
 /// The reverse pass.
 struct ReversePass<'a> {
-    /// The stepper as built, with its coefficients on the tape.
-    fresh: DerivativeStepper<'a, Taped>,
     stepper: DerivativeStepper<'a, Taped>,
     weather: &'a Weather<'a>,
     options: &'a Options,
@@ -203,8 +205,9 @@ struct ReversePass<'a> {
     /// The state before the current action, then after it.
     now: State<Taped>,
     /// Its solution.
-    stages: Vec<Unknowns<f64>>,
-    load: Vec<f64>,
+    known: StageSolutions<f64>,
+    /// Unknowns and a state of the building, to be filled.
+    blank: (Unknowns<f64>, State<f64>),
 }
 
 impl<'a> ReversePass<'a> {
@@ -213,22 +216,20 @@ impl<'a> ReversePass<'a> {
         leaves: &'a [Taped],
         weather: &'a Weather<'a>,
         options: &'a Options,
-        records: &'a [f64],
+        (reached, records): (&State<f64>, &'a [f64]),
     ) -> Self {
-        let mut fresh = DerivativeStepper::new(plan, leaves, options.scheme.converged());
+        let mut stepper = DerivativeStepper::new(plan, leaves, options.scheme.converged());
         if options.probes.iter().any(Output::averages_absorbed_sun) {
-            fresh.stepper.average_absorbed_sun();
+            stepper.follower.average_absorbed_sun();
         }
-        let (stepper, length) = (fresh.clone(), Tape::len());
-        let now = fresh.stepper.begin(&options.initial);
+        let length = Tape::len();
+        let now = stepper.follower.begin(&options.initial);
         Tape::truncate(length);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
-        let plain = |unknowns: &Unknowns<Taped>| unknowns.plain();
         Self {
-            stages: fresh.stepper.places().iter().map(plain).collect(),
-            load: vec![0.0; plan.zones.len()],
-            fresh,
+            known: StageSolutions::nothing(),
+            blank: (stepper.follower.place(), reached.clone()),
             stepper,
             weather,
             options,
@@ -247,13 +248,13 @@ impl<'a> ReversePass<'a> {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            self.reverse(action, before, solution)?;
+            self.reverse(action, before, solution);
         }
         Ok(())
     }
 
     /// Reverses an action: replaces the weights on the state after it by those on the state before it.
-    fn reverse(&mut self, action: Action, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
+    fn reverse(&mut self, action: Action, before: &[f64], solution: (&[Part], &[f64])) {
         Tape::truncate(self.base);
         let (stepper, state) = (&mut self.stepper, &mut self.now);
         let mut place = self.first;
@@ -261,18 +262,17 @@ impl<'a> ReversePass<'a> {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = &stepper.stepper.model.parts.nonlinear_cells;
-        let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
-        let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
-        stepper.stepper.forget();
-        stepper.take(action, state, self.weather, self.options.dt, solution)?;
+        let cells = &stepper.follower.model.parts.nonlinear_cells;
+        let stages = if action == Action::Balance { 1 } else { self.options.scheme.weights().len() };
+        self.known.read(cells, solution, stages, (&self.blank.0, &self.blank.1));
+        stepper.take(action, state, self.weather, self.options.dt, &self.known);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         state.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
         if let Some(row) = action.row(self.options) {
-            let probes = &self.options.probes;
+            let (probes, step) = (&self.options.probes, stepper.follower.readings());
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(stepper.stepper.model.plan, &stepper.stepper, state);
+                let record = probe.read(step.model.plan, &step, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }
@@ -284,17 +284,12 @@ impl<'a> ReversePass<'a> {
         for (mine, weight) in self.state.iter_mut().zip(before) {
             *mine = core::mem::take(weight);
         }
-        if !known {
-            // The stepper holds factors whose entries are about to be removed from the tape.
-            self.stepper = self.fresh.clone();
-        }
-        Ok(())
     }
 
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::truncate(self.base);
-        let start = self.fresh.stepper.begin(&self.options.initial);
+        let start = self.stepper.follower.begin(&self.options.initial);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         start.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));

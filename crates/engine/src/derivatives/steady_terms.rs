@@ -13,7 +13,7 @@ use crate::linear::wall::{Link, Storage};
 use crate::number::line::Line;
 use crate::number::real::{Real, SteadyTerm};
 
-use crate::step::Stepper;
+use crate::step::follower::Follower;
 
 use super::equation_slopes::Scale;
 
@@ -76,13 +76,13 @@ pub(super) struct SteadyTerms<S> {
 
 impl<S: Real> SteadyTerms<S> {
     /// The steady terms of a building, by places in [`KnownValues`].
-    pub(super) fn find(stepper: &Stepper<'_, S>, places: &KnownValues) -> Self {
-        let zeros = Unknowns::zero(places.cooling, 0, stepper.model.plan.zones.len());
+    pub(super) fn find(follower: &Follower<'_, S>, places: &KnownValues) -> Self {
+        let zeros = Unknowns::zero(places.cooling, 0, follower.model.plan.zones.len());
         let contents = Contents { cells: &zeros.cells, enthalpy: &zeros.cells, air: &zeros.air };
         let stage = Stage { length: 1.0, ratio: 0.0, start: contents, first: contents };
         let found = Self { terms: Vec::new(), walls: Vec::new(), surfaces: Vec::new() };
-        let mut finding = FindSteadyTerms { model: &stepper.model, places, found, wall: 0 };
-        stepper.balances().visit(&stage, &mut finding);
+        let mut finding = FindSteadyTerms { model: &follower.model, places, found, wall: 0 };
+        follower.balances().visit(&stage, &mut finding);
         let mut found = finding.found;
         found.surfaces.sort_unstable_by_key(|surface| surface.index());
         found.surfaces.dedup();

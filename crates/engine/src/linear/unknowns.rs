@@ -62,14 +62,16 @@ impl<S: Real> Unknowns<S> {
         }
     }
 
-    /// Copies plain temperatures.
+    /// Copies plain temperatures; of cells only some.
     #[inline(always)]
-    pub(crate) fn set(&mut self, plain: &Unknowns<f64>) {
-        let pairs = [
-            (&mut self.cells[..], &plain.cells[..]),
-            (&mut self.surfaces, &plain.surfaces),
-            (&mut self.air, &plain.air),
-        ];
+    pub(crate) fn set(&mut self, cells: &[Range<usize>], plain: &Unknowns<f64>) {
+        for cells in cells {
+            for (a, &b) in self.cells[cells.clone()].iter_mut().zip(&plain.cells[cells.clone()]) {
+                *a = S::constant(b);
+            }
+        }
+        let pairs: [(&mut [S], &[f64]); 2] =
+            [(&mut self.surfaces, &plain.surfaces), (&mut self.air, &plain.air)];
         for (mine, plain) in pairs {
             for (a, &b) in mine.iter_mut().zip(plain) {
                 *a = S::constant(b);

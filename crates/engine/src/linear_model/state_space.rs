@@ -7,8 +7,9 @@ use crate::balance::terms::{Contents, Stage};
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
+use crate::step::Scheme;
 use crate::step::control::RunControl;
-use crate::step::{Scheme, Stepper};
+use crate::step::follower::Follower;
 
 /// Writes a plan at a parameter vector as matrices.
 ///
@@ -18,12 +19,12 @@ pub fn state_space(plan: &Plan, numbers: &[f64], control: &RunControl) -> Result
     let coefficients = Coefficients::new(plan, numbers);
     require_linear(plan, numbers, &coefficients)?;
     // Laws are linear: their tangents at 0 degC and in calm air are the laws themselves.
-    let mut stepper = Stepper::new(plan, numbers, Scheme::BackwardEuler);
-    stepper.linearise_at_rest();
+    let mut follower = Follower::new(plan, numbers, Scheme::BackwardEuler);
+    follower.linearise_at_rest();
     let mut network = Network::new(plan, &coefficients);
     let nothing = vec![0.0; plan.n_cells.max(plan.zones.len())];
     let contents = Contents { cells: &nothing, enthalpy: &nothing, air: &nothing };
     let stage = Stage { length: f64::INFINITY, ratio: 0.0, start: contents, first: contents };
-    stepper.balances().visit(&stage, &mut network);
+    follower.balances().visit(&stage, &mut network);
     network.eliminate_surfaces(control)
 }

@@ -107,14 +107,14 @@ impl<const K: usize> Real for Dual<K> {
     fn carries(self) -> bool {
         self.slope != [0.0; K]
     }
+    #[inline(always)]
+    fn with_value(self, value: f64) -> Self {
+        Self { value, ..self }
+    }
     chain_rule!(always);
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         if K > 1 { crate::number::simd::widened(work) } else { work() }
-    }
-    #[inline(always)]
-    fn vectorised_search<R>(work: impl FnOnce() -> R) -> R {
-        work()
     }
 }
 

@@ -78,7 +78,8 @@ pub trait Real:
     const LANES: usize;
     /// What the number keeps of the equations whose solution it is part of.
     type Equations: Equations<Self>;
-    /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
+    /// True when the number carries derivatives. (Steps are followed along known solutions; where tests make a whole run of such
+    /// numbers, to compare with that, Newton's method adds one iteration, so that derivatives converge too.)
     const DERIVATIVES: bool;
     /// How many neighbouring numbers of an array are computed at once, see [`Chunk`].
     const CHUNK: usize = 1;
@@ -105,6 +106,12 @@ pub trait Real:
     #[must_use]
     fn fixed(self) -> Self {
         self
+    }
+    /// The same derivatives at another value.
+    #[inline(always)]
+    #[must_use]
+    fn with_value(self, value: f64) -> Self {
+        Self::constant(value)
     }
     /// Whether it has derivatives that are not zero.
     #[inline(always)]
@@ -144,13 +151,6 @@ pub trait Real:
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         work()
-    }
-    /// The same for work that belongs to the search for the solution of a stage. Numbers with slopes are given the solution of plain
-    /// numbers and search for few stages only (the first step, steps in parts): for them it is compiled once, with the instructions that
-    /// every machine has.
-    #[inline(always)]
-    fn vectorised_search<R>(work: impl FnOnce() -> R) -> R {
-        Self::vectorised(work)
     }
     /// Cube root of a positive normal number.
     #[inline(always)]
@@ -317,6 +317,9 @@ pub struct SteadyTerm<S> {
 
 /// What a kind of number keeps of the equations of a stage. Plain numbers keep nothing.
 pub trait Equations<S: Copy>: Clone + Debug + Default + Send + Sync {
+    /// Whether the system of each stage is needed once more after the step.
+    const SOLVED_LATER: bool = false;
+
     /// Begins a system of `equations` equations without terms.
     fn begin(&mut self, equations: usize);
 

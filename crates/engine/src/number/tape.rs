@@ -193,6 +193,8 @@ pub struct EquationTerms {
 }
 
 impl Equations<Taped> for EquationTerms {
+    const SOLVED_LATER: bool = true;
+
     #[inline(always)]
     fn begin(&mut self, equations: usize) {
         self.terms.clear();
@@ -363,6 +365,10 @@ impl Real for Taped {
     #[inline(always)]
     fn carries(self) -> bool {
         self.place != NOWHERE
+    }
+    #[inline(always)]
+    fn with_value(self, value: f64) -> Self {
+        Self { value, ..self }
     }
     // One copy only: inlining multiplies compile time.
     chain_rule!(never);

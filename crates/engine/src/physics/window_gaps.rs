@@ -145,29 +145,38 @@ impl<S: Real> GasGap<S> {
     /// Equal gaps in a row as one, of a height [m]: argon in a vertical gap of the width that gives the rated conductance of the
     /// gas, or of the best width and a better gas; radiation exact in T^4.
     pub(crate) fn of_rating(rated: &RatedGaps<S>, height: S) -> Self {
-        let each = |width: S, height: S| {
-            let (pressure, tilt) = (S::constant(STANDARD_PRESSURE), S::constant(90.0));
-            Self::new(Gas::Argon, pressure, [width, height], tilt, [S::one(); 2])
-        };
-        let as_rated = |gap: &Self| {
-            let half = 0.5 * RATED_DIFFERENCE;
-            gap.convection(S::constant(RATED_TEMPERATURE - half), S::constant(RATED_TEMPERATURE + half))
-        };
         let [least, best] = BEST_WIDTHS.map(S::constant);
         // Of the logarithm: nearly a straight line in that of the width.
         let width =
             falling_root(S::constant(BEST_WIDTHS[1]).ln(), 12, [least.ln(), best.ln()], |width, fixed| {
                 let keep = |number: S| if fixed { number.fixed() } else { number };
-                (as_rated(&each(width.exp(), keep(height))) / keep(rated.gas).max(S::constant(1e-3))).ln()
+                let gap = Self::vertical(width.exp(), keep(height));
+                (gap.as_rated() / keep(rated.gas).max(S::constant(1e-3))).ln()
             });
-        let mut gap = each(width.exp(), height);
+        let mut gap = Self::vertical(width.exp(), height);
         // The difference is shared by all gaps. A single pane has less than one gap, and no gas that circulates.
         gap.shape.buoyancy = gap.shape.buoyancy * rated.number.min(S::one()) / rated.number.max(S::one());
         gap.shape.inverse_thickness =
-            gap.shape.inverse_thickness * (rated.gas / rated.number) / as_rated(&gap);
+            gap.shape.inverse_thickness * (rated.gas / rated.number) / gap.as_rated();
         let mean = KELVIN + RATED_TEMPERATURE;
         gap.exchange = (rated.radiation / rated.number).scale(1.0 / (4.0 * SIGMA * mean * mean * mean));
         gap
+    }
+
+    /// Argon in a vertical gap of a width and a height [m].
+    // One copy only, of something done once: inlining multiplies the size of the library.
+    #[inline(never)]
+    fn vertical(width: S, height: S) -> Self {
+        let (pressure, tilt) = (S::constant(STANDARD_PRESSURE), S::constant(90.0));
+        Self::new(Gas::Argon, pressure, [width, height], tilt, [S::one(); 2])
+    }
+
+    /// Conductance of the gas at the temperatures of a rating [W/(m2 K)].
+    // One copy only, as above.
+    #[inline(never)]
+    fn as_rated(&self) -> S {
+        let half = 0.5 * RATED_DIFFERENCE;
+        self.convection(S::constant(RATED_TEMPERATURE - half), S::constant(RATED_TEMPERATURE + half))
     }
 
     /// Conductance of the gas [W/(m2 K)] between surfaces at two temperatures [degC].

@@ -8,8 +8,8 @@ use crate::building::plan::{Plan, SurfaceRole};
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::physics::psychrometrics::{dew_point, relative_humidity, wet_bulb};
+use crate::step::readings::Readings;
 use crate::step::state::State;
-use crate::step::stepper::Stepper;
 
 /// A quantity to record.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -284,80 +284,80 @@ impl Output {
 
     /// Reads the quantity after a step.
     // Long because each quantity has its own line.
-    pub fn read<S: Real>(&self, plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>) -> S {
+    pub(crate) fn read<S: Real>(&self, plan: &Plan, step: &Readings<'_, S>, state: &State<S>) -> S {
         match *self {
             Self::AirTemperature { zone } => state.air[zone],
-            Self::MeanRadiantTemperature { zone } => mean_radiant(plan, stepper, state, zone),
+            Self::MeanRadiantTemperature { zone } => mean_radiant(plan, step, state, zone),
             Self::HeatingLoad { zone } => state.load[zone].max(S::zero()),
             Self::NetLoad { zone } => state.load[zone],
             Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
-            Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
+            Self::AirChanges { zone } => step.air_changes(zone, state.air[zone]),
             Self::FaceTemperature { surface, side } => state.surfaces[SurfaceId::new(surface, side)],
             Self::FaceFlux { surface, side } => {
-                stepper.link_flux(state, surface, side * plan.walls[surface].len())
+                step.link_flux(state, surface, side * plan.walls[surface].len())
             }
             Self::InterfaceTemperature { surface, interface } => {
-                interface_temperature(plan, stepper, state, surface, interface)
+                interface_temperature(plan, step, state, surface, interface)
             }
-            Self::LayerFlux { surface, layer } => layer_flux(plan, stepper, state, surface, layer),
+            Self::LayerFlux { surface, layer } => layer_flux(plan, step, state, surface, layer),
             Self::LayerTemperature { surface, layer } => layer_mean(plan, surface, layer, |k| state.cells[k]),
             Self::LiquidFraction { surface, layer } => {
                 layer_mean(plan, surface, layer, |k| state.memory[k].liquid_fraction)
             }
             Self::LayerEnthalpy { surface, layer } => {
-                layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
+                layer_mean(plan, surface, layer, |k| step.enthalpy(state, surface, k))
             }
-            Self::IncidentSolar { surface } => stepper.incident(SurfaceId::outside(surface)),
-            Self::TransmittedSolar { surface } => transmitted(plan, stepper, surface),
+            Self::IncidentSolar { surface } => step.incident(SurfaceId::outside(surface)),
+            Self::TransmittedSolar { surface } => transmitted(plan, step, surface),
             Self::SolarTransmittance { surface } => {
-                let on = stepper.model.coefficients.walls[surface].area
-                    * stepper.incident(SurfaceId::outside(surface));
+                let on =
+                    step.model.coefficients.walls[surface].area * step.incident(SurfaceId::outside(surface));
                 let dark = on.lt(S::constant(1e-9));
-                let part = transmitted(plan, stepper, surface) / S::select(dark, S::one(), on);
+                let part = transmitted(plan, step, surface) / S::select(dark, S::one(), on);
                 S::select(dark, S::zero(), part)
             }
-            Self::ZoneTransmittedSolar { zone } => stepper.weather.sun.zones[zone],
-            Self::ZoneLostSolar { zone } => stepper.weather.sun.lost[zone],
-            Self::AbsorbedSolar { surface, side } => stepper.weather.absorbed(SurfaceId::new(surface, side)),
-            Self::NetLongwave { surface, side } => stepper.net_longwave(state, SurfaceId::new(surface, side)),
-            Self::Convection { surface, side } => stepper.convection(state, SurfaceId::new(surface, side)),
+            Self::ZoneTransmittedSolar { zone } => step.weather.sun.zones[zone],
+            Self::ZoneLostSolar { zone } => step.weather.sun.lost[zone],
+            Self::AbsorbedSolar { surface, side } => step.weather.absorbed(SurfaceId::new(surface, side)),
+            Self::NetLongwave { surface, side } => step.net_longwave(state, SurfaceId::new(surface, side)),
+            Self::Convection { surface, side } => step.convection(state, SurfaceId::new(surface, side)),
             Self::HumidityRatio { zone } => state.vapour[zone],
             Self::RelativeHumidity { zone } => {
-                relative_humidity(state.air[zone], state.vapour[zone], stepper.pressure())
+                relative_humidity(state.air[zone], state.vapour[zone], step.pressure())
             }
-            Self::DewPoint { zone } => dew_point(state.vapour[zone], stepper.pressure()),
-            Self::WetBulb { zone } => wet_bulb(state.air[zone], state.vapour[zone], stepper.pressure()),
-            Self::LatentCooling { zone } => stepper.latent(zone, false),
-            Self::LatentHeating { zone } => stepper.latent(zone, true),
+            Self::DewPoint { zone } => dew_point(state.vapour[zone], step.pressure()),
+            Self::WetBulb { zone } => wet_bulb(state.air[zone], state.vapour[zone], step.pressure()),
+            Self::LatentCooling { zone } => step.latent(zone, false),
+            Self::LatentHeating { zone } => step.latent(zone, true),
             Self::SurfaceHumidity { surface, side } => {
-                stepper.surface_humidity(state, SurfaceId::new(surface, side))
+                step.surface_humidity(state, SurfaceId::new(surface, side))
             }
             Self::Condensation { surface, side } => {
-                let humidity = stepper.surface_humidity(state, SurfaceId::new(surface, side));
+                let humidity = step.surface_humidity(state, SurfaceId::new(surface, side));
                 S::select(S::one().lt(humidity), S::one(), S::zero())
             }
-            Self::VentInflow { vent } => stepper.vents_now().flows[vent][1],
-            Self::VentOutflow { vent } => stepper.vents_now().flows[vent][0],
-            Self::VentOpen { vent } => stepper.vents_now().open[vent],
+            Self::VentInflow { vent } => step.vents_now().flows[vent][1],
+            Self::VentOutflow { vent } => step.vents_now().flows[vent][0],
+            Self::VentOpen { vent } => step.vents_now().open[vent],
             Self::ControlOpen { control } => state.opened[control],
-            Self::SkyTemperature => stepper.sky_temperature(),
+            Self::SkyTemperature => step.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;
-                let depth = stepper.model.coefficients.sensor_depths[sensor];
-                profile_at(&profile(plan, stepper, state, surface), depth)
+                let depth = step.model.coefficients.sensor_depths[sensor];
+                profile_at(&profile(plan, step, state, surface), depth)
             }
         }
     }
 }
 
 /// Sun that a window transmits, mean over the step [W].
-fn transmitted<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, surface: usize) -> S {
+fn transmitted<S: Real>(plan: &Plan, step: &Readings<'_, S>, surface: usize) -> S {
     let window = plan.windows.iter().position(|&w| w == surface);
-    window.map_or_else(S::zero, |window| stepper.weather.sun.windows[window])
+    window.map_or_else(S::zero, |window| step.weather.sun.windows[window])
 }
 
-fn mean_radiant<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, zone: usize) -> S {
-    let areas = &stepper.model.coefficients.zones[zone].areas;
+fn mean_radiant<S: Real>(plan: &Plan, step: &Readings<'_, S>, state: &State<S>, zone: usize) -> S {
+    let areas = &step.model.coefficients.zones[zone].areas;
     let (mut sum, mut total) = (S::zero(), S::zero());
     for (&surface, &area) in plan.zones[zone].surfaces.iter().zip(areas) {
         sum += area * state.surfaces[surface];
@@ -377,14 +377,14 @@ fn layer_mean<S: Real>(plan: &Plan, surface: usize, layer: usize, value: impl Fn
 /// Flux at the middle of a layer: along the middle link, or the mean of the two about the middle cell.
 fn layer_flux<S: Real>(
     plan: &Plan,
-    stepper: &Stepper<'_, S>,
+    step: &Readings<'_, S>,
     state: &State<S>,
     surface: usize,
     layer: usize,
 ) -> S {
     let (start, end) = plan.walls[surface].layer_cells[layer];
     let (first, last) = (usize::midpoint(start, end), (start + end).div_ceil(2));
-    (stepper.link_flux(state, surface, first) + stepper.link_flux(state, surface, last)).scale(0.5)
+    (step.link_flux(state, surface, first) + step.link_flux(state, surface, last)).scale(0.5)
 }
 
 /// Half of a cell's resistance at its present state [m2 K/W].
@@ -402,15 +402,15 @@ fn half_resistance<S: Real>(wall: &WallCoefficients<S>, state: &State<S>, first_
 /// Temperature on the inner side of the layers before `interface`, from the flux that crosses it.
 fn interface_temperature<S: Real>(
     plan: &Plan,
-    stepper: &Stepper<'_, S>,
+    step: &Readings<'_, S>,
     state: &State<S>,
     surface: usize,
     interface: usize,
 ) -> S {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
+    let (wall, numbers) = (&plan.walls[surface], &step.model.coefficients.walls[surface]);
     // The link that holds the interface follows the cells of all layers before it.
     let link = wall.layer_cells[interface - 1].1;
-    let flux = stepper.link_flux(state, surface, link);
+    let flux = step.link_flux(state, surface, link);
     let (mut temperature, mut resistance) = if link == 0 {
         (state.surfaces[SurfaceId::outside(surface)], S::zero())
     } else {
@@ -425,14 +425,14 @@ fn interface_temperature<S: Real>(
 }
 
 /// Temperatures and depths of the surfaces, cell centres and interfaces of a wall, outside to inside.
-fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, surface: usize) -> Vec<(S, S)> {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
+fn profile<S: Real>(plan: &Plan, step: &Readings<'_, S>, state: &State<S>, surface: usize) -> Vec<(S, S)> {
+    let (wall, numbers) = (&plan.walls[surface], &step.model.coefficients.walls[surface]);
     let at = |surface: SurfaceId| state.surfaces[surface];
     let mut depth = S::zero();
     let mut points = vec![(depth, at(SurfaceId::outside(surface)))];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
-            points.push((depth, interface_temperature(plan, stepper, state, surface, layer)));
+            points.push((depth, interface_temperature(plan, step, state, surface, layer)));
         }
         for i in start..end {
             let half = numbers.cells[i].thickness.scale(0.5);

@@ -83,9 +83,8 @@ impl<'a> StepByStep<'a> {
     /// Reads the outputs of the options: the state at the start, or after the last step.
     pub fn read(&self, values: &mut Vec<f64>) {
         values.clear();
-        values.extend(
-            self.options.probes.iter().map(|output| output.read(self.plan, &self.stepper, &self.state)),
-        );
+        let step = self.stepper.readings();
+        values.extend(self.options.probes.iter().map(|output| output.read(self.plan, &step, &self.state)));
     }
 
     /// Steps made since the start.

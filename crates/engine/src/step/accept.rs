@@ -2,9 +2,11 @@
 
 use crate::balance::ledger::{Ledger, Power};
 use crate::building::coefficients::Matter;
-use crate::linear::wall::StorageRule;
+use crate::building::model::Model;
+use crate::linear::wall::{StorageRule, WallSystem};
 use crate::number::real::Real;
 use crate::physics::pcm::reversed;
+use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
@@ -12,9 +14,24 @@ impl<S: Real> Stepper<'_, S> {
     /// Takes the last stage as the new state.
     #[inline(always)]
     pub(super) fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
-        let solver = &self.solver;
+        let Self { model, scheme, solver, .. } = &mut *self;
         let mut stored = solver.system.step_maps.finish(&solver.solution.surfaces, &mut state.cells);
-        stored += self.accept_nonlinear(state);
+        let reached = Reached {
+            walls: &solver.system.walls,
+            cells: &solver.solution.cells,
+            first_fraction: &solver.start.first_fraction,
+        };
+        let mut in_walls = S::zero();
+        let reversals = accept_nonlinear(
+            model,
+            *scheme,
+            &reached,
+            state,
+            #[inline(always)]
+            |[area, thickness], [before, after]| in_walls += area * thickness * (after - before),
+        );
+        stored += in_walls;
+        solver.counters.reversals += reversals;
         let solution = &self.solver.solution;
         for (zone, numbers) in self.model.coefficients.zones.iter().enumerate() {
             stored += numbers.capacity * (solution.air[zone] - state.air[zone]);
@@ -29,45 +46,60 @@ impl<S: Real> Stepper<'_, S> {
         }
         ledger.add_step(energy, stored);
     }
+}
 
-    /// Cells of the nonlinear walls at the end of the last stage, and their memory; the heat stored [J].
-    #[inline(always)]
-    pub(super) fn accept_nonlinear(&mut self, state: &mut State<S>) -> S {
-        let apparent = self.scheme.tableau().storage == StorageRule::ApparentCapacity;
-        let stages = self.scheme.weights().len();
-        let (model, solver) = (&self.model, &mut self.solver);
-        let mut stored = S::zero();
-        for &w in &model.parts.nonlinear_walls {
-            let (wall, chain, numbers) =
-                (&model.plan.walls[w], &solver.system.walls[w], &model.coefficients.walls[w]);
-            for (i, cell) in numbers.cells.iter().enumerate() {
-                let k = wall.first_cell + i;
-                let temperature = solver.solution.cells[k];
-                let mut enthalpy = chain.storage[i].at_solution();
-                if let Matter::Pcm(law) = cell.matter {
-                    let law = &numbers.pcm[law];
-                    let mut fraction = chain.fraction_at_solution(i);
-                    // Where the history matters: the point itself.
-                    if law.remembers() || apparent {
-                        let point = law.at(temperature, &state.memory[k]);
-                        fraction = point.liquid_fraction;
-                        if apparent {
-                            // What the material stores, which differs from what the scheme has counted.
-                            enthalpy = point.enthalpy;
-                        }
+/// What the last stage of a step has reached in the nonlinear walls.
+pub(super) struct Reached<'r, S> {
+    /// As linearised for the last solution.
+    pub(super) walls: &'r [WallSystem<S>],
+    /// Temperatures of the cells [degC].
+    pub(super) cells: &'r [S],
+    /// Liquid fractions of the cells at the first stage of the step [-].
+    pub(super) first_fraction: &'r [S],
+}
+
+/// Cells of the nonlinear walls at the end of the last stage, and their memory; how many cells have melted and frozen in the step.
+/// `store` is given the area and thickness of each cell, and its enthalpy before and after: whoever balances heat adds it up.
+#[inline(always)]
+pub(super) fn accept_nonlinear<S: Real>(
+    model: &Model<'_, S>,
+    scheme: Scheme,
+    reached: &Reached<'_, S>,
+    state: &mut State<S>,
+    mut store: impl FnMut([S; 2], [S; 2]),
+) -> S {
+    let apparent = scheme.tableau().storage == StorageRule::ApparentCapacity;
+    let stages = scheme.weights().len();
+    let mut reversals = S::zero();
+    for &w in &model.parts.nonlinear_walls {
+        let (wall, chain, numbers) = (&model.plan.walls[w], &reached.walls[w], &model.coefficients.walls[w]);
+        for (i, cell) in numbers.cells.iter().enumerate() {
+            let k = wall.first_cell + i;
+            let temperature = reached.cells[k];
+            let mut enthalpy = chain.storage[i].at_solution();
+            if let Matter::Pcm(law) = cell.matter {
+                let law = &numbers.pcm[law];
+                let mut fraction = chain.fraction_at_solution(i);
+                // Where the history matters: the point itself.
+                if law.remembers() || apparent {
+                    let point = law.at(temperature, &state.memory[k]);
+                    fraction = point.liquid_fraction;
+                    if apparent {
+                        // What the material stores, which differs from what the scheme has counted.
+                        enthalpy = point.enthalpy;
                     }
-                    if law.remembers() && stages > 1 {
-                        let start = state.memory[k].liquid_fraction;
-                        let turned = reversed(start, solver.start.first_fraction[k], fraction);
-                        solver.counters.reversals += S::select(turned, S::one(), S::zero());
-                    }
-                    state.memory[k] = law.next(&state.memory[k], temperature, fraction);
                 }
-                stored += numbers.area * cell.thickness * (enthalpy - state.enthalpy[k]);
-                state.enthalpy[k] = enthalpy;
-                state.cells[k] = temperature;
+                if law.remembers() && stages > 1 {
+                    let start = state.memory[k].liquid_fraction;
+                    let turned = reversed(start, reached.first_fraction[k], fraction);
+                    reversals += S::select(turned, S::one(), S::zero());
+                }
+                state.memory[k] = law.next(&state.memory[k], temperature, fraction);
             }
+            store([numbers.area, cell.thickness], [state.enthalpy[k], enthalpy]);
+            state.enthalpy[k] = enthalpy;
+            state.cells[k] = temperature;
         }
-        stored
     }
+    reversals
 }

@@ -11,7 +11,7 @@ use crate::step::stepper::Stepper;
 impl<S: Real> Stepper<'_, S> {
     /// The balances of a stage, its laws as linearised for the last linear solve; zone fronts keep those of their surfaces.
     #[inline(always)]
-    pub(crate) fn balances(&self) -> Balances<'_, S> {
+    fn balances(&self) -> Balances<'_, S> {
         Balances {
             model: &self.model,
             index: &self.flows,

@@ -38,6 +38,13 @@ impl Part {
         Self { step, from: 0.0, share: 1.0, halvings: 0 }
     }
 
+    /// Whether the step ends with it.
+    #[inline(always)]
+    pub(crate) fn is_last(self) -> bool {
+        // Lengths are powers of a half, so that the sum is exact.
+        self.from + self.share >= 1.0
+    }
+
     /// Its two halves.
     pub(crate) fn halves(self) -> [Self; 2] {
         let share = 0.5 * self.share;

@@ -107,7 +107,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
     // One copy only: inlining multiplies compile time, and it is by far the largest part of a step.
     #[inline(never)]
     pub(crate) fn solve(&mut self, stage: &Stage<'_, S>, search: Search<S>) -> Result<S::Mask, EngineError> {
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 self.begin(stage);
@@ -183,7 +183,8 @@ impl<'a, S: Real> StageSolver<'a, S> {
             }
         }
         self.finish(stage);
-        if S::LANES > 1 {
+        // Known when it is compiled: lanes have no nested iteration.
+        if const { S::LANES > 1 } {
             return self.fail(stage, active);
         }
         let error = self.not_converged(stage, active);

@@ -1,15 +1,48 @@
-//! What outputs read of a stepper after a step.
+//! What outputs read after a step beside the state.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::layout::SurfaceRole;
+use crate::building::model::Model;
+use crate::linear::wall::WallSystem;
 use crate::number::real::Real;
 use crate::physics::psychrometrics::relative_humidity;
 use crate::step::film::film;
+use crate::step::stage_weather::StageWeather;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use crate::step::vapour::balances::VapourBalances;
 use crate::weather::vents::VentConditions;
 
+/// What a step has left for outputs beside the state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Readings<'r, S: Real> {
+    pub(crate) model: &'r Model<'r, S>,
+    pub(crate) weather: &'r StageWeather<'r, S>,
+    /// Walls, and temperatures of surfaces, of the last stage.
+    pub(super) walls: &'r [WallSystem<S>],
+    pub(super) surfaces: &'r BySurface<S>,
+    pub(super) vapour: Option<&'r VapourBalances<'r, S>>,
+}
+
 impl<S: Real> Stepper<'_, S> {
+    /// What outputs read beside the state.
+    pub(crate) fn readings(&self) -> Readings<'_, S> {
+        Readings {
+            model: &self.model,
+            weather: &self.weather,
+            walls: &self.solver.system.walls,
+            surfaces: &self.solver.solution.surfaces,
+            vapour: self.vapour.as_deref(),
+        }
+    }
+
+    /// Averages what outputs need beside the results of every run.
+    pub(crate) fn average_absorbed_sun(&mut self) {
+        self.weather.average_absorbed(&self.model);
+    }
+}
+
+impl<S: Real> Readings<'_, S> {
     /// Outdoor air entering a zone at an air temperature, in the weather of the last stage [1/h].
     pub(crate) fn air_changes(&self, zone: usize, air: S) -> S {
         let (conditions, numbers) = (&self.weather.conditions, &self.model.coefficients.zones[zone]);
@@ -26,11 +59,6 @@ impl<S: Real> Stepper<'_, S> {
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SurfaceId) -> S {
         self.weather.incident(surface)
-    }
-
-    /// Averages what outputs need beside the results of every run.
-    pub(crate) fn average_absorbed_sun(&mut self) {
-        self.weather.average_absorbed(&self.model);
     }
 
     /// Long-wave radiation that a surface gains in the weather of the last stage [W/m2]; zero where the heat transfer
@@ -59,7 +87,7 @@ impl<S: Real> Stepper<'_, S> {
             SurfaceRole::Zone { zone, .. } => state.air[zone],
             SurfaceRole::Exterior => self.weather.conditions.surfaces[surface].temperature,
         };
-        film(&self.model, &self.weather.conditions, surface, state.surfaces[surface], air)
+        film(self.model, &self.weather.conditions, surface, state.surfaces[surface], air)
     }
 
     /// Pressure of the air in the weather of the last stage [Pa]; zero in a building without vapour balances.
@@ -89,14 +117,14 @@ impl<S: Real> Stepper<'_, S> {
         if wall.nonlinear {
             return state.enthalpy[cell];
         }
-        self.solver.system.walls[w].storage[cell - wall.first_cell].capacity * state.cells[cell]
+        self.walls[w].storage[cell - wall.first_cell].capacity * state.cells[cell]
     }
 
     /// Conduction along a link of a wall at the end of the step that led to a state [W/m2], positive towards the inside.
     #[inline(always)]
     pub(crate) fn link_flux(&self, state: &State<S>, w: usize, link: usize) -> S {
-        let (wall, chain) = (&self.model.plan.walls[w], &self.solver.system.walls[w]);
-        let surfaces = self.solver.solution.surfaces.pair(w);
+        let (wall, chain) = (&self.model.plan.walls[w], &self.walls[w]);
+        let surfaces = self.surfaces.pair(w);
         if wall.nonlinear {
             return chain.link_flux(link, surfaces);
         }

@@ -8,7 +8,6 @@ use crate::building::coefficients::Coefficients;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
-use crate::linear::unknowns::Unknowns;
 use crate::linear::vent_network::VentNetwork;
 use crate::number::real::{Mask, Real};
 use crate::step::control::RunControl;
@@ -97,11 +96,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.solver.failed
     }
 
-    /// A place for the unknowns of each stage.
-    pub(crate) fn places(&self) -> Vec<Unknowns<S>> {
-        vec![self.solver.solution.clone(); self.scheme.weights().len()]
-    }
-
     /// The next step does not continue the last one: its guess starts anew.
     pub fn forget(&mut self) {
         self.guess.forget();
@@ -112,7 +106,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// # Errors
     /// [`EngineError::NotConverged`].
     pub fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>) -> Result<(), EngineError> {
-        S::vectorised_search(
+        self.known.begin();
+        S::vectorised(
             #[inline(always)]
             || {
                 self.weather.set_instant(&self.model, now);
@@ -121,6 +116,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.begin_step(state, 0.0);
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+                self.known.accept(Part::whole(0), state);
                 self.weather.average_instant(&self.model);
                 self.begin_vapour();
                 Ok(())
@@ -141,7 +137,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
         self.parts.begin(step);
-        self.known.halved = false;
         self.control_vents(state, weather.row(step, 0), dt);
         self.take_parts(state, weather, dt, ledger)
     }
@@ -158,7 +153,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
         self.parts.begin_first();
-        self.known.halved = true;
         self.control_vents(state, weather.row(0, 0), dt);
         self.take_parts(state, weather, dt, ledger)
     }
@@ -173,8 +167,9 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
         self.parts.count_from(self.solver.counters.iterations);
+        self.known.begin();
         self.begin_vapour();
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 while let Some(part) = self.parts.next() {
@@ -204,7 +199,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         self.parts.halve(part, error)?;
         self.solver.counters.halvings += 1;
-        self.known.halved = true;
         self.forget();
         Ok(())
     }
@@ -239,6 +233,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         };
         self.accept(state, &energy, ledger);
         self.advance_vapour(state, length, ledger);
+        self.known.accept(part, state);
         Ok(())
     }
 

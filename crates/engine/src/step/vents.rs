@@ -20,44 +20,65 @@ impl<S: Real> Stepper<'_, S> {
     /// Lets the controls decide in a forcing row, for a length [s].
     #[inline(always)]
     pub(crate) fn control_vents(&self, state: &mut State<S>, row: &[f64], length: f64) {
-        let State { opened, unchanged, air, .. } = state;
-        let (outdoor, wind) = (row[channel::AIR_TEMPERATURE], row[channel::WIND_SPEED]);
-        let states = opened.iter_mut().zip(unchanged);
-        for ((opened, unchanged), control) in states.zip(&self.model.coefficients.vents.controls) {
-            let before = *opened;
-            *opened = control.decide(before, *unchanged, air, outdoor, wind, row);
-            let changed = before.lt(*opened) | opened.lt(before);
-            *unchanged = S::select(changed, S::zero(), *unchanged) + S::constant(length);
-        }
+        control_vents(&self.model, state, row, length);
     }
 
     /// Closes what controls have closed, and finds the flows in the weather that is set.
     #[inline(always)]
     pub(crate) fn drive_vents(&mut self, state: &State<S>) {
-        if !self.model.coefficients.vents.is_empty() {
-            self.find_vent_flows(state);
-        }
+        drive_vents(&self.model, &mut self.weather.conditions, self.vents.as_deref_mut(), state);
     }
+}
 
-    // Most buildings have none: one copy of it is enough.
-    #[inline(never)]
-    fn find_vent_flows(&mut self, state: &State<S>) {
-        let Self { model, weather, vents, .. } = self;
-        let (numbers, conditions) = (&model.coefficients, &mut weather.conditions);
-        for (at, zone) in conditions.zones.iter_mut().zip(&numbers.zones) {
-            at.control(zone, &state.opened);
-        }
-        conditions.vents.control(&numbers.vents, &state.opened);
-        if let Some(network) = vents {
-            S::vectorised(
-                #[inline(always)]
-                || {
-                    drive(network, model, conditions, &state.air);
-                    network.solve();
-                    spread(network, model, conditions);
-                },
-            );
-        }
+/// Lets the controls decide in a forcing row, for a length [s].
+#[inline(always)]
+pub(super) fn control_vents<S: Real>(model: &Model<'_, S>, state: &mut State<S>, row: &[f64], length: f64) {
+    let State { opened, unchanged, air, .. } = state;
+    let (outdoor, wind) = (row[channel::AIR_TEMPERATURE], row[channel::WIND_SPEED]);
+    let states = opened.iter_mut().zip(unchanged);
+    for ((opened, unchanged), control) in states.zip(&model.coefficients.vents.controls) {
+        let before = *opened;
+        *opened = control.decide(before, *unchanged, air, outdoor, wind, row);
+        let changed = before.lt(*opened) | opened.lt(before);
+        *unchanged = S::select(changed, S::zero(), *unchanged) + S::constant(length);
+    }
+}
+
+/// Closes what controls have closed, and finds the flows in the weather of the conditions.
+#[inline(always)]
+pub(super) fn drive_vents<S: Real>(
+    model: &Model<'_, S>,
+    conditions: &mut Conditions<S>,
+    network: Option<&mut VentNetwork<'_, S>>,
+    state: &State<S>,
+) {
+    if !model.coefficients.vents.is_empty() {
+        find_vent_flows(model, conditions, network, state);
+    }
+}
+
+// Most buildings have none: one copy of it is enough.
+#[inline(never)]
+fn find_vent_flows<S: Real>(
+    model: &Model<'_, S>,
+    conditions: &mut Conditions<S>,
+    network: Option<&mut VentNetwork<'_, S>>,
+    state: &State<S>,
+) {
+    let numbers = &model.coefficients;
+    for (at, zone) in conditions.zones.iter_mut().zip(&numbers.zones) {
+        at.control(zone, &state.opened);
+    }
+    conditions.vents.control(&numbers.vents, &state.opened);
+    if let Some(network) = network {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                drive(network, model, conditions, &state.air);
+                network.solve();
+                spread(network, model, conditions);
+            },
+        );
     }
 }
 

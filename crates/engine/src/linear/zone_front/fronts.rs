@@ -183,7 +183,7 @@ impl<S: Real> ZoneFronts<S> {
     #[inline(never)]
     pub(crate) fn begin_stage(&mut self, inputs: &StageInputs<'_, S>, sources: &[[S; 2]]) {
         let (conditions, zones) = (inputs.conditions, &inputs.model.coefficients.zones);
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 let radiant = |z: usize| {
@@ -224,7 +224,7 @@ impl<S: Real> ZoneFronts<S> {
     /// the surfaces.
     #[inline(never)]
     pub(crate) fn set_windows(&mut self, sources: &[[S; 2]], responses: &[Response<S>]) {
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 for front in &mut self.all {
@@ -248,7 +248,7 @@ impl<S: Real> ZoneFronts<S> {
         if let (true, Some(iterate)) = (self.windows_together, iterate) {
             S::in_chunks(Condense { zone_fronts: &mut self.all, cells: &iterate.cells });
         }
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || {
                 S::in_chunks(Eliminate { zone_fronts: &mut self.all, iterate, elimination, constant });
@@ -266,7 +266,7 @@ impl<S: Real> ZoneFronts<S> {
     #[inline(never)]
     pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], solution: &mut Unknowns<S>) {
         let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || S::in_chunks(Solve { zone_fronts, constant, unknowns, surfaces }),
         );
@@ -277,7 +277,7 @@ impl<S: Real> ZoneFronts<S> {
     #[inline(never)]
     pub(crate) fn write(&mut self, unknowns: &[S], solution: &mut Unknowns<S>) {
         let (zone_fronts, surfaces) = (&mut self.all, &mut solution.surfaces);
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || S::in_chunks(Write { zone_fronts, unknowns, surfaces }),
         );
@@ -295,7 +295,7 @@ impl<S: Real> ZoneFronts<S> {
     /// Eliminates the surfaces of the fronts from another right-hand side.
     #[inline(never)]
     pub(crate) fn forward(&self, right: &mut [S]) {
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || self.all.iter().for_each(|front| front.forward_in_building(right)),
         );
@@ -304,7 +304,7 @@ impl<S: Real> ZoneFronts<S> {
     /// Solves for the eliminated surfaces of another right-hand side.
     #[inline(never)]
     pub(crate) fn back(&self, right: &mut [S]) {
-        S::vectorised_search(
+        S::vectorised(
             #[inline(always)]
             || self.all.iter().for_each(|front| front.back_in_building(right)),
         );

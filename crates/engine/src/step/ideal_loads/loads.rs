@@ -58,7 +58,7 @@ pub(crate) struct IdealLoads<S: Real> {
     pub(super) close: f64,
     pub(super) limits: Vec<Limits<S>>,
     /// Response of the building to each load, where there are few.
-    pub(crate) responses: Vec<Response<S>>,
+    pub(super) responses: Vec<Response<S>>,
     /// The airs that the last stage holds, where there are many.
     pub(super) held: Option<HeldAirs<S>>,
     /// There: how surfaces follow the loads, and the changes of the loads after the last sweep.
@@ -119,7 +119,7 @@ impl<S: Real> IdealLoads<S> {
 
     /// Begins a step that ends with a forcing row. Loads change as in the step before, where this step `continues` it.
     #[inline(always)]
-    pub(crate) fn begin(
+    pub(super) fn begin(
         &mut self,
         zones: &[ZoneCoefficients<S>],
         row: &[f64],
@@ -167,7 +167,7 @@ impl<S: Real> IdealLoads<S> {
 
     /// Marks the lanes that start with a load, or whose air is expected outside its set points.
     #[inline(always)]
-    pub(crate) fn mark_needed(&mut self, loads: &[S], air: impl Fn(usize) -> S) {
+    pub(super) fn mark_needed(&mut self, loads: &[S], air: impl Fn(usize) -> S) {
         self.responses_known = S::Mask::splat(false);
         self.needed = !self.within_set_points(air);
         for &zone in &self.zones {
@@ -210,7 +210,7 @@ impl<S: Real> IdealLoads<S> {
 
     /// Whether a sweep finds the responses: the second uses those of the first, which are close enough.
     #[inline(always)]
-    pub(crate) fn finds_responses(&mut self, sweep: usize, active: S::Mask) -> bool {
+    pub(super) fn finds_responses(&mut self, sweep: usize, active: S::Mask) -> bool {
         let finds = self.held.is_none() && sweep != 1 && self.any_needed(active);
         if finds {
             self.responses_known = self.needed;

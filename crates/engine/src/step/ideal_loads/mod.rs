@@ -5,9 +5,9 @@
 //! the air stays between the set points without it.
 //!
 //! A step is solved by sweeps ([`sweeps`]). Each sweep solves every stage once, linearised about a guess and with guessed
-//! loads. New loads follow, and with them the temperatures about which the next sweep linearises: of one load, and in runs with
-//! derivatives of all, from the response of the air at the end to each, found with the same factors ([`responses`],
-//! [`search`]); of several loads from what holds their airs at the set points ([`held_airs`]). The sweeps end when nothing
+//! loads. New loads follow, and with them the temperatures about which the next sweep linearises: of one load
+//! from the response of the air at the end to it, found with the same factors ([`responses`],
+//! [`search`]; so are derivatives of loads along a known solution, [`known`]); of several loads from what holds their airs at the set points ([`held_airs`]). The sweeps end when nothing
 //! changes: together they are one Newton iteration on the temperatures of all stages and the loads. In each sweep a load is
 //! heating, cooling, off or at its capacity according to the temperature that the air would have without it: Newton's method for
 //! the complementarity of load and set point
@@ -17,6 +17,7 @@
 //! removes this difference to round-off; the load reported is the mean over the step, with the correction.
 
 mod held_airs;
+pub(crate) mod known;
 mod limits;
 pub(crate) mod loads;
 pub(crate) mod responses;

@@ -12,7 +12,7 @@ use crate::number::real::Real;
 #[derive(Debug, Clone)]
 pub(crate) struct Response<S> {
     /// Of the temperatures at the end of each stage [K/W].
-    pub(crate) stages: Vec<Unknowns<S>>,
+    pub(super) stages: Vec<Unknowns<S>>,
     /// Of the enthalpies that the second stage starts from [J/(m3 W)].
     held: Vec<S>,
     /// Forward sweeps of the nonlinear walls.

@@ -32,7 +32,7 @@ impl<S: Real> IdealLoads<S> {
     /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right; in the other
     /// active lanes whose responses are known (with `all`, in every active one) the loads are corrected.
     #[inline(always)]
-    pub(crate) fn correct(
+    pub(super) fn correct(
         &mut self,
         air: &[S],
         loads: &mut [S],
@@ -82,35 +82,56 @@ impl<S: Real> IdealLoads<S> {
     /// The loads that follow from the responses, into `correction`.
     #[inline(always)]
     fn solve(&mut self, air: &[S], loads: &[S]) {
-        let n = self.zones.len();
-        for (load, &zone) in self.correction.iter_mut().zip(&self.zones) {
-            *load = loads[zone];
+        let Self { zones, limits, responses, correction, matrix, right, .. } = self;
+        find_loads(
+            (zones, limits),
+            #[inline(always)]
+            |p, q| {
+                let stages = &responses[q].stages;
+                stages[stages.len() - 1].air[zones[p]]
+            },
+            (air, loads),
+            (correction, matrix, right),
+        );
+    }
+}
+
+/// The loads of some zones that bring airs to their set points, by the response `gain(p, q)` of the air of load `p` to load `q` [K/W].
+#[inline(always)]
+pub(super) fn find_loads<S: Real>(
+    (zones, limits): (&[usize], &[Limits<S>]),
+    gain: impl Fn(usize, usize) -> S,
+    (air, loads): (&[S], &[S]),
+    (found, matrix, right): (&mut [S], &mut [S], &mut [S]),
+) {
+    let n = zones.len();
+    for (load, &zone) in found.iter_mut().zip(zones) {
+        *load = loads[zone];
+    }
+    // The mode of a single load is found at once; several loads may change each other's modes.
+    for _ in 0..(if n == 1 { 1 } else { 2 * n + 2 }) {
+        for (p, &zone) in zones.iter().enumerate() {
+            let mut now = air[zone];
+            let mut without = air[zone];
+            for (q, &other) in zones.iter().enumerate() {
+                now += gain(p, q) * (found[q] - loads[other]);
+                without = without - gain(p, q) * loads[other];
+            }
+            let mode = limits[p].mode(found[p], now, gain(p, p));
+            right[p] = S::select(mode.held, mode.set_point - without, mode.fixed);
+            for q in 0..n {
+                let unit = if p == q { S::one() } else { S::zero() };
+                matrix[p * n + q] = S::select(mode.held, gain(p, q), unit);
+            }
         }
-        // The mode of a single load is found at once; several loads may change each other's modes.
-        for _ in 0..(if n == 1 { 1 } else { 2 * n + 2 }) {
-            for (p, &zone) in self.zones.iter().enumerate() {
-                let mut now = air[zone];
-                let mut without = air[zone];
-                for (q, &other) in self.zones.iter().enumerate() {
-                    now += self.gain(p, q) * (self.correction[q] - loads[other]);
-                    without = without - self.gain(p, q) * loads[other];
-                }
-                let mode = self.limits[p].mode(self.correction[p], now, self.gain(p, p));
-                self.right[p] = S::select(mode.held, mode.set_point - without, mode.fixed);
-                for q in 0..n {
-                    let unit = if p == q { S::one() } else { S::zero() };
-                    self.matrix[p * n + q] = S::select(mode.held, self.gain(p, q), unit);
-                }
-            }
-            // Responses are the inverse of an M-matrix, whose principal minors are positive: no pivoting.
-            solve_many(&mut self.matrix, &mut self.right, 1);
-            let mut loads = self.right.iter().zip(&self.correction);
-            let moved = loads.any(|(&new, &old)| (new.lt(old) | old.lt(new)).any());
-            self.correction.copy_from_slice(&self.right);
-            // The same loads have the same modes, and these the same solution.
-            if !moved {
-                break;
-            }
+        // Responses are the inverse of an M-matrix, whose principal minors are positive: no pivoting.
+        solve_many(matrix, right, 1);
+        let mut loads = right.iter().zip(&*found);
+        let moved = loads.any(|(&new, &old)| (new.lt(old) | old.lt(new)).any());
+        found.copy_from_slice(right);
+        // The same loads have the same modes, and these the same solution.
+        if !moved {
+            break;
         }
     }
 }

@@ -15,7 +15,7 @@
 
 pub(crate) mod balances;
 mod flows;
-mod of_step;
+pub(crate) mod of_step;
 mod plants;
 mod saturation;
 mod surfaces;

@@ -1,9 +1,13 @@
 //! The vapour balances beside the heat balances of a step.
 
 use crate::balance::ledger::Ledger;
+use crate::building::model::Model;
 use crate::number::real::Real;
+use crate::step::scheme::Tableau;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+
+use super::balances::VapourBalances;
 
 impl<S: Real> Stepper<'_, S> {
     /// A step begins.
@@ -38,24 +42,28 @@ impl<S: Real> Stepper<'_, S> {
     }
 
     /// Solves the vapour balances of a step of a length [s], or of a part of one, that has been accepted.
-    // One copy only: inlining multiplies compile time, and most buildings have none.
-    #[inline(never)]
-    fn solve_vapour(&mut self, state: &mut State<S>, length: f64, ledger: &mut Ledger<S>) {
-        let (Some(vapour), Some(humidity)) = (&mut self.vapour, &self.model.coefficients.humidity) else {
-            return;
-        };
-        let tableau = self.scheme.tableau();
+    #[inline(always)]
+    pub(crate) fn advance_vapour(&mut self, state: &mut State<S>, length: f64, ledger: &mut Ledger<S>) {
+        if let Some(vapour) = &mut self.vapour {
+            advance_vapour(vapour, &self.model, state, (self.scheme.tableau(), length), ledger);
+        }
+    }
+}
+
+/// Solves the vapour balances of a step of a length [s], or of a part of one, that has been accepted.
+// One copy only: inlining multiplies compile time, and most buildings have none.
+#[inline(never)]
+pub(in crate::step) fn advance_vapour<S: Real>(
+    vapour: &mut VapourBalances<'_, S>,
+    model: &Model<'_, S>,
+    state: &mut State<S>,
+    (tableau, length): (&Tableau, f64),
+    ledger: &mut Ledger<S>,
+) {
+    if let Some(humidity) = &model.coefficients.humidity {
         S::vectorised(
             #[inline(always)]
             || vapour.advance(humidity, state, (tableau, length), &mut ledger.vapour),
         );
-    }
-
-    /// The same, where there are any.
-    #[inline(always)]
-    pub(crate) fn advance_vapour(&mut self, state: &mut State<S>, length: f64, ledger: &mut Ledger<S>) {
-        if self.vapour.is_some() {
-            self.solve_vapour(state, length, ledger);
-        }
     }
 }
