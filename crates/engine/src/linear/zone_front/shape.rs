@@ -9,9 +9,11 @@ use crate::physics::longwave::Emission;
 /// with 6 the same, with 3 it takes 1.14.
 const LEAST: usize = 7;
 
-/// Eliminated surfaces from which a front is solved by iteration, and how many there must be for each retained unknown.
-const LARGE: usize = 128;
-const LARGE_FOR_EACH_RETAINED: usize = 24;
+/// Eliminated surfaces from which a front is solved by iteration, and how many there must be for each retained unknown. Measured
+/// with rooms of concrete and of foam: with 96 surfaces iteration takes 0.4 of the time, with 400 of which each tenth is retained as
+/// long as an elimination.
+const LARGE: usize = 96;
+const LARGE_FOR_EACH_RETAINED: usize = 12;
 
 /// What zones must have in common to be computed side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
