@@ -40,7 +40,7 @@ pub(crate) fn number_unknowns(
     // Positions and order, if the work on the coupled system and on the fronts is not more than allowed; and that work.
     let arrange = |thick: Vec<bool>, most_work: usize| {
         let groups = groups(description, walls, &surfaces, &thick);
-        let neighbours = neighbours(description, &surfaces, &zones, &thick);
+        let neighbours = neighbours(description, &surfaces, &zones, (&groups, &thick));
         let of_fronts = work_of_fronts(&zones, &groups);
         let (elimination, groups) = order(&neighbours, &groups, most_work.saturating_sub(of_fronts))?;
         let work = elimination.work() + of_fronts;
@@ -192,12 +192,13 @@ fn groups(
     groups
 }
 
-/// Which unknowns of the coupled system exchange heat directly.
+/// Which unknowns of the coupled system exchange heat directly. Those of the first group have no neighbours here: what each of them
+/// meets in its zone meets already, so that their elimination couples nothing anew.
 fn neighbours(
     description: &Description,
     surfaces: &[SurfacePlan],
     zones: &[ZonePlan],
-    thick: &[bool],
+    (groups, thick): (&[(usize, usize)], &[bool]),
 ) -> Vec<BTreeSet<usize>> {
     let row = |surface: SurfaceId| match surfaces[surface.index()].role {
         SurfaceRole::Zone { row, .. } => Some(row),
@@ -210,7 +211,8 @@ fn neighbours(
         neighbours[b].insert(a);
     };
     for (zone, definition) in zones.iter().zip(&description.zones) {
-        let rows = &zone.surface_rows;
+        let rows: Vec<usize> =
+            zone.surface_rows.iter().copied().filter(|&row| groups[row].0 != OWN).collect();
         for (i, &a) in rows.iter().enumerate() {
             couple(a, zone.air_row);
             if !matches!(definition.longwave, ZoneLongwave::None) {

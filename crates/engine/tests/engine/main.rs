@@ -17,6 +17,7 @@ mod halved_steps;
 mod halving;
 mod held_airs;
 mod hysteresis;
+mod large_zones;
 mod levels;
 mod linearly_implicit;
 mod lone_surface;

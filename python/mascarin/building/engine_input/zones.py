@@ -111,7 +111,8 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
         weights = closed_exchange_areas(polygons)
     except InputError as error:
         raise InputError(f"zones.{zone}: {error}") from None
-    places = [list(outlines).index(item.name) for item in seen]
+    place_of = {name: place for place, name in enumerate(outlines)}
+    places = [place_of[item.name] for item in seen]
     shares = [item.share for item in seen]
     return [
         [a * b * float(weights[i, j]) for j, b in zip(places, shares, strict=True)]

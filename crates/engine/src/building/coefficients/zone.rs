@@ -182,6 +182,7 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
     let surfaces = &plan.zones[index].surfaces;
     let given = &plan.description.zones[index].view_weights;
     let n = surfaces.len();
+    let normals: Vec<_> = surfaces.iter().map(|&surface| normal(plan, surface)).collect();
     let mut weights = Vec::with_capacity(n * n);
     for i in 0..n {
         for j in 0..n {
@@ -190,7 +191,7 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
                 S::constant(given[i][j])
             } else if i == j {
                 self_weight(areas, i)
-            } else if !same_plane(plan, surfaces[i], surfaces[j]) {
+            } else if !same_plane(normals[i], normals[j]) {
                 areas[i] * areas[j]
             } else {
                 S::zero()
@@ -201,20 +202,22 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
     weights
 }
 
-/// True when the normals of two surfaces of a zone agree at their nominal tilt and azimuth: parts of one plane.
-fn same_plane(plan: &Plan, a: SurfaceId, b: SurfaceId) -> bool {
-    let normal = |surface: SurfaceId| {
-        let wall = &plan.description.surfaces[surface.wall()];
-        let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
-        let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));
-        let sign = if surface.is_outside() { 1.0 } else { -1.0 };
-        [
-            Real::sin(azimuth) * Real::sin(tilt) * sign,
-            Real::cos(azimuth) * Real::sin(tilt) * sign,
-            Real::cos(tilt) * sign,
-        ]
-    };
-    let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();
+/// The normal of a surface into its zone, at its nominal tilt and azimuth.
+fn normal(plan: &Plan, surface: SurfaceId) -> [f64; 3] {
+    let wall = &plan.description.surfaces[surface.wall()];
+    let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
+    let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));
+    let sign = if surface.is_outside() { 1.0 } else { -1.0 };
+    [
+        Real::sin(azimuth) * Real::sin(tilt) * sign,
+        Real::cos(azimuth) * Real::sin(tilt) * sign,
+        Real::cos(tilt) * sign,
+    ]
+}
+
+/// True when the normals of two surfaces of a zone agree: parts of one plane.
+fn same_plane(a: [f64; 3], b: [f64; 3]) -> bool {
+    let dot: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
     dot > 1.0 - 1e-9
 }
 

@@ -30,6 +30,8 @@ pub(super) struct ZoneFront<S> {
     pub(super) equations: Equations<S>,
     pub(super) factors: Factors<S>,
     pub(super) influence: Influence<S>,
+    /// What a large front has in place of factors.
+    pub(super) columns: Option<Columns<S>>,
     /// Schur complements of zones side by side: as many entries as [`Layout::register_places`], then right-hand sides.
     pub(super) schur: Vec<S>,
     /// Emissions of the unknowns while they are solved for, then temperatures of the exterior surfaces.
@@ -46,6 +48,21 @@ pub(super) struct Influence<S> {
     pub(super) of_retained: Vec<S>,
     /// Influence of the current right-hand side.
     pub(super) applied: Vec<S>,
+}
+
+/// The columns of a large front, see [`large`](super::large).
+#[derive(Debug, Clone)]
+pub(super) struct Columns<S> {
+    /// That of the right-hand side [W/m2], of the air [W/(m2 K)] and of each retained surface [-], one after the other.
+    pub(super) numbers: Vec<S>,
+    pub(super) line: usize,
+}
+
+impl<S> Columns<S> {
+    #[inline(always)]
+    pub(super) fn column(&self, k: usize) -> &[S] {
+        &self.numbers[k * self.line..(k + 1) * self.line]
+    }
 }
 
 /// The laws of the surfaces of a front in its zones.
@@ -87,7 +104,7 @@ impl<S: Real> ZoneFront<S> {
         numbers: &Coefficients<S>,
         laws: &BySurface<SurfaceLaws<S>>,
         (zones, members): (&[usize], usize),
-        windows_together: bool,
+        [iterated, windows_together]: [bool; 2],
     ) -> Self {
         let shapes: Vec<_> = zones.iter().map(|&zone| ZoneShape::new(plan, numbers, zone)).collect();
         let (shape, step) = (&shapes[0], shapes.len());
@@ -107,6 +124,9 @@ impl<S: Real> ZoneFront<S> {
             let k = shapes[lane].order[i];
             (front.area[place], front.radiant_share[place]) =
                 (of_zone(lane).areas[k], of_zone(lane).radiant_shares[k]);
+        }
+        if iterated && shape.key.is_large() {
+            front.make_large();
         }
         if exact {
             // A nonlinear emission has no slope yet.
@@ -137,6 +157,7 @@ impl<S: Real> ZoneFront<S> {
             equations: Equations::new(&layout, &laws),
             factors: Factors::new(&layout),
             influence: Influence::unknown(),
+            columns: None,
             scratch: zeros(),
             schur: vec![S::zero(); layout.register_places.len() + layout.retained_rows.len()],
             windows: Windows::none(),

@@ -55,6 +55,10 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
                 front.eliminate_side_by_side::<V>();
                 continue;
             }
+            if front.columns.is_some() {
+                front.solve_columns();
+                continue;
+            }
             if self.elimination == Elimination::Full {
                 front.factors.eliminate::<V>(&front.equations, &front.layout);
                 if self.constant {
@@ -153,16 +157,18 @@ impl<S: Real> ChunkTask<S> for Write<'_, S> {
 
 // Large functions, not inlined: one copy only, inlining multiplies compile time.
 impl<S: Real> ZoneFronts<S> {
-    /// The fronts of all zones; zones of one shape and their windows `together` side by side, or each alone.
+    /// The fronts of all zones; zones of one shape and their windows `together` side by side, or each alone and all of them
+    /// eliminated. Numbers with derivatives are always eliminated.
     pub(crate) fn new(
         plan: &Plan,
         numbers: &Coefficients<S>,
         laws: &BySurface<SurfaceLaws<S>>,
         [together, windows_together]: [bool; 2],
     ) -> Self {
+        let iterated = together && !S::DERIVATIVES;
         let groups = group_zones(plan, numbers, together);
         let front = |(zones, members): &(Vec<usize>, usize)| {
-            ZoneFront::new(plan, numbers, laws, (zones, *members), windows_together)
+            ZoneFront::new(plan, numbers, laws, (zones, *members), [iterated, windows_together])
         };
         let zone_fronts: Vec<_> = groups.iter().map(front).collect();
         Self {

@@ -10,6 +10,8 @@
 //! and the temperature of its air. Surfaces are then coupled by exchange areas, which never change and are symmetric: only
 //! the diagonal is assembled, and half of the elimination is saved. A zone without long-wave exchange has `E = T`.
 //!
+//! A front of many surfaces is not eliminated, but solved by iteration ([`large`]).
+//!
 //! Zones of one shape are computed side by side in one front ([`side_by_side`]), and with them their windows ([`windows`]).
 //!
 //! All arrays are in the order of the front, so that neighbours are computed together ([`Chunk`](crate::number::real::Chunk)).
@@ -22,11 +24,13 @@ macro_rules! part {
 }
 
 mod assemble;
+mod conjugate;
 mod eliminate;
 mod equations;
 mod exterior;
 mod front;
 mod fronts;
+mod large;
 mod laws;
 mod layout;
 mod shape;

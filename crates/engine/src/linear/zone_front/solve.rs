@@ -76,7 +76,10 @@ impl<S: Real> ZoneFront<S> {
         }
         let (layout, emission) = (&self.layout, &self.laws.emission);
         let (surfaces, eliminated) = (layout.surfaces, layout.eliminated);
-        let entry = |i: usize, j: usize| self.entry(i, j);
+        // A large front has no other rows.
+        let first = if self.columns.is_some() { 0 } else { eliminated };
+        let rows_of_retained = &self.factors.rows[first * layout.stride..];
+        let entry = |i: usize, j: usize| rows_of_retained[(i - eliminated) * layout.stride + j];
         let count = surfaces - eliminated + 1;
         let places = layout.places.chunks_exact(count);
         let air_diagonal = layout.air_places[count - 1][0];
@@ -121,6 +124,9 @@ impl<S: Real> ZoneFront<S> {
             self.solve_side_by_side::<V>(unknowns);
         } else if constant {
             self.solve_by_influence::<V>(unknowns);
+        } else if let Some(columns) = self.columns.take() {
+            self.solve_by_columns::<V>(&columns, unknowns);
+            self.columns = Some(columns);
         } else {
             self.solve_by_factors::<V>(unknowns);
         }
@@ -256,6 +262,9 @@ impl<S: Real> ZoneFront<S> {
         if self.side_by_side() {
             return (0..self.layout.members).for_each(|lane| self.forward_of(lane, right));
         }
+        if self.columns.is_some() {
+            return self.forward_by_columns(right);
+        }
         self.forward::<SameKind, S>(
             right,
             #[inline(always)]
@@ -268,6 +277,9 @@ impl<S: Real> ZoneFront<S> {
     pub(super) fn back_in_building(&self, right: &mut [S]) {
         if self.side_by_side() {
             return (0..self.layout.members).for_each(|lane| self.back_of(lane, right));
+        }
+        if let Some(columns) = &self.columns {
+            return self.back_by_columns(columns, right);
         }
         self.back::<SameKind, S>(
             right,

@@ -1,6 +1,8 @@
 //! Fronts of 1 to 40 surfaces: against a dense solver, without a residual, with the same bits in all numbers and by both
 //! eliminations, and their transpose.
 
+mod large;
+
 use super::eliminate::Factors;
 use super::exterior::Exterior;
 use super::front::ZoneFront;

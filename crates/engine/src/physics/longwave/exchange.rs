@@ -7,10 +7,16 @@
 //! - Scaling to given row sums: Sinkhorn & Knopp (1967), Pacific J. Math. 21(2), doi:10.2140/pjm.1967.21.343.
 
 use crate::number::dense::solve_many;
-use crate::number::real::Real;
+use crate::number::real::{Real, same};
+
+use super::absorption::absorbed;
 
 /// Sweeps of the scaling: each halves the imbalance or better; zones reach round-off in about thirty.
 const SCALING_SWEEPS: usize = 200;
+/// Rows that are summed up beside each other.
+const ROWS: usize = 4;
+/// Surfaces from which what they absorb is computed in panels.
+const MANY: usize = 64;
 
 /// Total exchange areas of a zone [m2], symmetric, diagonal unused:
 /// `Q_ij = X_ij (E_i - E_j)` is the net heat from surface i to surface j.
@@ -20,6 +26,17 @@ const SCALING_SWEEPS: usize = 200;
 pub fn exchange_areas<S: Real>(areas: &[S], emissivities: &[S], weights: &[S]) -> Vec<S> {
     let n = areas.len();
     let direct = direct_exchange_areas(areas, weights);
+    let exchange = if n < MANY {
+        absorbed_by_few(&direct, areas, emissivities)
+    } else {
+        absorbed(&direct, areas, emissivities)
+    };
+    symmetric(&exchange, n)
+}
+
+/// What each surface absorbs of the emission of each one [m2], by row.
+fn absorbed_by_few<S: Real>(direct: &[S], areas: &[S], emissivities: &[S]) -> Vec<S> {
+    let n = areas.len();
     // Radiosity J: (I - (1 - e) F) J = e E. What i absorbs of the emission of j: X = A e F (I - (1-e) F)^-1 e.
     let mut matrix = vec![S::zero(); n * n];
     let mut right = vec![S::zero(); n * n];
@@ -42,7 +59,7 @@ pub fn exchange_areas<S: Real>(areas: &[S], emissivities: &[S], weights: &[S]) -
             exchange[i * n + j] = emissivities[i] * arriving;
         }
     }
-    symmetric(&exchange, n)
+    exchange
 }
 
 /// Weight with which a surface sees itself: zero, unless it is larger than all others together. Then it has to enclose
@@ -68,20 +85,25 @@ fn symmetric<S: Real>(matrix: &[S], n: usize) -> Vec<S> {
 /// Knopp, with a square root that keeps the symmetry).
 pub(crate) fn direct_exchange_areas<S: Real>(areas: &[S], weights: &[S]) -> Vec<S> {
     let n = areas.len();
+    let together = if n < MANY { 1 } else { ROWS };
     let mut scale = vec![S::one(); n];
     for _ in 0..SCALING_SWEEPS {
         let mut next = scale.clone();
-        for i in 0..n {
-            let mut row = S::zero();
-            for j in 0..n {
-                row += weights[i * n + j] * scale[j];
+        for first in (0..n).step_by(together) {
+            let rows = sums_of_rows(weights, &scale, first);
+            for (i, &row) in (first..n).zip(&rows).take(together) {
+                // A surface that sees no other keeps its zero row; its scale would grow without bound.
+                let least = S::constant(1e-300);
+                let scaled = (scale[i] * areas[i] / row.max(least)).sqrt();
+                next[i] = S::select(least.lt(row), scaled, S::one());
             }
-            // A surface that sees no other keeps its zero row; its scale would grow without bound.
-            let least = S::constant(1e-300);
-            let scaled = (scale[i] * areas[i] / row.max(least)).sqrt();
-            next[i] = S::select(least.lt(row), scaled, S::one());
         }
+        // All further sweeps would do the same.
+        let done = next.iter().zip(&scale).all(|(&new, &old)| same(new, old));
         scale = next;
+        if done {
+            break;
+        }
     }
     let mut direct = weights.to_vec();
     for i in 0..n {
@@ -92,9 +114,84 @@ pub(crate) fn direct_exchange_areas<S: Real>(areas: &[S], weights: &[S]) -> Vec<
     direct
 }
 
+/// Sums of some rows of weights, each multiplied by the scale of its column.
+fn sums_of_rows<S: Real>(weights: &[S], scale: &[S], first: usize) -> [S; ROWS] {
+    let n = scale.len();
+    let mut sums = [S::zero(); ROWS];
+    if n < MANY || first + ROWS > n {
+        let rows = if n < MANY { 1 } else { n - first };
+        for (row, sum) in weights[first * n..].chunks_exact(n).zip(&mut sums).take(rows) {
+            for (&weight, &scale) in row.iter().zip(scale) {
+                *sum += weight * scale;
+            }
+        }
+        return sums;
+    }
+    // Sums that do not wait for each other.
+    let rows: [&[S]; ROWS] = core::array::from_fn(|r| &weights[(first + r) * n..(first + r + 1) * n]);
+    for (j, &scale) in scale.iter().enumerate() {
+        for (sum, row) in sums.iter_mut().zip(rows) {
+            *sum += row[j] * scale;
+        }
+    }
+    sums
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::dual::Dual;
+    use crate::number::simd::{LaneTask, Level, WIDTH, run};
+
+    /// Many surfaces, some of which do not see each other, and a black one.
+    fn enclosure<S: Real>(n: usize) -> [Vec<S>; 3] {
+        let number = |k: usize| S::constant(((13 * k + 5) % 17) as f64 / 17.0);
+        let areas = (0..n).map(|i| S::one() + number(i)).collect::<Vec<_>>();
+        let emissivities =
+            (0..n).map(|i| if i == 3 { S::one() } else { S::constant(0.05) + number(i).scale(0.9) });
+        let sees = |i: usize, j: usize| i != j && i % 6 != j % 6;
+        let weight = |k: usize| if sees(k / n, k % n) { number((k / n) * (k % n)) } else { S::zero() };
+        let weights = (0..n * n).map(weight).collect::<Vec<_>>();
+        let direct = direct_exchange_areas(&areas, &weights);
+        [areas, emissivities.collect(), direct]
+    }
+
+    /// Numbers of both ways to solve for the radiosities: the same bits.
+    fn both<S: Real>() -> Vec<u64> {
+        let mut all = Vec::new();
+        for n in [6, 31, 64, 70, 101] {
+            let [areas, emissivities, direct] = enclosure::<S>(n);
+            let few = absorbed_by_few(&direct, &areas, &emissivities);
+            let many = absorbed(&direct, &areas, &emissivities);
+            for (k, (few, many)) in few.iter().zip(&many).enumerate() {
+                let [few, many] = [few, many].map(|number| number.lane(S::LANES - 1).to_bits());
+                assert_eq!(few, many, "number {k} of {n} surfaces");
+                all.push(few);
+            }
+        }
+        all
+    }
+
+    struct Both;
+
+    impl LaneTask for Both {
+        type Output = Vec<u64>;
+        fn run<S: Real>(self, _: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<u64> {
+            both::<S>()
+        }
+        fn without_lanes(self) -> Vec<u64> {
+            both::<f64>()
+        }
+    }
+
+    #[test]
+    fn many_surfaces_have_the_bits_of_few() {
+        let plain = both::<f64>();
+        assert_eq!(both::<Dual<1>>(), plain);
+        for level in Level::available() {
+            assert_eq!(run(level, Both), plain, "{level:?}");
+        }
+    }
 
     /// Two infinite plates: X = A / (1/e1 + 1/e2 - 1).
     #[test]

@@ -3,6 +3,7 @@
 //! Equations and sources are given in `emission.rs`, `exchange.rs` and `sky.rs`. Outdoors the sky is split by `sqrt(F_sky)` between sky and
 //! air: Walton (1983), NBSSIR 83-2655, doi:10.6028/NBS.IR.83-2655.
 
+mod absorption;
 mod emission;
 mod exchange;
 mod sky;
