@@ -71,6 +71,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
             return action.take(&mut self.stepper, state, weather, dt, &mut Ledger::new());
         };
         match action {
+            Action::BeginPeriod => {}
             Action::WarmUp(step) | Action::Step(step) => self.step(state, weather, step, dt, solution),
             // Made in parts, whose solutions are not kept.
             Action::FirstStep => {
