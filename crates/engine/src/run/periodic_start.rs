@@ -6,12 +6,17 @@
 
 use crate::building::coefficients::Matter;
 use crate::building::model::Model;
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::run::anderson::Anderson;
 use crate::step::state::State;
 
 /// Changes from one repetition to the next that are remembered.
 const DEPTH: usize = 5;
+/// Bounds of the decay of a change in a repetition alone, by which extrapolations are judged (squares).
+const FASTEST: f64 = 0.25;
+const SLOWEST: f64 = 0.96;
+/// A change that is smaller by this factor than all before earns trust (square).
+const EARNED: f64 = 0.1;
 /// Farthest that a temperature is extrapolated beyond the end of a repetition [K].
 const FARTHEST: f64 = 30.0;
 /// Humidity ratios and moisture contents are extrapolated up to this factor, and down by it.
@@ -73,12 +78,18 @@ fn numbers<S: Real>(state: &State<S>, since: &State<S>) -> [Vec<S>; 2] {
     [numbers, changes]
 }
 
-/// What is known after some repetitions.
+/// What is known after some repetitions. A change is measured by the square of its size.
 pub(super) struct PeriodicStart<S: Real> {
     anderson: Anderson<S>,
-    /// End of the last repetition that was not rejected, and the square of its change.
+    /// End of the last repetition that was not taken back, and its change.
     end: State<S>,
     square: S,
+    /// Smallest change so far.
+    smallest: S,
+    /// Change of the last repetition that continued another one, over that of the other.
+    decay: S,
+    /// How many more extrapolations may be taken back.
+    trust: S,
     /// Lanes that repetitions alone do not bring to their end in one more.
     slow: S::Mask,
     /// Lanes whose repetition started from an extrapolated state.
@@ -86,23 +97,22 @@ pub(super) struct PeriodicStart<S: Real> {
 }
 
 impl<S: Real> PeriodicStart<S> {
-    pub(super) fn trace(&self) -> String {
-        use crate::number::real::Mask;
-        format!("slow {} extrapolated {} norm {:.4e}", self.slow.lane(0), self.extrapolated.lane(0), self.square.lane(0).sqrt())
-    }
     /// Knows the first repetition, from `start` to `end`. The next one starts from its end.
     pub(super) fn new(model: &Model<'_, S>, start: &State<S>, end: &State<S>) -> Self {
         let [image, residual] = numbers(end, start);
         let mut metric = Vec::with_capacity(image.len());
         weights(model, end).write(&mut metric);
         let anderson = Anderson::new(metric, DEPTH, &image, &residual);
-        let none = S::one().lt(S::zero());
+        let square = anderson.square(&residual);
         Self {
-            square: anderson.square(&residual),
             anderson,
             end: end.clone(),
-            slow: none,
-            extrapolated: none,
+            square,
+            smallest: square,
+            decay: S::one(),
+            trust: S::one(),
+            slow: S::Mask::splat(false),
+            extrapolated: S::Mask::splat(false),
         }
     }
 
@@ -117,24 +127,42 @@ impl<S: Real> PeriodicStart<S> {
     ) -> State<S> {
         let [image, residual] = numbers(end, start);
         let square = self.anderson.square(&residual);
-        // An extrapolation that has made the change larger is taken back.
-        let rejected = self.extrapolated & !square.lt(self.square);
-        let kept = !rejected;
+        let kept = self.judge(square);
         self.anderson.learn(kept, &image, &residual);
-        let allowed = S::constant(tolerance * tolerance) * self.square;
-        self.slow = self.slow | !(change * change * square).lt(allowed);
-        self.extrapolated = self.slow & kept;
+        // Where the change is expected to be below the tolerance after the next repetition, nothing is to be gained.
+        let expected = S::constant(tolerance * tolerance) * self.square;
+        self.slow = self.slow | !(change * change * square).lt(expected);
+        self.extrapolated = self.slow & kept & S::zero().lt(self.trust);
         let mut next = self.end.clone();
         next.take(kept, end);
         self.end.take(kept, end);
         self.square = S::select(kept, square, self.square);
-        let extrapolated = extrapolated(model, end, &self.anderson.next());
-        next.take(self.extrapolated, &extrapolated);
+        if self.extrapolated.any() {
+            next.take(self.extrapolated, &extrapolated(model, end, &self.anderson.next()));
+        }
         next
+    }
+
+    /// Lanes that go on from a repetition with this change. The others take the extrapolation back that it started from: the change
+    /// has not become as small as by a repetition alone. This may happen once, and once more each time that the change has become much
+    /// smaller than ever: where laws have bends, repetitions go on alone.
+    fn judge(&mut self, square: S) -> S::Mask {
+        let plain = !self.extrapolated;
+        let some = S::zero().lt(self.square);
+        let decay = S::select(some, square / self.square, S::zero());
+        let allowed = (self.square * self.decay).min(self.smallest);
+        let kept = plain | square.lt(allowed);
+        let bounded = decay.max(S::constant(FASTEST)).min(S::constant(SLOWEST));
+        self.decay = S::select(plain, bounded, self.decay);
+        let earned = self.extrapolated & square.lt(self.smallest.scale(EARNED));
+        self.trust += S::select(earned, S::one(), S::zero()) - S::select(kept, S::zero(), S::one());
+        self.smallest = S::select(kept, self.smallest.min(square), self.smallest);
+        kept
     }
 }
 
-/// A state whose temperatures and moisture contents are those of `numbers` within bounds, and all else goes with them.
+/// A state whose temperatures and moisture contents are those of `numbers` within bounds, and all else goes with them. Cells whose
+/// enthalpy depends on the path stay as they are.
 fn extrapolated<S: Real>(model: &Model<'_, S>, end: &State<S>, numbers: &[S]) -> State<S> {
     let mut state = end.clone();
     state.read(numbers, |mine, number| *mine = number);

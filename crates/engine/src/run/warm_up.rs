@@ -42,8 +42,6 @@ pub(super) fn warm_up<'a, S: Real>(
             state.take(reached, &next);
             return Ok((cycle, change_left));
         }
-        if std::env::var_os("MASCARIN_PLAIN").is_some() { state.take(reached, &next); continue; }
-        if std::env::var_os("MASCARIN_TRACE").is_some() { eprintln!("cycle {cycle} change {:.5} {}", change.lane(0), known.as_ref().map(|k| k.trace()).unwrap_or_default()); }
         let start = match &mut known {
             Some(known) => known.next(&stepper.model, state, &next, change, warmup.tolerance),
             None => {
