@@ -89,10 +89,10 @@ def simulation() -> Simulation:
 
 
 def repeated() -> Simulation:
-    """A heavy building: its first day is repeated for long."""
+    """A heavy building whose first day, in steps of five seconds, is repeated."""
     tree = blocks(9)
     tree["constructions"]["c"]["layers"] = [{"material": "m", "thickness": 3.0}]
-    return Simulation(Building.from_dict(tree), climate(), step=60.0, first_period="1d", outputs=[AIR])
+    return Simulation(Building.from_dict(tree), climate(), step=5.0, first_period="1d", outputs=[AIR])
 
 
 def run_members() -> object:

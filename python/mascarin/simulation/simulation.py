@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 #: A first period that is repeated more often, and makes more than this part of all steps, is pointed out.
-_OFTEN: Final = 20
+_OFTEN: Final = 4
 _MOST: Final = 0.5
 
 

@@ -9,6 +9,7 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
+use crate::run::Action;
 use crate::run::march::march_observed;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
@@ -17,7 +18,9 @@ use crate::step::control::RunControl;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
+use super::kept_steps::{KeptRun, StepKeeper};
 use super::known_steps::DerivativeStepper;
+use super::periodic_slopes::settle;
 
 /// Records of a run and their slopes.
 #[derive(Debug)]
@@ -88,6 +91,9 @@ pub fn slopes_along(
     Ok(Jacobian { records, slopes })
 }
 
+/// Memory for the steps of a repeated first period [B].
+const PERIOD_BYTES: usize = 1 << 28;
+
 /// Number of parameters whose slopes are computed together.
 const GROUP: usize = 8;
 
@@ -139,7 +145,31 @@ fn run_with_slopes(
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme.converged());
     plain.known.start();
+    let run = KeptRun { plan, numbers, weather, options };
+    let mut period: Option<StepKeeper> = None;
     march_observed(plain, weather, options, watch, |plain, reached, action| {
+        match (action, options.warmup) {
+            (Action::BeginPeriod, Some(warmup)) => {
+                let bytes = PERIOD_BYTES;
+                period = Some(StepKeeper::new(reached, plain.history(), warmup.steps, options, bytes));
+                return Ok(());
+            }
+            (Action::WarmUp(_), _) => {
+                if let Some(period) = &mut period {
+                    period.add(action, plain, reached);
+                }
+                return Ok(());
+            }
+            _ => {}
+        }
+        if let Some(keeper) = period.take() {
+            let start = keeper.reached.clone();
+            let (steps, _) = keeper.finish();
+            for Group { stepper, state, .. } in &mut groups {
+                settle(stepper, state, (&steps, &start), run, watch)?;
+                state.change_by(&start, |number, value| number.value = value);
+            }
+        }
         for Group { stepper, state, slopes } in &mut groups {
             stepper.take(action, state, weather, options.dt, &plain.known);
             // The values are those of the plain run, as in reverse: rounding and tolerances must not add up.

@@ -77,6 +77,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         let step = match action {
             Action::WarmUp(step) | Action::Step(step) => step,
             Action::FirstStep => 0,
+            Action::BeginPeriod => return,
             Action::Balance => {
                 return self.balance_surfaces(state, &weather.at(0, 0), known);
             }

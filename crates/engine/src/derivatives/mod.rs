@@ -12,7 +12,9 @@
 
 mod equation_slopes;
 mod forward;
+mod kept_steps;
 mod known_steps;
+mod periodic_slopes;
 mod reverse;
 mod steady_terms;
 

@@ -3,10 +3,9 @@
 //! The run keeps the states between its steps and the solutions of their stages. The reverse pass takes the steps from the
 //! last to the first. Each step is computed once more at its known solution, with numbers that record their operations on a
 //! tape; from the weights on the state after the step follow those on the state before it and on the coefficients. The
-//! operations from parameters to coefficients stay on the tape during the whole pass. Where all states would take too much
-//! memory, only every n-th state is kept and the steps between are run again.
+//! operations from parameters to coefficients stay on the tape during the whole pass. A repeated first period is gone through as
+//! often as the slopes of a periodic state need (`periodic_slopes`).
 
-use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
@@ -19,70 +18,27 @@ use crate::run::outputs::Output;
 use crate::step::Stepper;
 use crate::step::control::RunControl;
 use crate::step::halving::Part;
-use crate::step::history::History;
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
+use super::kept_steps::{KeptRun, KeptSteps, StepKeeper, Stretch};
 use super::known_steps::DerivativeStepper;
+use super::periodic_slopes::{SlopeSearch, plain_weights};
 
 /// A run, and what its reverse pass needs.
 #[derive(Debug)]
 pub struct Trajectory {
     /// The run.
     pub run: Run<f64>,
-    /// All actions of the run.
-    actions: Vec<Action>,
-    /// Starts of the stretches that are run again.
-    starts: Vec<Start>,
-    /// Number of actions in each of these stretches.
-    length: usize,
-    /// The last stretch, which is kept.
-    last: Stretch,
-}
-
-/// Start of a stretch.
-#[derive(Debug)]
-struct Start {
-    state: State<f64>,
-    /// Results from which its first step is guessed: with them the stretch that is run again has the same bits.
-    history: History<f64>,
-}
-
-/// Successive actions: the numbers of the state before each of them, and of its solution.
-#[derive(Debug, Default)]
-struct Stretch {
-    states: Vec<f64>,
-    /// Parts of the steps, and the numbers of their solutions.
-    parts: Vec<Part>,
-    solutions: Vec<f64>,
-    /// Where the parts of each action end, and their numbers.
-    ends: Vec<[usize; 2]>,
-}
-
-impl Stretch {
-    /// Adds an action that a stepper has taken, from the state before it.
-    fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>) {
-        before.write(&mut self.states);
-        let cells = &stepper.model.parts.nonlinear_cells;
-        stepper.known.write(cells, (&mut self.parts, &mut self.solutions));
-        self.ends.push([self.parts.len(), self.solutions.len()]);
-    }
-
-    /// The actions from the last to the first: numbers of the state before each, parts and numbers of its solution.
-    fn reversed(&self) -> impl Iterator<Item = (&[f64], (&[Part], &[f64]))> {
-        let size = self.states.len() / self.ends.len().max(1);
-        (0..self.ends.len()).rev().map(move |k| {
-            let [part, number] = k.checked_sub(1).map_or([0; 2], |before| self.ends[before]);
-            let [last_part, last_number] = self.ends[k];
-            let solution = (&self.parts[part..last_part], &self.solutions[number..last_number]);
-            (&self.states[k * size..(k + 1) * size], solution)
-        })
-    }
+    /// The last repetition of the first period, where it was repeated.
+    period: Option<KeptSteps>,
+    /// The steps after it.
+    steps: KeptSteps,
 }
 
 impl Trajectory {
-    /// Runs a plan, keeping about as many bytes as given.
+    /// Runs a plan, keeping about as many bytes as given of the run, and of its repeated first period.
     ///
     /// # Errors
     /// As [`march`](crate::run::march::march).
@@ -98,27 +54,28 @@ impl Trajectory {
         let weather = Weather::new(plan, forcing);
         let mut stepper = Stepper::new(plan, numbers, options.scheme.converged());
         stepper.known.start();
-        let mut before = stepper.begin(&options.initial);
-        let mut start = Start { state: before.clone(), history: stepper.history() };
-        let mut next = start.history.clone();
-        let length = stretch(&before, weather.steps(), options, bytes);
-        let (mut actions, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
-        last.states.reserve(before.count() * length.min(weather.steps() + 1));
+        let keep =
+            |state: &State<f64>, history, steps| StepKeeper::new(state, history, steps, options, bytes);
+        let mut kept = keep(&stepper.begin(&options.initial), stepper.history(), weather.steps() + 1);
+        let mut period = None;
         let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
-            if last.ends.len() == length {
-                let follows = Start { state: before.clone(), history: next.clone() };
-                starts.push(core::mem::replace(&mut start, follows));
-                last = Stretch::default();
+            match (action, options.warmup) {
+                (Action::BeginPeriod, Some(warmup)) => {
+                    kept = keep(reached, stepper.history(), warmup.steps);
+                    return Ok(());
+                }
+                (Action::Balance, Some(_)) => {
+                    let (reached, none) = (kept.reached.clone(), stepper.history());
+                    let (repeated, history) = core::mem::replace(&mut kept, keep(&reached, none, 0)).finish();
+                    period = Some(repeated);
+                    kept = keep(&reached, history, weather.steps() + 1);
+                }
+                _ => {}
             }
-            actions.push(action);
-            last.push(&before, stepper);
-            before.copy_from(reached);
-            if last.ends.len() == length {
-                next = stepper.history();
-            }
+            kept.add(action, stepper, reached);
             Ok(())
         })?;
-        Ok(Self { run, actions, starts, length, last })
+        Ok(Self { run, period, steps: kept.finish().0 })
     }
 
     /// Slopes by all parameters of the sum of weights (rows x probes) times records.
@@ -144,48 +101,13 @@ impl Trajectory {
         let _recording = Tape::record();
         let leaves: Vec<_> = numbers.iter().map(|&number| Taped::variable(number)).collect();
         let mut pass = ReversePass::new(plan, &leaves, &weather, options, (&self.run.state, weights));
-        let first_of_last = self.starts.len() * self.length;
-        pass.over(&self.actions[first_of_last..], &self.last, watch)?;
-        for (k, start) in self.starts.iter().enumerate().rev() {
-            let actions = &self.actions[k * self.length..(k + 1) * self.length];
-            let stretch = run_again(plan, numbers, &weather, options, start, actions)?;
-            pass.over(actions, &stretch, watch)?;
+        let run = KeptRun { plan, numbers, weather: &weather, options };
+        self.steps.visit(run, true, |actions, stretch| pass.over(actions, stretch, watch))?;
+        if let Some(period) = &self.period {
+            pass.over_repeated(period, run, watch)?;
         }
         Ok(pass.finish(&leaves))
     }
-}
-
-/// Actions between two kept states: all of them where they fit into the bytes.
-fn stretch(state: &State<f64>, steps: usize, options: &Options, bytes: usize) -> usize {
-    // A state and the solutions of its stages, which are never larger.
-    let each = state.count() * size_of::<f64>() * (1 + options.scheme.weights().len());
-    let repeated = options.warmup.map_or(0, |warmup| warmup.steps * warmup.max_cycles);
-    let all = repeated + 1 + steps;
-    let fit = (bytes / each).max(1);
-    // The least memory is taken with as many kept states as there are states between two of them.
-    if all <= fit { all } else { fit.min(all.isqrt() + 1) }
-}
-
-/// Runs a stretch again and keeps its states and solutions.
-fn run_again(
-    plan: &Plan,
-    numbers: &[f64],
-    weather: &Weather<'_>,
-    options: &Options,
-    start: &Start,
-    actions: &[Action],
-) -> Result<Stretch, EngineError> {
-    let mut stepper = Stepper::new(plan, numbers, options.scheme.converged());
-    stepper.known.start();
-    stepper.set_history(&start.history);
-    let (mut before, mut state, mut unused) = (start.state.clone(), start.state.clone(), Ledger::new());
-    let mut stretch = Stretch::default();
-    for action in actions {
-        before.copy_from(&state);
-        action.take(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
-        stretch.push(&before, &stepper);
-    }
-    Ok(stretch)
 }
 
 /// The reverse pass.
@@ -242,9 +164,39 @@ impl<'a> ReversePass<'a> {
         }
     }
 
+    /// Reverses a period that was repeated until its end was its start. The weights on the end are `own + P^T w` with the map `P` of
+    /// the slopes over the period, until they no longer change; the period adds to the weights on the coefficients once.
+    fn over_repeated(
+        &mut self,
+        period: &KeptSteps,
+        run: KeptRun<'_, '_>,
+        watch: &RunControl,
+    ) -> Result<(), EngineError> {
+        let coefficients: Vec<f64> = self.weights.iter().copied().take(self.base).collect();
+        let own = self.state.clone();
+        let model = &self.stepper.follower.model;
+        let dual = |weight: f64| if weight > 0.0 { 1.0 / weight } else { 0.0 };
+        let mut search = SlopeSearch::new(plain_weights(model, &self.now).into_iter().map(dual).collect());
+        let mut weights = own.clone();
+        loop {
+            self.weights[..self.base].copy_from_slice(&coefficients);
+            self.state.copy_from_slice(&weights);
+            period.visit(run, true, |actions, stretch| self.over(actions, stretch, watch))?;
+            let image: Vec<f64> = self.state.iter().zip(&own).map(|(passed, own)| passed + own).collect();
+            let Some(next) = search.next(&weights, &image) else {
+                // What is left belongs to the state that the first repetition started from.
+                for ((left, image), weight) in self.state.iter_mut().zip(image).zip(weights) {
+                    *left = image - weight;
+                }
+                return Ok(());
+            };
+            weights = next;
+        }
+    }
+
     /// Reverses the actions of a stretch.
     fn over(&mut self, actions: &[Action], stretch: &Stretch, watch: &RunControl) -> Result<(), EngineError> {
-        for (&action, (before, solution)) in actions.iter().rev().zip(stretch.reversed()) {
+        for (&action, (before, solution)) in actions.iter().zip(stretch.iter()).rev() {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }

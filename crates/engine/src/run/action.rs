@@ -11,6 +11,8 @@ use crate::weather::conditions::Weather;
 /// One change of the state of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Action {
+    /// The first period begins, or begins again, from a state that no other action has made.
+    BeginPeriod,
     /// A step of the warm-up.
     WarmUp(usize),
     /// The surfaces brought into balance with the weather of the start.
@@ -33,6 +35,7 @@ impl Action {
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
         match self {
+            Self::BeginPeriod => Ok(()),
             Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
             Self::FirstStep => stepper.first_step(state, weather, dt, ledger),
             Self::Balance => {
@@ -58,7 +61,7 @@ impl Action {
     pub(crate) fn row(self, options: &Options) -> Option<usize> {
         // Row k is the state at the start of step `record_from + k * record_every`.
         let steps = match self {
-            Self::WarmUp(_) => return None,
+            Self::BeginPeriod | Self::WarmUp(_) => return None,
             Self::Balance => 0,
             Self::FirstStep => 1,
             Self::Step(step) => step + 1,

@@ -5,6 +5,7 @@ use crate::error::EngineError;
 use crate::number::real::{Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
+use crate::run::periodic_start::PeriodicStart;
 use crate::step::control::RunControl;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -23,21 +24,34 @@ pub(super) fn warm_up<'a, S: Real>(
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let mut active = S::Mask::splat(true);
     let mut change_left = S::zero();
+    let mut known: Option<PeriodicStart<S>> = None;
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
         let mut unused = Ledger::new();
+        observe(stepper, state, Action::BeginPeriod)?;
         for action in (0..warmup.steps).map(Action::WarmUp) {
             control.check()?;
             action.take(stepper, &mut next, weather, options.dt, &mut unused)?;
             observe(stepper, &next, action)?;
         }
         let change = next.distance(state);
-        state.take(active, &next);
+        let reached = active;
         change_left = S::select(active, change, change_left);
         active = active & !stepper.failed() & S::constant(warmup.tolerance).lt(change);
         if !active.any() {
+            state.take(reached, &next);
             return Ok((cycle, change_left));
         }
+        let start = match &mut known {
+            Some(known) => known.next(&stepper.model, state, &next, change, warmup.tolerance),
+            None => {
+                known = Some(PeriodicStart::new(&stepper.model, state, &next));
+                next.clone()
+            }
+        };
+        state.take(reached, &next);
+        state.take(active, &start);
+        stepper.guess.move_by(&next, state);
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })

@@ -70,7 +70,7 @@ impl<S: Real> GapConvection<S> {
 // One copy only: inlining multiplies compile time.
 #[inline(never)]
 fn expect<S: Real>(registers: &[Together<S>], cells: &[S], expected: &mut [S]) {
-    S::vectorised_search(
+    S::vectorised(
         #[inline(always)]
         || S::in_chunks(Expect { registers, cells, expected }),
     );

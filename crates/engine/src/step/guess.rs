@@ -40,6 +40,22 @@ impl<S: Real> Guess<S> {
         self.previous.get_or_insert_with(zero).copy_some(&model.parts.nonlinear_cells, &state.view());
     }
 
+    /// What comes next starts from another state than the one that was reached, but goes on from it as it would have from there.
+    pub(crate) fn move_by(&mut self, reached: &State<S>, start: &State<S>) {
+        let Some(previous) = &mut self.previous else { return };
+        let Unknowns { cells, surfaces, air } = previous;
+        let kinds = [
+            (&mut cells[..], &reached.cells[..], &start.cells[..]),
+            (&mut *surfaces, &reached.surfaces, &start.surfaces),
+            (&mut *air, &reached.air, &start.air),
+        ];
+        for (previous, reached, start) in kinds {
+            for ((previous, &reached), &start) in previous.iter_mut().zip(reached).zip(start) {
+                *previous += start - reached;
+            }
+        }
+    }
+
     /// Guesses a stage at a node: the straight line through the start of the step before and that of this one, or the start
     /// itself.
     #[inline(always)]

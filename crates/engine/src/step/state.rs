@@ -137,6 +137,31 @@ impl<S: Real> State<S> {
         }
     }
 
+    /// Changes the enthalpies and the memory of the cells of nonlinear walls, which are those of another state, as the change of their
+    /// temperatures since then does. A cell whose enthalpy depends on the path gets the temperature of that state.
+    pub(crate) fn move_heat(&mut self, model: &Model<'_, S>, from: &Self) {
+        for &w in &model.parts.nonlinear_walls {
+            let (wall, first_cell) = (&model.coefficients.walls[w], model.plan.walls[w].first_cell);
+            for (k, cell) in (first_cell..).zip(&wall.cells) {
+                let (before, now) = (from.cells[k], self.cells[k]);
+                let heat = match &cell.matter {
+                    Matter::Solid { capacity, .. } => *capacity * (now - before),
+                    Matter::Pcm(law) if wall.pcm[*law].remembers() => {
+                        self.cells[k] = before;
+                        S::zero()
+                    }
+                    Matter::Pcm(law) => {
+                        let law = &wall.pcm[*law];
+                        let [before, point] = [before, now].map(|at| law.at(at, &from.memory[k]));
+                        self.memory[k] = law.next(&from.memory[k], now, point.liquid_fraction);
+                        point.enthalpy - before.enthalpy
+                    }
+                };
+                self.enthalpy[k] = from.enthalpy[k] + heat;
+            }
+        }
+    }
+
     /// Magnitudes of the heat in all cells and airs above 0 degC, or above the reference of a law, summed up [J].
     pub(crate) fn heat_content(&self, model: &Model<'_, S>) -> S {
         let mut content = S::zero();

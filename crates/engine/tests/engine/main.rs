@@ -25,6 +25,7 @@ mod long_walls;
 mod marching;
 mod nested_iteration;
 mod order_with_windows;
+mod periodic_start;
 mod properties;
 mod rooms_side_by_side;
 mod slopes_of_stages;

@@ -265,6 +265,11 @@ impl<S: Real> PcmCoefficients<S> {
         }
     }
 
+    /// Sensible heat of the solid per volume as built [J/(m3 K)].
+    pub(crate) fn sensible_heat(&self) -> S {
+        self.volumetric_heat[0]
+    }
+
     /// Whether the enthalpy depends on earlier temperatures.
     pub fn remembers(&self) -> bool {
         matches!(self.law, Law::Hysteresis(..))
