@@ -33,10 +33,10 @@ VIEW_FACTOR_TOLERANCE = 0.05
 #: Largest deviation from one of the sum of given fractions of the sun; the engine scales them [-].
 FRACTION_TOLERANCE = 0.02
 #: Surfaces of one zone, glass and frames of windows included. All exchange radiation with each other.
-MOST_SURFACES = 1000
-#: What one zone takes with that many surfaces, measured: memory, which grows with the square of their number
-#: [B], and processor time of a day in steps of 15 min, which grows with the cube [s].
-_MEMORY_OF_MOST, _TIME_OF_MOST = 92e6, 36.0
+MOST_SURFACES = 2000
+#: What one zone of that many surfaces takes, by a measurement with 1000: memory [B], and processor time of a
+#: day in steps of 15 min [s]. Both grow with the square of their number; derivatives grow with the cube.
+_MEMORY_OF_MOST, _TIME_OF_MOST = 260e6, 5.6
 
 
 def faults(building: Description) -> Faults:
@@ -129,7 +129,7 @@ def _zones_have_not_too_many_surfaces(building: Description) -> Faults:
     for zone, count in counts.items():
         if count > MOST_SURFACES:
             times = count / MOST_SURFACES
-            size, minutes = amount(_MEMORY_OF_MOST * times**2), _TIME_OF_MOST * times**3 / 60.0
+            size, minutes = amount(_MEMORY_OF_MOST * times**2), _TIME_OF_MOST * times**2 / 60.0
             yield fault(
                 ("zones", zone),
                 f"{count} surfaces, all of which exchange radiation: a run would take {size} of memory and "
