@@ -8,6 +8,7 @@ pub mod options;
 pub mod outputs;
 pub mod ratings;
 pub mod stepwise;
+pub mod streamed;
 mod warm_up;
 
 pub(crate) use action::Action;
