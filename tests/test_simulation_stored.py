@@ -155,7 +155,7 @@ def test_the_engine_waits_for_the_writer(simulation: Simulation) -> None:
     assert max(ahead) <= 10
 
 
-class Stop(Exception):  # noqa: N818 (not an error of the package)
+class Stop(Exception):
     """Raised by a test."""
 
 
@@ -175,9 +175,10 @@ def test_an_interrupted_run_leaves_the_older_file(
     def fail(_self: object, _rows: object) -> None:
         raise error
 
-    with pytest.MonkeyPatch.context() as patch, pytest.raises(error):
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr("mascarin.simulation.blocks.Watch.add", fail)
-        simulation.run_into(file)
+        with pytest.raises(error):
+            simulation.run_into(file)
     with pytest.raises(error):
         simulation.run_into(file, progress=stop)
     assert file.read_text(encoding="utf-8") == "older"
