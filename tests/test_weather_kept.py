@@ -141,9 +141,9 @@ def test_a_table_is_read_once_and_gives_the_same(
     file.write_text(ROWS, encoding="utf-8")
     columns = {"surface": "T", "plane": {"column": "S", "scale": 2.0, "kind": "mean"}}
 
-    def both() -> tuple[Climate, Measurements]:
+    def both() -> list[Climate | Measurements]:
         measured = Measurements.from_table(file, timezone="Europe/Paris", columns=columns, stamps=stamps)
-        return weather(file, stamps=stamps), measured
+        return [weather(file, stamps=stamps), measured]
 
     with monkeypatch.context() as off:
         off.setenv("MASCARIN_CACHE", "off")

@@ -76,7 +76,8 @@ def run(
         Description of a building.
     out : Path
         File for the time series: NetCDF (.nc), CSV (.csv, in local time, with units and provenance in a file
-        beside it) or Parquet (.parquet, in local time). Without it a summary is printed.
+        beside it) or Parquet (.parquet, in local time). NetCDF and CSV are written while the run goes on,
+        unless --interval, --report or --json need all records. Without it a summary is printed.
     report : Path
         File for a page about the run (.html): inputs, curves, loads, energy balance, warnings.
     start : str

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -267,12 +266,10 @@ class Climate(RecordView[WeatherRecord]):
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
-
-        def made() -> WeatherRecord:
-            return record_of_table(read_table(source, timezone=timezone, **reading), *choice)
-
-        code = (sys.modules[__name__], measured)
-        record = kept_record(WeatherRecord, source, timezone, (reading, *choice), code, made)
+        record = kept_record(
+            WeatherRecord, source, timezone, (reading, *choice), [measured],
+            lambda: record_of_table(read_table(source, timezone=timezone, **reading), *choice),
+        )  # fmt: skip
         return cls(replace(record, check_sun=check_sun))._at(latitude, longitude, altitude)
 
     @classmethod

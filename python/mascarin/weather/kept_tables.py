@@ -98,7 +98,7 @@ def _unpacked(kind: type[AnyRecord], found: Kept, grid: Grid, where: str) -> Any
     knots = None
     if notes["last"] is not None:
         knots = np.append(numbers.pop(_KNOTS).astype(np.int64), np.int64(notes["last"]))
-    more = {"assumed": frozenset(notes["assumed"])} if "assumed" in notes else {}
+    more: dict[str, Any] = {"assumed": frozenset(notes["assumed"])} if "assumed" in notes else {}
     return kind(
         columns={name.removeprefix("column "): values for name, values in numbers.items()},
         kinds=notes["kinds"], grid=grid, closing=notes["closing"], file=where, sha256=notes["sha256"],
