@@ -53,4 +53,9 @@ def test_one_percent_of_melting_is_enough(swing: float, said: int) -> None:
         "slab.wax_liquid_fraction",
     ]
     records = np.array([[20.0, 0.0], [21.3, swing]])
-    assert len(unmelted.warnings(building, records)) == said
+    whole, by_rows = unmelted.Extremes(building), unmelted.Extremes(building)
+    whole.add(records)
+    for row in records:
+        by_rows.add(row[None, :])
+    assert len(whole.warnings()) == said
+    assert by_rows.warnings() == whole.warnings()

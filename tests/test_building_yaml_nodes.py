@@ -21,7 +21,7 @@ PIECES = [
     *("&a ", "*a", "&b-c\n", "*b-c", "&a:", "! ", "!!str ", "!x ", "<<: *a", "---\n", "...\n"),
     *("yes", "null", "~", "''", '"', "'", '"x\\/y"', '"\\x41"', "017", "0o17", "1_000", "71e3", "12:30"),
     *("\t", "\x85", "\u2028", "\r", ">-\n  a\n", "|#", "|\n  a\n", "a:b", "=", "é", "-", "\\", "%", "@"),
-    *("%YAML 1.1\n", ".5", "`"),
+    *("%YAML 1.1\n", ".5", "`", "*", "&", "w_*.x", "a&b.c", "*a.b"),
 ]
 
 
@@ -88,3 +88,9 @@ def test_values_inside_each_other_are_counted_before_python_gives_up() -> None:
     """A hundred thousand lists in lists end in an error of Python, not of the process."""
     with pytest.raises((RecursionError, YAMLError)):
         compose(reader(), "[" * 100_000)
+
+
+@pytest.mark.parametrize("text", ["wall_*.outside: 1", "{a_*.b: [x&y/z]}", "- roof*!"])
+def test_a_star_in_a_word_is_no_alias(text: str) -> None:
+    assert yaml_nodes._surely_read(text)
+    assert same(text)

@@ -75,16 +75,16 @@ def test_a_long_run_shows_its_steps_and_the_time_left(
     # As if every run were long and every line due; the engine reports at a quarter and at half of the steps.
     monkeypatch.setattr("mascarin.progress.SILENT_FOR", 0.0)
     monkeypatch.setattr("mascarin.progress._LINE_EVERY", 0.0)
-    whole = CompiledRun.run
+    whole = CompiledRun.run_into
 
-    def reporting(compiled: CompiledRun, *given: Any, progress: Report) -> tuple[Any, Any]:
+    def reporting(compiled: CompiledRun, *given: Any, progress: Report) -> dict[str, Any]:
         steps = len(compiled.forcing)
         progress(0, steps)
         progress(steps // 4, steps)
         progress(steps // 2, steps)
         return whole(compiled, *given)
 
-    monkeypatch.setattr(CompiledRun, "run", reporting)
+    monkeypatch.setattr(CompiledRun, "run_into", reporting)
     assert cli.main(call) == 0
     lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("run  ")]
     shares = [int(line.split()[1]) for line in lines if "%" in line]
@@ -168,12 +168,11 @@ def test_bad_input_leaves_nothing(
 def test_a_failure_while_writing_leaves_the_older_file(
     call: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def fail(_self: object, path: Path, **_options: object) -> None:
-        path.write_text("half", encoding="utf-8")
-        raise OSError(28, "No space left on device", str(path))
+    def fail(_self: object, _rows: object) -> None:
+        raise OSError(28, "No space left on device", "box.nc")
 
     Path("box.nc").write_text("older", encoding="utf-8")
-    monkeypatch.setattr("xarray.Dataset.to_netcdf", fail)
+    monkeypatch.setattr("mascarin.simulation.netcdf.NetcdfDraft.take", fail)
     assert cli.main([*call, "-o", "box.nc"]) == 2
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"

@@ -49,6 +49,29 @@ def test_a_run_needs_no_tables(tmp_path: Path) -> None:
     assert loaded_after(code) == ["numpy", "pydantic"]
 
 
+def test_a_run_with_a_measured_table_needs_pandas_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What reading the table gave is kept."""
+    monkeypatch.delenv("MASCARIN_CACHE")
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    folder = Path(mascarin.__file__).parent / "examples" / "lgi"
+    words = ["run", str(folder / "building.yaml"), "--weather", str(folder / "study.yaml")]
+    words += ["--start", "2010-08-02", "--end", "2010-08-03"]
+    code = f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0"
+    assert "pandas" in loaded_after(code)
+    assert loaded_after(code) == ["numpy", "pydantic"]
+
+
+def test_a_run_to_a_file_needs_no_tables(tmp_path: Path) -> None:
+    box = Path(mascarin.__file__).parent / "examples" / "box.yaml"
+    words = ["run", str(box), "--weather", "shipped:golden", "--start", "2001-07-01", "--end", "2001-07-02"]
+    words += ["-o", str(tmp_path / "run.nc")]
+    code = f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0"
+    assert loaded_after(code) == ["numpy", "pydantic"]
+
+
 @pytest.mark.parametrize("name", sorted(set(mascarin.__all__) - {"__version__"}))
 def test_every_public_name_is_there_and_documented(name: str) -> None:
     value = getattr(mascarin, name)

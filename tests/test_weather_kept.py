@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather import Climate, readers, shipped, sun_check
+from mascarin.weather import Climate, Measurements, readers, shipped, sun_check, table
 from mascarin.weather.data import cache_folder
 from mascarin.weather.kept import FOLDER, MOST, Kept, kept
 
@@ -97,3 +98,91 @@ def test_it_can_be_turned_off(folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setenv("MASCARIN_CACHE", "off")
     Climate.shipped("golden").completed()
     assert not folder.exists()
+
+
+ROWS = """time;T;S;G
+2024-03-30 21:00;12,25;1;0
+2024-03-30 22:00;12,5;2;0
+2024-03-30 23:00;;3;-0,0
+2024-03-31 00:00;11,125;4;0
+2024-03-31 01:00;10,0;5;0,001
+2024-03-31 04:00;9;6;120
+"""
+
+
+def alike(one: Climate | Measurements, other: Climate | Measurements) -> bool:
+    """Whether all that two records hold is the same, to the bit."""
+
+    def held(view: Climate | Measurements) -> dict[str, Any]:
+        numbers = {"lines": view.record.lines, "knots": view.record.knots, **view.record.columns}
+        found = {key: value.tobytes() for key, value in numbers.items() if value is not None}
+        names = ("kinds", "grid", "closing", "file", "sha256", "provenance", "assumed", "site", "check_sun")
+        return {**found, **{f"field {name}": repr(getattr(view.record, name, None)) for name in names}}
+
+    first, second = held(one), held(other)
+    return list(first) == list(second) and first == second
+
+
+def weather(file: Path, **more: Any) -> Climate:
+    options: dict[str, Any] = {
+        "timezone": "Europe/Paris",
+        "columns": {"air_temperature": "T", "global_horizontal": {"column": "G"}},
+        "extra": ["S"],
+        "absent": ["dew_point", "wind_speed", "wind_direction"],
+    }
+    return Climate.from_table(file, **{**options, **more})
+
+
+@pytest.mark.parametrize("stamps", ["start", "end"])
+def test_a_table_is_read_once_and_gives_the_same(
+    folder: Path, tmp_path: Path, stamps: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(ROWS, encoding="utf-8")
+    columns = {"surface": "T", "plane": {"column": "S", "scale": 2.0, "kind": "mean"}}
+
+    def both() -> list[Climate | Measurements]:
+        measured = Measurements.from_table(file, timezone="Europe/Paris", columns=columns, stamps=stamps)
+        return [weather(file, stamps=stamps), measured]
+
+    with monkeypatch.context() as off:
+        off.setenv("MASCARIN_CACHE", "off")
+        without = both()
+    first = both()
+    assert len(list(folder.iterdir())) == 2
+    monkeypatch.setattr(table, "read_frame", None)
+    again = both()
+    for one, other, third in zip(without, first, again, strict=True):
+        assert alike(one, other)
+        assert alike(one, third)
+
+
+def test_other_options_or_rows_are_read_anew(folder: Path, tmp_path: Path) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(ROWS, encoding="utf-8")
+    first = weather(file)
+    assert not alike(first, weather(file, stamps="end"))
+    assert not alike(first, weather(file, timezone="UTC+1"))
+    assert not alike(
+        first, weather(file, absent={"dew_point": 3.0, "wind_speed": 1.0, "wind_direction": 0.0})
+    )
+    assert alike(first, weather(file, extra=(name for name in ["S"])))
+    file.write_text(ROWS.replace("12,25", "12,75"), encoding="utf-8")
+    assert not alike(first, weather(file))
+
+
+def test_a_table_that_is_refused_is_not_kept(folder: Path, tmp_path: Path) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(ROWS.replace("2024-03-31 00:00", "midnight"), encoding="utf-8")
+    for _ in range(2):
+        with pytest.raises(InputError, match=r"table\.csv:5: time 'midnight'"):
+            weather(file)
+    assert not folder.exists() or not list(folder.iterdir())
+
+
+def test_a_large_table_is_not_kept(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mascarin.weather.kept.LARGEST", 10)
+    file = tmp_path / "table.csv"
+    file.write_text(ROWS, encoding="utf-8")
+    weather(file)
+    assert not folder.exists() or not list(folder.iterdir())

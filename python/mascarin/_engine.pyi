@@ -81,6 +81,21 @@ class Plan:
         evaluated there; None unless `options["residuals"]` is true, with which a run takes longer. [W]
         """
 
+    def simulate_into(
+        self,
+        values: _Array,
+        forcing: _Array,
+        options: dict[str, Any],
+        rows: int,
+        take: Callable[[_Array], object],
+        report: Callable[[int], object] | None = None,
+    ) -> dict[str, Any]:
+        """One run as `simulate`; `take` gets the records in blocks of `rows` rows while the run goes on.
+
+        The engine goes on while `take` works, by one block at most. What `take` raises ends the run and is
+        raised. The entry `records` of the result is empty.
+        """
+
     def ensemble(
         self,
         values: _Array,

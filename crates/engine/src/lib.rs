@@ -41,6 +41,7 @@ pub use step::state;
 pub mod march {
     pub use crate::run::march::{Run, march};
     pub use crate::run::options::{Options, Warmup};
+    pub use crate::run::streamed::march_streamed;
     pub use crate::step::control::RunControl as Watch;
     pub use crate::step::{Counters, Scheme};
 }

@@ -109,31 +109,61 @@ pub fn done_steps(watch: &Watch) -> usize {
     watch.steps.load(Ordering::Relaxed)
 }
 
+/// What a worker sends to the thread that waits for it.
+enum Sent {
+    Block(Vec<f64>),
+    End,
+}
+
+/// Gives a block of numbers to Python; it waits until the one before has been taken.
+pub type Give<'a> = &'a dyn Fn(Vec<f64>) -> Result<(), EngineError>;
+
 /// Runs `work` on another thread with the GIL released, passing Ctrl-C on to it and progress to `report`.
 pub fn attended<T: Send>(
     py: Python<'_>,
     report: Option<Report<'_, '_>>,
     work: impl FnOnce(&Watch) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
+    attended_blocks(py, report, |_| Ok(()), |watch, _| work(watch))
+}
+
+/// Runs `work` as `attended`, and calls `take` with each block of numbers that it gives while it goes on. An error of `take` ends it.
+pub fn attended_blocks<T: Send>(
+    py: Python<'_>,
+    report: Option<Report<'_, '_>>,
+    mut take: impl FnMut(Vec<f64>) -> PyResult<()>,
+    work: impl FnOnce(&Watch, Give<'_>) -> Result<T, EngineError> + Send,
+) -> PyResult<T> {
     let watch = Watch::default();
-    let (sender, receiver) = sync_channel(1);
+    // A block is handed over, not kept: one is filled while one is taken.
+    let (sender, receiver) = sync_channel(0);
     let receiver = Mutex::new(receiver);
-    let wait = || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
     let mut interruption = None;
     let before = INTERRUPTIONS.load(Ordering::Relaxed);
     let result = std::thread::scope(|scope| {
         let watch = &watch;
         let worker = std::thread::Builder::new().spawn_scoped(scope, move || {
-            let result = work(watch);
-            // The receiver lives until the worker is joined.
-            let _ = sender.send(());
+            // Nobody takes a block of a call that is being stopped.
+            let give = |block| sender.send(Sent::Block(block)).map_err(|_| EngineError::Interrupted);
+            let result = work(watch, &give);
+            // The receiver lives until the worker ends, unless the call is being stopped.
+            let _ = sender.send(Sent::End);
             result
         })?; // the system gives no more threads: an OSError
+        let wait =
+            || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
         let mut reported = 0;
-        while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {
+        loop {
+            let sent = py.detach(wait);
+            if matches!(sent, Ok(Sent::End) | Err(RecvTimeoutError::Disconnected)) {
+                break;
+            }
             let mut attend = py.check_signals();
             if attend.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
                 attend = Err(PyKeyboardInterrupt::new_err("interrupted"));
+            }
+            if let (Ok(()), Ok(Sent::Block(block))) = (&attend, sent) {
+                attend = take(block);
             }
             if let (Ok(()), Some((report, done))) = (&attend, report) {
                 // Again and again before the first unit is done, which may take long.
@@ -149,6 +179,8 @@ pub fn attended<T: Send>(
                 break;
             }
         }
+        // A worker that waits with a block goes on, and finds that nobody takes it.
+        drop(receiver);
         Ok::<_, PyErr>(py.detach(|| worker.join()))
     })?;
     match (result, interruption) {

@@ -4,7 +4,7 @@ use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::{Run, Watch, march};
+use mascarin_engine::march::{Run, Watch, march, march_streamed};
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::vapour::VapourFlow;
@@ -15,7 +15,9 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::{EngineInputError, abandonable, attended, caught, done_members, done_steps, to_python};
+use crate::errors::{
+    EngineInputError, abandonable, attended, attended_blocks, caught, done_members, done_steps, to_python,
+};
 use crate::options::RunOptions;
 
 /// A building compiled for the engine.
@@ -102,8 +104,41 @@ impl Plan {
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
             let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
-            let run = attended(py, report, |watch| march(plan, values, &drive, &options, watch))?;
-            describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
+            let mut run = attended(py, report, |watch| march(plan, values, &drive, &options, watch))?;
+            // Moved: a year of many rooms is gigabytes.
+            let records = PyArray1::from_vec(py, std::mem::take(&mut run.records));
+            describe_run(py, &run, records.reshape([options.rows(drive.steps()), options.probes.len()])?)
+        })
+    }
+
+    /// One run as `simulate`, which calls `take` with its records (rows x probes) in blocks of `rows` rows; its own records are empty.
+    #[pyo3(signature = (values, forcing, options, rows, take, report=None))]
+    #[allow(clippy::too_many_arguments, reason = "those of `simulate`, and where the records go")]
+    fn simulate_into<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        forcing: PyReadonlyArray3<'py, f64>,
+        options: RunOptions,
+        rows: usize,
+        take: &Bound<'py, PyAny>,
+        report: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        caught(|| {
+            let options = options.read()?;
+            let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+            let drive =
+                Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+            let (plan, probes) = (&self.plan, options.probes.len());
+            let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
+            let hand_over = |block: Vec<f64>| {
+                let shape = [block.len() / probes.max(1), probes];
+                take.call1((PyArray1::from_vec(py, block).reshape(shape)?,)).map(drop)
+            };
+            let run = attended_blocks(py, report, hand_over, |watch, give| {
+                march_streamed(plan, values, &drive, &options, watch, rows, give)
+            })?;
+            describe_run(py, &run, PyArray2::zeros(py, [0, probes], false))
         })
     }
 
@@ -198,10 +233,10 @@ pub fn contiguous<T>(slice: Result<&[T], numpy::AsSliceError>) -> PyResult<&[T]>
 pub fn describe_run<'py>(
     py: Python<'py>,
     run: &Run<f64>,
-    records: [usize; 2],
+    records: Bound<'py, PyArray2<f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    result.set_item("records", PyArray1::from_slice(py, &run.records).reshape(records)?)?;
+    result.set_item("records", records)?;
     for flow in Flow::ALL {
         result.set_item(flow.name(), run.ledger.into[flow as usize])?;
     }

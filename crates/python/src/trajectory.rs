@@ -3,7 +3,7 @@
 use mascarin_engine::derivatives;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Options;
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -54,7 +54,9 @@ impl Trajectory {
     fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         caught(|| {
             let steps = self.forcing.len() / (self.stages * self.channels);
-            describe_run(py, &self.kept.run, [self.options.rows(steps), self.options.probes.len()])
+            let run = &self.kept.run;
+            let shape = [self.options.rows(steps), self.options.probes.len()];
+            describe_run(py, run, PyArray1::from_slice(py, &run.records).reshape(shape)?)
         })
     }
 

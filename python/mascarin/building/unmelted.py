@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,34 +29,51 @@ def watched(building: Building) -> list[Output]:
     ]
 
 
-def warnings(building: Building, records: npt.NDArray[np.float64]) -> list[str]:
-    """Warnings about layers that neither melted nor froze.
+class Extremes:
+    """Extremes of what is watched over a run, from its records in blocks.
 
     Parameters
     ----------
     building : Building
         The building.
-    records : ndarray, shape (rows, watched outputs)
-        Their values over the run. [degC, -]
     """
-    lines = []
-    pairs: Sequence[npt.NDArray[np.float64]] = np.split(records, max(records.shape[1] // 2, 1), axis=1)
-    for (name, layer, material), pair in zip(_layers(building), pairs, strict=False):
-        temperature, fraction = pair.T
-        if np.ptp(fraction) >= NOTHING:
-            continue
-        low, high = material.melting
-        state = "solid" if fraction[0] < 0.5 else "liquid"
-        freezes = ""
-        if material.cooling is not None:
-            law, centre = material.cooling
-            freezes = f" and freezes from {centre + law.reach[1]:.2f} to {centre + law.reach[0]:.2f} degC"
-        lines.append(
-            f"surfaces.{name}, layer {layer}: stayed {state}, {temperature.min():.2f} to "
-            f"{temperature.max():.2f} degC on the mean; it melts from {low:.2f} to {high:.2f} degC{freezes}: "
-            "its latent heat has no effect in this run"
-        )
-    return lines
+
+    def __init__(self, building: Building) -> None:
+        self._layers = list(_layers(building))
+        self._first: npt.NDArray[np.float64] | None = None
+        self._low = self._high = np.empty(0)
+
+    def add(self, records: npt.NDArray[np.float64]) -> None:
+        """Add the next records, shape (rows, watched outputs). [degC, -]"""
+        if not self._layers or not len(records):
+            return
+        low, high = records.min(axis=0), records.max(axis=0)
+        if self._first is None:
+            self._first, self._low, self._high = records[0].copy(), low, high
+        else:
+            self._low, self._high = np.minimum(self._low, low), np.maximum(self._high, high)
+
+    def warnings(self) -> list[str]:
+        """Warnings about layers that neither melted nor froze."""
+        lines: list[str] = []
+        if self._first is None:
+            return lines
+        for k, (name, layer, material) in enumerate(self._layers):
+            temperature, fraction = 2 * k, 2 * k + 1
+            if self._high[fraction] - self._low[fraction] >= NOTHING:
+                continue
+            low, high = material.melting
+            state = "solid" if self._first[fraction] < 0.5 else "liquid"
+            freezes = ""
+            if material.cooling is not None:
+                law, centre = material.cooling
+                freezes = f" and freezes from {centre + law.reach[1]:.2f} to {centre + law.reach[0]:.2f} degC"
+            lines.append(
+                f"surfaces.{name}, layer {layer}: stayed {state}, {self._low[temperature]:.2f} to "
+                f"{self._high[temperature]:.2f} degC on the mean; it melts from {low:.2f} to {high:.2f} "
+                f"degC{freezes}: its latent heat has no effect in this run"
+            )
+        return lines
 
 
 def _layers(building: Building) -> Iterator[tuple[str, str, PhaseChangeMaterial]]:

@@ -19,10 +19,12 @@ if TYPE_CHECKING:
 #: Line ends of YAML 1.1 that are letters in YAML 1.2, the byte order mark, the first letter of directives,
 #: tabs, and marks with a comment after them.
 _OTHERWISE_READ = ("\x85", "\u2028", "\u2029", "\ufeff", "\n%", "\t", "\r", "|#", ">#")
+#: What may stand before a node: a letter before a star makes it a part of a word, as in `wall_*.outside`.
+_BEFORE = r"(?:^|[\s,\[\]{}:?\"'-])"
 #: Names of anchors with letters that end them in YAML 1.1.
-_OTHER_ANCHORS = re.compile(r"[&*][\w-]*[^\w\s,\]}-]", re.ASCII)
+_OTHER_ANCHORS = re.compile(_BEFORE + r"[&*][\w-]*[^\w\s,\]}-]", re.ASCII)
 #: Tags, which are written with other letters in YAML 1.1.
-_TAGS = re.compile(r"(?:^|[\s,\[\]{}:?\"'-])!")
+_TAGS = re.compile(_BEFORE + "!")
 #: Words that both libraries know: decimal numbers, and those whose first letter makes them text.
 _WHOLE = re.compile(r"-?[0-9]+")
 _COUNT = re.compile(r"-?(?:0|[1-9][0-9]*)")

@@ -34,6 +34,7 @@ from mascarin.errors import InputError
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import Report
+    from mascarin.simulation.finished import Finished
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
@@ -75,7 +76,8 @@ def run(
         Description of a building.
     out : Path
         File for the time series: NetCDF (.nc), CSV (.csv, in local time, with units and provenance in a file
-        beside it) or Parquet (.parquet, in local time). Without it a summary is printed.
+        beside it) or Parquet (.parquet, in local time). NetCDF and CSV are written while the run goes on,
+        unless --interval, --report or --json need all records. Without it a summary is printed.
     report : Path
         File for a page about the run (.html): inputs, curves, loads, energy balance, warnings.
     start : str
@@ -114,6 +116,8 @@ def run(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
             scheme=scheme, initial=_start(initial), more=report is not None,
         )  # fmt: skip
+        if out is not None and report is None and interval is None and not as_json:
+            return 0 if _stored(simulation, out).energy.closes else 1
         results = _simulated(simulation)
         if report is not None:
             _write_report(report, simulation, results, {"Building": building, "Weather": weather})
@@ -178,9 +182,22 @@ def _simulated(simulation: Simulation) -> Results:
     """Run once, with warnings about results, and progress of a long run, on standard error."""
     with _progress() as progress:
         results = simulation.run(progress=progress)
-    for line in results.warnings:
-        print(f"warning: {line}", file=sys.stderr)
+    _print_lines(results.warnings)
     return results
+
+
+def _stored(simulation: Simulation, out: Path) -> Finished:
+    """Run once, and write the series while the run goes on; messages as `_simulated`."""
+    with _progress() as progress:
+        found = simulation.run_into(out, progress=progress).finished
+    _print_lines(found.warnings)
+    print(f"wrote {out}", file=sys.stderr)
+    return found
+
+
+def _print_lines(warnings: Sequence[str]) -> None:
+    for line in warnings:
+        print(f"warning: {line}", file=sys.stderr)
 
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:

@@ -25,55 +25,67 @@ STEPS: Final = (30, 20, 15, 12, 10, 6, 5, 4, 3, 2, 1)
 START: Final = 3
 
 
-def error_of(series: npt.NDArray[np.float64]) -> float:
-    """Estimate of the error of a series by the time step. [K]
+class Bends:
+    """How much the air temperatures of a run bend from step to step, from its records in blocks.
 
     The scheme is of second order: its error is a share of the step squared times the second derivative, and
-    the second difference of the series is this product.
-
-    Parameters
-    ----------
-    series : ndarray, shape (rows,)
-        Temperatures at the ends of the steps. [degC]
-    """
-    bends = np.diff(series[START:], 2)
-    return float(SHARE * np.sqrt(np.mean(bends**2))) if len(bends) else 0.0
-
-
-def warnings(
-    building: Building,
-    outputs: Sequence[Output],
-    records: npt.NDArray[np.float64],
-    step_seconds: float,
-) -> Iterator[str]:
-    """Warnings about zones whose air changes too fast for the step, with the step to take.
-
-    Zones with heating or cooling are left out: their set points jump.
+    the second difference of a series is this product. Zones with heating or cooling are left out: their set
+    points jump.
 
     Parameters
     ----------
     building : Building
         The building.
     outputs : sequence of Output
-        What was recorded.
-    records : ndarray, shape (rows, outputs)
-        Its values. [unit of each output]
-    step_seconds : float
-        Time step. [s]
+        What is recorded.
     """
-    zones = list(building.zones.items())
-    for column, output in enumerate(outputs):
-        if output.kind != "air_temperature" or output.zone is None:
-            continue
-        name, zone = zones[output.zone]
-        error = error_of(records[:, column])
-        if zone.heating is not None or zone.cooling is not None or error < LARGE:
-            continue
-        # Hourly weather bends the series at every hour: the error falls with the step, not with its square.
-        minutes = step_seconds / 60.0 * LARGE / error
-        better = next((step for step in STEPS if step <= minutes), STEPS[-1])
-        yield (
-            f"zones.{name}: the time step of {step_seconds / 60.0:g} min is too long for its air, which "
-            f"reacts faster: its temperature is wrong by about {error:.1g} K (root mean square); take a step "
-            f"of {better} min"
-        )
+
+    def __init__(self, building: Building, outputs: Sequence[Output]) -> None:
+        zones = list(building.zones.items())
+        self._names: list[str] = []
+        self._columns: list[int] = []
+        for column, output in enumerate(outputs):
+            if output.kind != "air_temperature" or output.zone is None:
+                continue
+            name, zone = zones[output.zone]
+            if zone.heating is None and zone.cooling is None:
+                self._names.append(name)
+                self._columns.append(column)
+        self._skip = START
+        self._before = np.empty((0, len(self._columns)))
+        self._sum = np.zeros((1, len(self._columns)))
+        self._count = 0
+
+    def add(self, rows: npt.NDArray[np.float64]) -> None:
+        """Add the next records, shape (n, outputs or more). [unit of each output]"""
+        series = np.concatenate([self._before, rows[self._skip :, self._columns]])
+        self._skip = max(self._skip - len(rows), 0)
+        bends = np.diff(series, 2, axis=0)
+        # One after the other, so that the sum does not depend on the blocks.
+        self._sum = np.add.accumulate(np.concatenate([self._sum, bends**2]), axis=0)[-1:]
+        self._count += len(bends)
+        self._before = series[-2:]
+
+    def errors(self) -> npt.NDArray[np.float64]:
+        """Estimate of the error of each series by the time step, root mean square. [K]"""
+        return np.asarray(SHARE * np.sqrt(self._sum[0] / max(self._count, 1)))
+
+    def warnings(self, step_seconds: float) -> Iterator[str]:
+        """Warnings about zones whose air changes too fast for the step, with the step to take.
+
+        Parameters
+        ----------
+        step_seconds : float
+            Time step. [s]
+        """
+        for name, error in zip(self._names, self.errors(), strict=True):
+            if error < LARGE:
+                continue
+            # Hourly weather bends the series at every hour: the error falls with the step, not its square.
+            minutes = step_seconds / 60.0 * LARGE / error
+            better = next((step for step in STEPS if step <= minutes), STEPS[-1])
+            yield (
+                f"zones.{name}: the time step of {step_seconds / 60.0:g} min is too long for its air, which "
+                f"reacts faster: its temperature is wrong by about {error:.1g} K (root mean square); take a "
+                f"step of {better} min"
+            )

@@ -15,6 +15,7 @@ import numpy as np
 from mascarin import _engine
 from mascarin._io import memory
 from mascarin.engine_errors import plan_of, translated
+from mascarin.simulation.blocks import InMemory, rows_of
 from mascarin.simulation.readings import Readings
 from mascarin.weather.timezones import parse_timezone
 
@@ -155,12 +156,54 @@ class CompiledRun:
             A step or the repeated first period did not converge.
         """
         recorded = readings or self.readings
+        whole = InMemory(self._rows(0, 1), len(recorded.recipes))
+        raw = self.run_into(vector, whole.take, recorded, progress=progress)
+        return whole.records, raw
+
+    def run_into(
+        self,
+        vector: Array,
+        take: Callable[[Array], object],
+        readings: Readings | None = None,
+        *,
+        progress: Report | None = None,
+    ) -> dict[str, Any]:
+        """Run once, and hand the outputs over in blocks of rows while the run goes on.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        take : callable
+            Called with the next rows, shape (n, outputs); what it raises ends the run.
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        progress : callable, optional
+            Called with the number of steps done and their total; with 0 while a first period is repeated.
+
+        Returns
+        -------
+        dict
+            Energy ledger [J] and counters of the solver.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        recorded = readings or self.readings
         with translated(self.dated):
             if progress is not None:
                 progress(0, len(self.forcing))  # the time left counts from here
-            report = _of_total(progress, len(self.forcing))
-            raw = self.plan.simulate(vector, self.forcing, self.options(recorded), report)
-        return recorded.values(raw["records"]), raw
+            raw: dict[str, Any] = self.plan.simulate_into(
+                vector,
+                self.forcing,
+                self.options(recorded),
+                rows_of(len(recorded.recipes)),
+                lambda rows: take(recorded.values(rows)),
+                _of_total(progress, len(self.forcing)),
+            )
+        return raw
 
     def ensemble(
         self, vectors: Array, *, record_from: int = 0, record_every: int = 1, progress: Report | None = None

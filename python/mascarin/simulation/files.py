@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from mascarin._io import atomic
 from mascarin.errors import InputError
+from mascarin.simulation.blocks import InMemory
 from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
     import pandas as pd
-    import xarray as xr
+
+    from mascarin.building import Output
+    from mascarin.simulation.times import Times
 
     Array = npt.NDArray[np.float64]
 
@@ -46,51 +50,130 @@ def _require_pyarrow(path: Path) -> None:
         ) from None
 
 
-def write_table(frame: pd.DataFrame, attributes: Mapping[str, Any], path: Path) -> None:
-    """Write a table in local time as CSV or Parquet, by the ending of its file."""
-    write = _write_csv if path.suffix.lower() == ".csv" else _write_parquet
-    write(frame, attributes, path)
+class Draft(Protocol):
+    """A file that is being written in blocks of rows."""
+
+    def take(self, rows: Array) -> None:
+        """Write the next rows, shape (n, outputs). [unit of each output]"""
+
+    def finish(self, attributes: Mapping[str, Any]) -> None:
+        """Write units and provenance, which are known at the end."""
 
 
-def _write_csv(frame: pd.DataFrame, attributes: Mapping[str, Any], path: Path) -> None:
-    """Write a table in local time, and a file beside it with units and attributes; each appears whole."""
-    columns = [{"titles": "time", "datatype": "string"}]
-    columns += [
-        {"titles": name, "datatype": "double", "unit": unit} for name, unit in _units(attributes).items()
-    ]
-    described = {
-        "@context": "http://www.w3.org/ns/csvw",
-        "url": path.name,
-        "tableSchema": {"columns": columns},
-        "mascarin": dict(attributes),
-    }
+@contextlib.contextmanager
+def drafted(path: Path, outputs: Sequence[Output], times: Times, ending: str) -> Iterator[Draft]:
+    """A file for the series of a run; it appears when it is complete.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder exists. A file beside a CSV file holds units and provenance.
+    outputs : sequence of Output
+        What is recorded.
+    times : Times
+        Times of all rows.
+    ending : str
+        One of `ENDINGS`: what kind of file it is.
+
+    Yields
+    ------
+    Draft
+        Takes the rows, one block after the other, and then the attributes.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; the file that was there before is unchanged.
+    """
     with atomic.drafted(path) as part:
-        frame.to_csv(part, index_label="time", lineterminator="\n")
-    atomic.write(Path(f"{path}{BESIDE}"), json.dumps(described, indent=1, ensure_ascii=False) + "\n")
+        if ending == ".nc":
+            from mascarin.simulation.netcdf import NetcdfDraft  # h5py, which most runs do without
+
+            with NetcdfDraft(part, outputs, times) as series:
+                yield series
+            return
+        table = (_Csv if ending == ".csv" else _Parquet)(part, outputs, times)
+        with contextlib.closing(table):
+            yield table
+    if isinstance(table, _Csv):
+        table.write_beside(path)
 
 
-def _write_parquet(frame: pd.DataFrame, attributes: Mapping[str, Any], path: Path) -> None:
-    """Write a table in local time with the unit of each column and the attributes."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
+class _Csv:
+    """A table in local time."""
 
-    table = pa.Table.from_pandas(frame)
-    by_name = _units(attributes)
-    fields = [
-        field.with_metadata({"unit": by_name[field.name]}) if field.name in by_name else field
-        for field in table.schema
-    ]
-    schema = pa.schema(
-        fields, metadata={**(table.schema.metadata or {}), _KEY: json.dumps(dict(attributes)).encode()}
-    )
-    with atomic.drafted(path) as part:
-        pq.write_table(table.cast(schema), part)
+    def __init__(self, part: Path, outputs: Sequence[Output], times: Times) -> None:
+        self._names = [output.name for output in outputs]
+        self._index = times.index.rename("time")
+        self._file = part.open("w", encoding="utf-8", newline="")
+        self._done = 0
+        self._attributes: Mapping[str, Any] = {}
+
+    def take(self, rows: Array) -> None:
+        import pandas as pd
+
+        index = self._index[self._done : self._done + len(rows)]
+        table = pd.DataFrame(rows, index=index, columns=self._names)
+        table.to_csv(self._file, header=self._done == 0, index_label="time", lineterminator="\n")
+        self._done += len(rows)
+
+    def finish(self, attributes: Mapping[str, Any]) -> None:
+        self._attributes = attributes
+
+    def close(self) -> None:
+        self._file.close()
+
+    def write_beside(self, path: Path) -> None:
+        """Write the file beside the table, with units and attributes."""
+        columns = [{"titles": "time", "datatype": "string"}]
+        columns += [
+            {"titles": name, "datatype": "double", "unit": unit}
+            for name, unit in _units(self._attributes).items()
+        ]
+        described = {
+            "@context": "http://www.w3.org/ns/csvw",
+            "url": path.name,
+            "tableSchema": {"columns": columns},
+            "mascarin": dict(self._attributes),
+        }
+        atomic.write(Path(f"{path}{BESIDE}"), json.dumps(described, indent=1, ensure_ascii=False) + "\n")
 
 
-def write_netcdf(data: xr.Dataset, path: Path) -> None:
-    """Write a data set, which appears when it is complete."""
-    with atomic.drafted(path) as part:
-        data.to_netcdf(part, engine="h5netcdf")
+class _Parquet:
+    """A table in local time, with the unit of each column; in memory until the end.
+
+    A Parquet file of many small groups of rows is larger and slower to read than its numbers.
+    """
+
+    def __init__(self, part: Path, outputs: Sequence[Output], times: Times) -> None:
+        self._part = part
+        self._names = [output.name for output in outputs]
+        self._index = times.index.rename("time")
+        self._whole = InMemory(times.rows, len(outputs))
+
+    def take(self, rows: Array) -> None:
+        self._whole.take(rows)
+
+    def finish(self, attributes: Mapping[str, Any]) -> None:
+        import pandas as pd
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        table = pa.Table.from_pandas(
+            pd.DataFrame(self._whole.records, index=self._index, columns=self._names)
+        )
+        by_name = _units(attributes)
+        fields = [
+            field.with_metadata({"unit": by_name[field.name]}) if field.name in by_name else field
+            for field in table.schema
+        ]
+        schema = pa.schema(
+            fields, metadata={**(table.schema.metadata or {}), _KEY: json.dumps(dict(attributes)).encode()}
+        )
+        pq.write_table(table.cast(schema), self._part)
+
+    def close(self) -> None:
+        """Nothing is open."""
 
 
 def read(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -15,6 +15,7 @@ from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
+from mascarin.simulation.finished import Finished
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
 from mascarin.simulation.times import Times
@@ -37,7 +38,6 @@ Default = TypeVar("Default")
 
 #: Names that are kept for old programs.
 _DEPRECATED: Final = frozenset({"frame", "dataset"})
-_FORMAT: Final = 1
 #: Series that the figure in a notebook shows.
 _DRAWN: Final = 8
 
@@ -281,16 +281,8 @@ class Results(Mapping[str, "xr.DataArray"]):
 
     def _attributes(self) -> dict[str, Any]:
         """Version, provenance, energy balance and outputs, as files hold them."""
-        return {
-            "mascarin_version": self.provenance.version,
-            "mascarin_format": _FORMAT,
-            "timezone": str(self.index.tz),
-            "provenance": json.dumps(self.provenance.to_dict()),
-            "energy": json.dumps(self.energy.to_dict()),
-            **({} if self.vapour is None else {"vapour": json.dumps(self.vapour.to_dict())}),
-            "warnings": json.dumps(list(self.warnings)),
-            "outputs": json.dumps([asdict(output) for output in self.outputs]),
-        }
+        known = Finished(self.energy, self.provenance, self.warnings, self.vapour)
+        return known.attributes(self.outputs, self.times.timezone)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write everything to a NetCDF file, which appears when it is complete.
@@ -316,7 +308,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> mc.Results.open(file) == run
         True
         """
-        files.write_netcdf(self.to_xarray(), Path(path))
+        self._write(Path(path), ".nc")
 
     def write(self, path: str | Path) -> None:
         """Write everything to a file, which appears when it is complete; `open` reads it again.
@@ -344,10 +336,12 @@ class Results(Mapping[str, "xr.DataArray"]):
         """
         target = Path(path)
         files.require_ending(target, str(target))
-        if target.suffix.lower() == ".nc":
-            self.to_netcdf(target)
-        else:
-            files.write_table(self.to_dataframe(), self._attributes(), target)
+        self._write(target, target.suffix.lower())
+
+    def _write(self, path: Path, ending: str) -> None:
+        with files.drafted(path, self.outputs, self.times, ending) as draft:
+            draft.take(self.records)
+            draft.finish(self._attributes())
 
     @classmethod
     def open(cls, path: str | Path) -> Results:

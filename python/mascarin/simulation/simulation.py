@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -12,9 +13,11 @@ import numpy as np
 from mascarin._io.arguments import names_of
 from mascarin._io.durations import seconds_of
 from mascarin.progress import reporting
-from mascarin.simulation import coarse
+from mascarin.simulation import files
+from mascarin.simulation.blocks import InMemory, Watch
 from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
+from mascarin.simulation.finished import Finished, StoredRun
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
@@ -292,22 +295,101 @@ class Simulation(VectorRuns):
         progress : callable, optional
             Called with the number of steps done and their total.
         """
-        from mascarin.building import unmelted  # pydantic, as above
-
-        vector = np.array(vector, dtype=np.float64)
-        self._require_possible(vector[None, :])
-        records, raw = self.compiled.run(vector, self._recorded, progress=progress)
-        records, seen = np.split(records, [len(self.outputs)], axis=1)
-        energy = EnergyLedger.read(raw)
-        vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        warnings = [*energy.warnings(), *unmelted.warnings(self.building, seen)]
-        warnings += vapour.warnings() if vapour is not None else []
-        if self.scheme == "sdirk2":
-            warnings += coarse.warnings(self.building, self.outputs, records, self.step_seconds)
+        whole = InMemory(self.times.rows, len(self.outputs))
+        found = self._run_through(vector, whole.take, progress)
         return Results(
             outputs=self.outputs,
             times=self.times,
-            records=np.ascontiguousarray(records),
+            records=whole.records,
+            energy=found.energy,
+            provenance=found.provenance,
+            warnings=found.warnings,
+            vapour=found.vapour,
+        )
+
+    def run_into(
+        self,
+        path: str | Path,
+        parameters: Mapping[str, float] | None = None,
+        *,
+        progress: ProgressOption = None,
+    ) -> StoredRun:
+        """Run once, and write the series to a file while the run goes on.
+
+        The memory that it takes does not grow with the period. The file appears when it is complete.
+
+        Parameters
+        ----------
+        path : str or Path
+            NetCDF (.nc) or CSV (.csv), as `Results.write` writes them. The records of a Parquet file
+            (.parquet) are kept in memory until the run has finished.
+        parameters : mapping of str to float, optional
+            Values by path that replace those of the building. [unit of each]
+        progress : bool or callable, optional
+            As in `run`.
+
+        Returns
+        -------
+        StoredRun
+            The energy balance, provenance and warnings; `Results.open` reads the series.
+
+        Raises
+        ------
+        InputError
+            Another ending, pyarrow is not installed; an unknown or structural path, or a value that its
+            parameter cannot have.
+        SolverError
+            A step or the repeated first period did not converge.
+        OSError
+            The file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> file = Path(tempfile.mkdtemp()) / "run.nc"
+        >>> simulation = mc.Simulation(box(), box_climate(), step="1h")
+        >>> simulation.run_into(file).finished.energy.closes
+        True
+        >>> mc.Results.open(file) == simulation.run()
+        True
+        """
+        target = Path(path)
+        files.require_ending(target, str(target))
+        with (
+            reporting(progress, "run") as report,
+            files.drafted(target, self.outputs, self.times, target.suffix.lower()) as draft,
+        ):
+            steps = len(self.compiled.forcing)
+            report(0, steps)
+            found = self._run_through(self.vector(parameters or {}), draft.take, report)
+            draft.finish(found.attributes(self.outputs, self.times.timezone))
+            report(steps, steps)
+        return StoredRun(target, self.outputs, self.times, found)
+
+    def _run_through(
+        self, vector: Array, take: Callable[[Array], object], progress: Report | None
+    ) -> Finished:
+        """Run once, and hand the records over in blocks of rows."""
+        vector = np.array(vector, dtype=np.float64)
+        self._require_possible(vector[None, :])
+        watch = Watch(self.building, self.outputs)
+        count = len(self.outputs)
+
+        def seen(rows: Array) -> None:
+            watch.add(rows)
+            take(rows[:, :count])
+
+        raw = self.compiled.run_into(vector, seen, self._recorded, progress=progress)
+        energy = EnergyLedger.read(raw)
+        vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
+        warnings = [*energy.warnings(), *watch.melting.warnings()]
+        warnings += vapour.warnings() if vapour is not None else []
+        if self.scheme == "sdirk2":
+            warnings += watch.bends.warnings(self.step_seconds)
+        return Finished(
             energy=energy,
             provenance=Provenance(
                 building=self.building.name,

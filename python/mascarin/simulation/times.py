@@ -65,6 +65,43 @@ class Times:
         return pd.date_range(start, periods=round((end - start) / step) + 1, freq=step)
 
     @property
+    def timezone(self) -> str:
+        """Name of the zone of the local clock."""
+        made = self.__dict__.get("index")
+        return str(self.zone if made is None else made.tz)
+
+    @property
+    def rows(self) -> int:
+        """Number of times."""
+        made = self.__dict__.get("index")
+        return len(made) if made is not None else round((self.last - self.first) / self.step) + 1
+
+    def nanoseconds(self) -> npt.NDArray[np.int64]:
+        """Times since 1970-01-01 UTC, shape (rows,). [ns]"""
+        if self._whole:
+            first, step = round(self.first * 1e6), round(self.step * 1e6)
+            return (first + step * np.arange(self.rows, dtype=np.int64)) * 1000
+        return _nanoseconds(self.index.tz_convert("UTC"))
+
+    def clock_nanoseconds(self) -> npt.NDArray[np.int64]:
+        """Readings of the local clock since its 1970-01-01, shape (rows,). [ns]"""
+        offset = self.zone.utcoffset(None)
+        if offset is None or not self._whole:  # a zone whose clocks change
+            return _nanoseconds(self.index)
+        return self.nanoseconds() + round(offset.total_seconds() * 1e6) * 1000
+
+    @property
+    def _whole(self) -> bool:
+        """Whether the times are known without their index: at equal distances of whole microseconds."""
+        micro = (self.first * 1e6, self.step * 1e6)
+        return "index" not in self.__dict__ and all(one == round(one) for one in micro)
+
+    @property
     def since_start(self) -> npt.NDArray[np.float64]:
         """Times since the first one, shape (rows,). [s]"""
         return np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
+
+
+def _nanoseconds(index: pd.DatetimeIndex) -> npt.NDArray[np.int64]:
+    """Readings of the clock of an index since 1970-01-01, shape (rows,). [ns]"""
+    return index.tz_localize(None).to_numpy().astype("datetime64[ns]").astype(np.int64)

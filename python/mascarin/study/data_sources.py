@@ -17,6 +17,9 @@ OF_THE_TABLE: Final = (
     "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
 )  # fmt: skip
 
+#: Keys of a study that name files.
+FILE_KEYS: Final = ("building", "epw", "tmy", "table")
+
 
 class Table(Part):
     """A table of measured columns."""

@@ -14,7 +14,7 @@ from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
-from mascarin.study.data_sources import ClimateSource, Table, with_shared_table
+from mascarin.study.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
 from mascarin.study.field_types import (
     Duration,
     Hours,
@@ -39,10 +39,6 @@ TAKEN: Final = (
     "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
     "measured", "band", "expected", "as described", "observed", "weather", "state",
 )  # fmt: skip
-
-
-#: Keys that name files.
-FILE_KEYS: Final = ("building", "epw", "tmy", "table")
 
 
 class Periods(Part):

@@ -11,8 +11,7 @@ from mascarin._io.regular import requiring
 from mascarin.building.engine_input import measured_columns
 from mascarin.building.part import Part
 from mascarin.building.yaml_document import validated
-from mascarin.study.data_sources import ClimateSource, Table, with_shared_table
-from mascarin.study.description import FILE_KEYS
+from mascarin.study.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
 from mascarin.study.inputs import Beside, filled, find, open_climate
 from mascarin.study.locations import Places
 from mascarin.weather import Measurements

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
+from mascarin.weather import measured
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import BY_NAME
 from mascarin.weather.completion import complete
 from mascarin.weather.forcing import forcing, require_period
 from mascarin.weather.gaps import filled
+from mascarin.weather.kept_tables import kept_record
 from mascarin.weather.measured import Columns, record_of_table
 from mascarin.weather.measurements import Measurements
 from mascarin.weather.place_check import require_place
@@ -258,11 +260,16 @@ class Climate(RecordView[WeatherRecord]):
         >>> climate.to_dataframe()["air_temperature"].round(2).tolist()
         [12.0, 13.0, 14.0]
         """
-        table = read_table(
-            source, timezone=timezone, time=time, time_format=time_format, separator=separator,
-            decimal=decimal, skip_lines=skip_lines, step=step, missing=missing,
+        reading: dict[str, Any] = {
+            "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
+            "skip_lines": skip_lines, "step": step, "missing": missing,
+        }  # fmt: skip
+        further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
+        choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
+        record = kept_record(
+            WeatherRecord, source, timezone, (reading, *choice), [measured],
+            lambda: record_of_table(read_table(source, timezone=timezone, **reading), *choice),
         )  # fmt: skip
-        record = record_of_table(table, columns, extra, absent, stamps, instant, mean)
         return cls(replace(record, check_sun=check_sun))._at(latitude, longitude, altitude)
 
     @classmethod

@@ -1,4 +1,4 @@
-"""What reading and checking a weather file gave, kept in the cache folder of the user.
+"""What reading and checking a weather file or a measured table gave, kept in the cache folder of the user.
 
 A file of the cache is named by a hash of everything that its content depends on: the weather file, the
 version of Mascarin, and the code that made it. It holds JSON and plain numbers, after a hash of both: a file
@@ -31,6 +31,8 @@ VARIABLE: Final = "MASCARIN_CACHE"
 """Environment variable that turns the cache off."""
 #: Files that are kept; the oldest ones are removed. A year of weather has 0.7 MB.
 MOST: Final = 64
+#: Numbers of a file; larger tables are read anew each time.
+LARGEST: Final = 2**21
 _MAGIC: Final = b"mascarin weather 1\n"
 _HASH: Final = 32
 _WORD: Final = 8
@@ -78,6 +80,8 @@ def kept(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], K
             return found
     made = make()
     # A folder that cannot be written, or a full disk, costs time and nothing else.
+    if sum(len(column) for column in made.columns.values()) > LARGEST:
+        return made
     with contextlib.suppress(OSError, InputError):
         file = _file(key, code)
         file.parent.mkdir(parents=True, exist_ok=True)

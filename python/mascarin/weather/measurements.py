@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from mascarin.weather.channels import Kind
 from mascarin.weather.columns import Column
 from mascarin.weather.gaps import filled
 from mascarin.weather.grid import Grid
+from mascarin.weather.kept_tables import kept_record
 from mascarin.weather.quality import Stretch, find
 from mascarin.weather.record import Record
 from mascarin.weather.starts import knot_lines, to_starts
@@ -111,11 +113,17 @@ class Measurements(RecordView[Record]):
         ... ).index[0].isoformat()
         '2024-06-01T00:00:00+04:00'
         """
-        table = read_table(
-            source, timezone=timezone, time=time, time_format=time_format, separator=separator,
-            decimal=decimal, skip_lines=skip_lines, step=step, missing=missing,
-        )  # fmt: skip
-        return cls(_record_of(table, columns, mean, stamps))
+        reading: dict[str, Any] = {
+            "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
+            "skip_lines": skip_lines, "step": step, "missing": missing,
+        }  # fmt: skip
+        wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
+        choice = (wanted, tuple(mean), stamps)
+
+        def made() -> Record:
+            return _record_of(read_table(source, timezone=timezone, **reading), *choice)
+
+        return cls(kept_record(Record, source, timezone, (reading, *choice), [sys.modules[__name__]], made))
 
     def quality(self, limits: Mapping[str, tuple[float, float]] | None = None) -> list[Stretch]:
         """Suspicious parts of every column: missing, stuck, out of range, spikes.

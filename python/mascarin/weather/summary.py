@@ -75,6 +75,6 @@ def summary_of_measurements(measured: Measurements) -> dict[str, Any]:
         "range": measured.grid.span(),
         "step_seconds": measured.grid.interval,
         "timezone": measured.timezone,
-        "columns": [str(name) for name in measured.data.columns],
+        "columns": [str(name) for name in measured.record.columns],
         "provenance": list(measured.provenance),
     }

@@ -10,6 +10,7 @@ pub mod outputs;
 pub(crate) mod periodic_start;
 pub mod ratings;
 pub mod stepwise;
+pub mod streamed;
 mod warm_up;
 
 pub(crate) use action::Action;

@@ -30,6 +30,7 @@ mod properties;
 mod rooms_side_by_side;
 mod slopes_of_stages;
 mod stepwise;
+mod streamed;
 mod tape_memory;
 mod vents;
 mod wind;

@@ -1,0 +1,56 @@
+//! A run that hands its records over in blocks of rows while it goes on, so that they take the memory of one block only.
+
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::input::forcing::Forcing;
+use crate::run::march::{Run, march_observed};
+use crate::run::options::Options;
+use crate::run::outputs::Output;
+use crate::step::control::RunControl;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Weather;
+
+/// Runs a plan at a parameter vector as [`march`](crate::run::march::march), and gives `take` the records in blocks of `rows` rows, the
+/// last one with what is left. The records of the finished run are empty.
+///
+/// # Errors
+/// Those of `march`, and those of `take`, which end the run.
+pub fn march_streamed(
+    plan: &Plan,
+    parameters: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    control: &RunControl,
+    rows: usize,
+    mut take: impl FnMut(Vec<f64>) -> Result<(), EngineError>,
+) -> Result<Run<f64>, EngineError> {
+    options.check(plan, parameters.len(), forcing)?;
+    let probes = &options.probes;
+    // The blocks are the only records.
+    let bare = Options { probes: Vec::new(), ..options.clone() };
+    let mut stepper = Stepper::new(plan, parameters, options.scheme);
+    if probes.iter().any(Output::averages_absorbed_sun) {
+        stepper.average_absorbed_sun();
+    }
+    let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
+    let weather = Weather::for_single_run(plan, forcing, repeated);
+    let rows = rows.clamp(1, options.rows(forcing.steps()).max(1));
+    let (mut block, mut filled) = (Vec::new(), 0);
+    let run = march_observed(stepper, &weather, &bare, control, |stepper, state, action| {
+        if action.row(options).is_none() {
+            return Ok(());
+        }
+        block.reserve(if filled == 0 { rows * probes.len() } else { 0 });
+        block.extend(probes.iter().map(|output| output.read(plan, stepper, state)));
+        filled += 1;
+        if filled < rows {
+            return Ok(());
+        }
+        filled = 0;
+        take(core::mem::take(&mut block))
+    })?;
+    if filled > 0 {
+        take(block)?;
+    }
+    Ok(run)
+}

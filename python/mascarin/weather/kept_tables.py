@@ -1,0 +1,106 @@
+"""What reading a measured table gave, kept as what a weather file gave: pandas takes longer than a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final, TypeVar
+
+import numpy as np
+
+from mascarin.weather import columns, derive, files, layout, starts, table, timezones
+from mascarin.weather.files import file_hash
+from mascarin.weather.grid import Grid
+from mascarin.weather.kept import Kept, kept
+from mascarin.weather.record import Record, WeatherRecord
+from mascarin.weather.timezones import parse_timezone
+
+AnyRecord = TypeVar("AnyRecord", Record, WeatherRecord)
+
+#: Modules that make a record of a table, beside that of the caller.
+_CODE: Final = (columns, derive, files, layout, starts, table, timezones)
+_LINES: Final = "lines"
+_KNOTS: Final = "knots"
+
+
+def kept_record(
+    kind: type[AnyRecord],
+    source: object,
+    timezone: str | None,
+    options: Sequence[object],
+    code: Sequence[ModuleType],
+    make: Callable[[], AnyRecord],
+) -> AnyRecord:
+    """Read the record that was kept for a file and these options, or make and keep it.
+
+    Parameters
+    ----------
+    kind : type
+        `Record` or `WeatherRecord`.
+    source : str, Path or other object
+        The table. Only what was read from a file is kept.
+    timezone : str or None
+        Zone of the stamps.
+    options : sequence of object
+        All else that the record depends on: plain values, mappings and sequences of them.
+    code : sequence of module
+        The modules that make it, beside those that read every table.
+    make : callable
+        Makes it; what it raises is passed on.
+
+    Returns
+    -------
+    Record or WeatherRecord
+        The same, whether it was kept or made.
+    """
+    if not isinstance(source, str | Path) or timezone is None:
+        return make()
+    path = Path(source)
+    zone = parse_timezone(timezone, f"{path.name}: timezone")
+    # The representation of plain values says all about them.
+    key = (kind.__name__, file_hash(path), path.name, timezone, *map(_plain, options))
+    found = kept(key, (*_CODE, *code), lambda: _packed(make()))
+    return _unpacked(kind, found, Grid(zone=zone, **found.notes["grid"]), path.name)
+
+
+def _plain(value: object) -> object:
+    """Mappings in their order, and sequences as tuples."""
+    if isinstance(value, Mapping):
+        return tuple((key, _plain(item)) for key, item in value.items())
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+
+
+def _packed(record: Record) -> Kept:
+    """A record as the cache keeps it."""
+    grid, knots = record.grid, record.knots
+    notes: dict[str, Any] = {
+        "grid": {"start": grid.start, "interval": grid.interval, "count": grid.count},
+        "kinds": dict(record.kinds),
+        "closing": {name: float(value) for name, value in record.closing.items()},
+        "sha256": record.sha256,
+        "provenance": list(record.provenance),
+        "last": None if knots is None else int(knots[-1]),
+    }
+    if isinstance(record, WeatherRecord):
+        notes["assumed"] = sorted(record.assumed)
+    numbers = {f"column {name}": values for name, values in record.columns.items()}
+    numbers[_LINES] = record.lines.astype(np.float64)
+    if knots is not None:
+        numbers[_KNOTS] = knots[:-1].astype(np.float64)
+    return Kept(notes, numbers)
+
+
+def _unpacked(kind: type[AnyRecord], found: Kept, grid: Grid, where: str) -> AnyRecord:
+    """The record of `_packed`."""
+    notes, numbers = found.notes, dict(found.columns)
+    lines = numbers.pop(_LINES).astype(np.int64)
+    knots = None
+    if notes["last"] is not None:
+        knots = np.append(numbers.pop(_KNOTS).astype(np.int64), np.int64(notes["last"]))
+    more: dict[str, Any] = {"assumed": frozenset(notes["assumed"])} if "assumed" in notes else {}
+    return kind(
+        columns={name.removeprefix("column "): values for name, values in numbers.items()},
+        kinds=notes["kinds"], grid=grid, closing=notes["closing"], file=where, sha256=notes["sha256"],
+        provenance=tuple(notes["provenance"]), lines=lines, knots=knots, **more,
+    )  # fmt: skip
