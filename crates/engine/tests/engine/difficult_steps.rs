@@ -75,7 +75,7 @@ fn a_halved_step_is_two_steps() {
 #[test]
 fn slopes_forward_are_slopes_in_reverse() {
     for scheme in SCHEMES {
-        // A halved step is made once more in reverse with all its iterations on the tape: some of them are enough.
+        // Some of them are enough.
         for step in [false, true].into_iter().flat_map(|heated| steps(scheme, heated).into_iter().take(2)) {
             let (plan, numbers, watch) = (&step.plan, values(&step.plan), Watch::default());
             let which = PARAMETERS.map(|path| position(plan, path));
