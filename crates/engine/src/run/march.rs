@@ -98,8 +98,8 @@ pub(crate) fn march_observed<'a, S: Real>(
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
         control.count_step();
         if action.row(options).is_some() {
-            records
-                .extend(options.probes.iter().map(|output| output.read(plan, &stepper.readings(), &state)));
+            let step = stepper.readings();
+            records.extend(options.probes.iter().map(|output| output.read(plan, &step, &state)));
         }
         observe(&stepper, &state, action)?;
     }

@@ -41,7 +41,8 @@ pub fn march_streamed(
             return Ok(());
         }
         block.reserve(if filled == 0 { rows * probes.len() } else { 0 });
-        block.extend(probes.iter().map(|output| output.read(plan, stepper, state)));
+        let step = stepper.readings();
+        block.extend(probes.iter().map(|output| output.read(plan, &step, state)));
         filled += 1;
         if filled < rows {
             return Ok(());
