@@ -36,7 +36,7 @@ FRACTION_TOLERANCE = 0.02
 MOST_SURFACES = 2000
 #: What one zone of that many surfaces takes, by a measurement with 1000: memory [B], and processor time of a
 #: day in steps of 15 min [s]. Both grow with the square of their number; derivatives grow with the cube.
-_MEMORY_OF_MOST, _TIME_OF_MOST = 260e6, 5.6
+_MEMORY_OF_MOST, _TIME_OF_MOST = 260e6, 2.0
 
 
 def faults(building: Description) -> Faults:
