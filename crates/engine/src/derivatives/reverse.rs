@@ -53,7 +53,8 @@ impl Trajectory {
         let weather = Weather::new(plan, forcing);
         let mut stepper = Stepper::new(plan, numbers, options.scheme.converged());
         stepper.known.start();
-        let keep = |state: &State<f64>, history, steps| StepKeeper::new(state, history, steps, options, bytes);
+        let keep =
+            |state: &State<f64>, history, steps| StepKeeper::new(state, history, steps, options, bytes);
         let mut kept = keep(&stepper.begin(&options.initial), stepper.history(), weather.steps() + 1);
         let mut period = None;
         let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
@@ -63,10 +64,9 @@ impl Trajectory {
                     return Ok(());
                 }
                 (Action::Balance, Some(_)) => {
-                    let (reached, none) = (kept.reached.clone(), stepper.history());
-                    let (repeated, history) = core::mem::replace(&mut kept, keep(&reached, none, 0)).finish();
+                    let (repeated, history) = kept.finish();
                     period = Some(repeated);
-                    kept = keep(&reached, history, weather.steps() + 1);
+                    kept = keep(&kept.reached, history, weather.steps() + 1);
                 }
                 _ => {}
             }

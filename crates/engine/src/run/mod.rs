@@ -7,9 +7,9 @@ pub mod ensemble;
 pub mod march;
 pub mod options;
 pub mod outputs;
+pub(crate) mod periodic_start;
 pub mod ratings;
 pub mod stepwise;
-pub(crate) mod periodic_start;
 mod warm_up;
 
 pub(crate) use action::Action;

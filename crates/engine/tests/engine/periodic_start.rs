@@ -8,7 +8,9 @@
 use core::f64::consts::TAU;
 
 use crate::common::random::{Case, Contents};
-use crate::common::{Builder, facing, forcing, options, position, run, set, try_run, values, warmup, weather};
+use crate::common::{
+    Builder, facing, forcing, options, position, run, set, try_run, values, warmup, weather,
+};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::{Facing, ZoneLongwave};
@@ -131,13 +133,16 @@ fn slopes_are_those_of_the_periodic_state() {
     let (rows, nominal, watch) = (same_days(&plan, 1), values(&plan), Watch::default());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let tight = air(Some(Warmup { tolerance: 1e-10, ..warmup(HOUR) }));
-    let names = ["materials.concrete.density", "materials.concrete.conductivity", "materials.foam.conductivity"];
+    let names =
+        ["materials.concrete.density", "materials.concrete.conductivity", "materials.foam.conductivity"];
     let which = names.map(|name| position(&plan, name));
     let found = jacobian(&plan, &nominal, &which, &drive, &tight, &watch).unwrap();
     let rough = jacobian(&plan, &nominal, &which, &drive, &air(Some(warmup(HOUR))), &watch).unwrap();
     let size = found.records.len();
     let largest = |slopes: &[f64]| slopes.iter().fold(0.0_f64, |largest, slope| largest.max(slope.abs()));
-    for (&parameter, (slopes, rough)) in which.iter().zip(found.slopes.chunks(size).zip(rough.slopes.chunks(size))) {
+    for (&parameter, (slopes, rough)) in
+        which.iter().zip(found.slopes.chunks(size).zip(rough.slopes.chunks(size)))
+    {
         let nudge = 1e-4 * nominal[parameter];
         let [low, high] = [-nudge, nudge].map(|nudge| {
             let mut numbers = nominal.clone();
@@ -169,7 +174,14 @@ fn experiment() {
     for (d, i) in [(0.2, 0.0), (0.5, 0.0), (0.2, 0.1), (0.5, 0.1), (0.5, 0.3), (1.0, 0.2)] {
         let plan = house([d, i]);
         let rows = forcing(&plan, Scheme::Sdirk2, 96, 900.0, |t, r| weather(t % 86400.0, r));
-        let o = Options { warmup: Some(Warmup { max_cycles: 2000, tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()), ..warmup(900.0) }), ..options(Scheme::Sdirk2, 900.0, vec![Probe::AirTemperature { zone: 0 }]) };
+        let o = Options {
+            warmup: Some(Warmup {
+                max_cycles: 2000,
+                tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()),
+                ..warmup(900.0)
+            }),
+            ..options(Scheme::Sdirk2, 900.0, vec![Probe::AirTemperature { zone: 0 }])
+        };
         let r = try_run(&plan, &values(&plan), &rows, &o).unwrap();
         writeln!(text, "heavy {d} {i}: {} {:.5}", r.cycles, r.records[0]).unwrap();
     }
@@ -179,12 +191,34 @@ fn experiment() {
             let w = warmup(case.dt);
             case.steps = w.steps;
             let plan = case.plan();
-            let o = Options { warmup: Some(Warmup { max_cycles: 1000, tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()), ..w }), ..case.options() };
-            if std::env::var("ONE").is_ok_and(|t| t.parse::<u64>().unwrap() != seed) { continue; }
+            let o = Options {
+                warmup: Some(Warmup {
+                    max_cycles: 1000,
+                    tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()),
+                    ..w
+                }),
+                ..case.options()
+            };
+            if std::env::var("ONE").is_ok_and(|t| t.parse::<u64>().unwrap() != seed) {
+                continue;
+            }
             match try_run(&plan, &values(&plan), &case.rows(&plan), &o) {
                 Ok(r) => {
                     let n = o.probes.len();
-                    let temps: Vec<String> = o.probes.iter().zip(&r.records[..n]).filter(|(p, _)| matches!(p, Probe::AirTemperature { .. } | Probe::Sensor { .. } | Probe::FaceTemperature { .. })).map(|(_, t)| format!("{t:.4}")).collect();
+                    let temps: Vec<String> = o
+                        .probes
+                        .iter()
+                        .zip(&r.records[..n])
+                        .filter(|(p, _)| {
+                            matches!(
+                                p,
+                                Probe::AirTemperature { .. }
+                                    | Probe::Sensor { .. }
+                                    | Probe::FaceTemperature { .. }
+                            )
+                        })
+                        .map(|(_, t)| format!("{t:.4}"))
+                        .collect();
                     writeln!(text, "{contents:?} {seed}: {} {}", r.cycles, temps.join(" ")).unwrap();
                 }
                 Err(e) => writeln!(text, "{contents:?} {seed}: 9999 {e}").unwrap(),
