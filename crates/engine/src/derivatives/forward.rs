@@ -9,7 +9,6 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
-use crate::run::Action;
 use crate::run::march::march_observed;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
@@ -18,7 +17,7 @@ use crate::step::control::RunControl;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
-use super::kept_steps::{KeptRun, StepKeeper};
+use super::kept_steps::{KeptRun, StepKeeper, keep_period};
 use super::known_steps::DerivativeStepper;
 use super::periodic_slopes::settle;
 
@@ -91,9 +90,6 @@ pub fn slopes_along(
     Ok(Jacobian { records, slopes })
 }
 
-/// Memory for the steps of a repeated first period [B].
-const PERIOD_BYTES: usize = 1 << 28;
-
 /// Number of parameters whose slopes are computed together.
 const GROUP: usize = 8;
 
@@ -148,26 +144,14 @@ fn run_with_slopes(
     let run = KeptRun { plan, numbers, weather, options };
     let mut period: Option<StepKeeper> = None;
     march_observed(plain, weather, options, watch, |plain, reached, action| {
-        match (action, options.warmup) {
-            (Action::BeginPeriod, Some(warmup)) => {
-                let bytes = PERIOD_BYTES;
-                period = Some(StepKeeper::new(reached, plain.history(), warmup.steps, options, bytes));
-                return Ok(());
-            }
-            (Action::WarmUp(_), _) => {
-                if let Some(period) = &mut period {
-                    period.add(action, plain, reached);
-                }
-                return Ok(());
-            }
-            _ => {}
+        if keep_period(&mut period, action, plain, reached, options) {
+            return Ok(());
         }
-        if let Some(keeper) = period.take() {
-            let start = keeper.reached.clone();
+        if let Some(mut keeper) = period.take() {
             let (steps, _) = keeper.finish();
             for Group { stepper, state, .. } in &mut groups {
-                settle(stepper, state, (&steps, &start), run, watch)?;
-                state.change_by(&start, |number, value| number.value = value);
+                settle(stepper, state, (&steps, &keeper.reached), run, watch)?;
+                state.change_by(&keeper.reached, |number, value| number.value = value);
             }
         }
         for Group { stepper, state, slopes } in &mut groups {

@@ -65,7 +65,7 @@ impl Stretch {
 }
 
 /// Steps of a run that were kept.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct KeptSteps {
     actions: Vec<Action>,
     /// Starts of the stretches that are run again.
@@ -166,8 +166,33 @@ impl StepKeeper {
         }
     }
 
-    /// The steps, and what the step after them is guessed from where as many were added as had been announced.
-    pub(super) fn finish(self) -> (KeptSteps, History<f64>) {
-        (self.kept, self.next)
+    /// Gives the steps, and what the step after them is guessed from where as many were added as had been announced.
+    pub(super) fn finish(&mut self) -> (KeptSteps, History<f64>) {
+        (core::mem::take(&mut self.kept), self.next.clone())
+    }
+}
+
+/// Memory for the steps of a repeated first period, for each thread [B].
+const PERIOD_BYTES: usize = 1 << 28;
+
+/// Keeps the last repetition of a first period. False for actions that belong to none.
+pub(super) fn keep_period(
+    period: &mut Option<StepKeeper>,
+    action: Action,
+    stepper: &Stepper<'_, f64>,
+    reached: &State<f64>,
+    options: &Options,
+) -> bool {
+    match (action, options.warmup, &mut *period) {
+        (Action::BeginPeriod, Some(warmup), _) => {
+            let (history, steps) = (stepper.history(), warmup.steps);
+            *period = Some(StepKeeper::new(reached, history, steps, options, PERIOD_BYTES));
+            true
+        }
+        (Action::WarmUp(_), _, Some(period)) => {
+            period.add(action, stepper, reached);
+            true
+        }
+        _ => false,
     }
 }

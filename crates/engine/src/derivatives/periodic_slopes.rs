@@ -101,17 +101,15 @@ pub(super) fn settle<const K: usize>(
         let images = slopes_of(state);
         for (k, (search, searching)) in searches.iter_mut().zip(&mut searching).enumerate() {
             if !*searching {
-                // Slopes that are found stay what their last pass has made of them.
                 continue;
             }
             let [numbers, image] =
                 [&slopes, &images].map(|all| all.iter().map(|slope| slope[k]).collect::<Vec<_>>());
-            match search.next(&numbers, &image) {
-                Some(next) => slopes.iter_mut().zip(next).for_each(|(slope, next)| slope[k] = next),
-                None => {
-                    *searching = false;
-                    slopes.iter_mut().zip(image).for_each(|(slope, image)| slope[k] = image);
-                }
+            let next = search.next(&numbers, &image);
+            *searching = next.is_some();
+            // Slopes that are found are those at the end of this pass.
+            for (slope, next) in slopes.iter_mut().zip(next.unwrap_or(image)) {
+                slope[k] = next;
             }
         }
         state.read(&slopes, |number, slope| number.slope = slope);

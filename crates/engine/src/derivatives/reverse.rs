@@ -65,10 +65,9 @@ impl Trajectory {
                     return Ok(());
                 }
                 (Action::Balance, Some(_)) => {
-                    let (reached, none) = (kept.reached.clone(), stepper.history());
-                    let (repeated, history) = core::mem::replace(&mut kept, keep(&reached, none, 0)).finish();
+                    let (repeated, history) = kept.finish();
                     period = Some(repeated);
-                    kept = keep(&reached, history, weather.steps() + 1);
+                    kept = keep(&kept.reached, history, weather.steps() + 1);
                 }
                 _ => {}
             }

@@ -21,6 +21,8 @@ const EARNED: f64 = 0.1;
 const FARTHEST: f64 = 30.0;
 /// Humidity ratios and moisture contents are extrapolated up to this factor, and down by it.
 const WETTEST: f64 = 2.0;
+/// A change of a humidity ratio as a change of temperature, by the latent heat over the specific heat of air [K].
+const RATIO_AS_KELVIN: f64 = 2500.0;
 /// Heat of evaporation [J/kg], and a change of a moisture content by its own value as a change of temperature [K], which make its
 /// change comparable with that of stored heat.
 const LATENT: f64 = 2.5e6;
@@ -54,7 +56,7 @@ pub(crate) fn weights<S: Real>(model: &Model<'_, S>, state: &State<S>) -> State<
         let (ratios, contents) = weights.vapour.split_at_mut(state.air.len());
         // [J/K] times the square of [K per kg/kg].
         for (weight, zone) in ratios.iter_mut().zip(&model.coefficients.zones) {
-            *weight = zone.air_capacity.scale(LATENT / 1000.0 * LATENT / 1000.0).fixed();
+            *weight = zone.air_capacity.scale(RATIO_AS_KELVIN * RATIO_AS_KELVIN).fixed();
         }
         let given = state.vapour[state.air.len()..].chunks(2);
         for ((weights, surface), contents) in contents.chunks_mut(2).zip(&humidity.surfaces).zip(given) {

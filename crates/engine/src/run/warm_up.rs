@@ -42,12 +42,11 @@ pub(super) fn warm_up<'a, S: Real>(
             state.take(reached, &next);
             return Ok((cycle, change_left));
         }
-        let start = match &mut known {
-            Some(known) => known.next(&stepper.model, state, &next, change, warmup.tolerance),
-            None => {
-                known = Some(PeriodicStart::new(&stepper.model, state, &next));
-                next.clone()
-            }
+        let start = if let Some(known) = &mut known {
+            known.next(&stepper.model, state, &next, change, warmup.tolerance)
+        } else {
+            known = Some(PeriodicStart::new(&stepper.model, state, &next));
+            next.clone()
         };
         state.take(reached, &next);
         state.take(active, &start);
