@@ -7,10 +7,7 @@
 
 use core::f64::consts::TAU;
 
-use crate::common::random::{Case, Contents};
-use crate::common::{
-    Builder, facing, forcing, options, position, run, set, try_run, values, warmup, weather,
-};
+use crate::common::{Builder, facing, forcing, options, position, run, set, values, warmup, weather};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::{Facing, ZoneLongwave};
@@ -164,66 +161,4 @@ fn slopes_are_those_of_the_periodic_state() {
             assert!((gradient[parameter] - sum).abs() < 1e-8 * sum.abs(), "{} {sum}", gradient[parameter]);
         }
     }
-}
-#[test]
-#[ignore]
-fn experiment() {
-    let count: u64 = std::env::var("COUNT").map_or(100, |t| t.parse().unwrap());
-    use std::fmt::Write as _;
-    let mut text = String::new();
-    for (d, i) in [(0.2, 0.0), (0.5, 0.0), (0.2, 0.1), (0.5, 0.1), (0.5, 0.3), (1.0, 0.2)] {
-        let plan = house([d, i]);
-        let rows = forcing(&plan, Scheme::Sdirk2, 96, 900.0, |t, r| weather(t % 86400.0, r));
-        let o = Options {
-            warmup: Some(Warmup {
-                max_cycles: 2000,
-                tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()),
-                ..warmup(900.0)
-            }),
-            ..options(Scheme::Sdirk2, 900.0, vec![Probe::AirTemperature { zone: 0 }])
-        };
-        let r = try_run(&plan, &values(&plan), &rows, &o).unwrap();
-        writeln!(text, "heavy {d} {i}: {} {:.5}", r.cycles, r.records[0]).unwrap();
-    }
-    for contents in [Contents::All, Contents::ImposedTemperatures] {
-        for seed in 1..=count {
-            let mut case = Case::new(seed, contents);
-            let w = warmup(case.dt);
-            case.steps = w.steps;
-            let plan = case.plan();
-            let o = Options {
-                warmup: Some(Warmup {
-                    max_cycles: 1000,
-                    tolerance: std::env::var("TOL").map_or(0.01, |t| t.parse().unwrap()),
-                    ..w
-                }),
-                ..case.options()
-            };
-            if std::env::var("ONE").is_ok_and(|t| t.parse::<u64>().unwrap() != seed) {
-                continue;
-            }
-            match try_run(&plan, &values(&plan), &case.rows(&plan), &o) {
-                Ok(r) => {
-                    let n = o.probes.len();
-                    let temps: Vec<String> = o
-                        .probes
-                        .iter()
-                        .zip(&r.records[..n])
-                        .filter(|(p, _)| {
-                            matches!(
-                                p,
-                                Probe::AirTemperature { .. }
-                                    | Probe::Sensor { .. }
-                                    | Probe::FaceTemperature { .. }
-                            )
-                        })
-                        .map(|(_, t)| format!("{t:.4}"))
-                        .collect();
-                    writeln!(text, "{contents:?} {seed}: {} {}", r.cycles, temps.join(" ")).unwrap();
-                }
-                Err(e) => writeln!(text, "{contents:?} {seed}: 9999 {e}").unwrap(),
-            }
-        }
-    }
-    std::fs::write(std::env::var("OUTFILE").unwrap(), text).unwrap();
 }
