@@ -12,9 +12,6 @@ use crate::step::state::State;
 
 /// Changes from one repetition to the next that are remembered.
 const DEPTH: usize = 5;
-/// Bounds of the decay of a change in a repetition alone, by which extrapolations are judged (squares).
-const FASTEST: f64 = 0.25;
-const SLOWEST: f64 = 0.96;
 /// A change that is smaller by this factor than all before earns trust (square).
 const EARNED: f64 = 0.1;
 /// Farthest that a temperature is extrapolated beyond the end of a repetition [K].
@@ -88,8 +85,6 @@ pub(super) struct PeriodicStart<S: Real> {
     square: S,
     /// Smallest change so far.
     smallest: S,
-    /// Change of the last repetition that continued another one, over that of the other.
-    decay: S,
     /// How many more extrapolations may be taken back.
     trust: S,
     /// Lanes that repetitions alone do not bring to their end in one more.
@@ -111,7 +106,6 @@ impl<S: Real> PeriodicStart<S> {
             end: end.clone(),
             square,
             smallest: square,
-            decay: S::one(),
             trust: S::one(),
             slow: S::Mask::splat(false),
             extrapolated: S::Mask::splat(false),
@@ -146,16 +140,10 @@ impl<S: Real> PeriodicStart<S> {
     }
 
     /// Lanes that go on from a repetition with this change. The others take the extrapolation back that it started from: the change
-    /// has not become as small as by a repetition alone. This may happen once, and once more each time that the change has become much
-    /// smaller than ever: where laws have bends, repetitions go on alone.
+    /// has not become smaller than ever. This may happen once, and once more each time that the change has become much smaller than ever:
+    /// where laws have bends, repetitions go on alone.
     fn judge(&mut self, square: S) -> S::Mask {
-        let plain = !self.extrapolated;
-        let some = S::zero().lt(self.square);
-        let decay = S::select(some, square / self.square, S::zero());
-        let allowed = (self.square * self.decay).min(self.smallest);
-        let kept = plain | square.lt(allowed);
-        let bounded = decay.max(S::constant(FASTEST)).min(S::constant(SLOWEST));
-        self.decay = S::select(plain, bounded, self.decay);
+        let kept = !self.extrapolated | square.lt(self.smallest);
         let earned = self.extrapolated & square.lt(self.smallest.scale(EARNED));
         self.trust += S::select(earned, S::one(), S::zero()) - S::select(kept, S::zero(), S::one());
         self.smallest = S::select(kept, self.smallest.min(square), self.smallest);

@@ -55,9 +55,8 @@ pub(crate) struct Tolerance {
 /// Diagonal coefficient of SDIRK2.
 const SDIRK2: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
 
-/// Tight enough for difference quotients of results: temperatures within some 1e-6 K of those of exact solutions of the stages
-/// (docs/speed.md).
-const TIGHT: Tolerance = Tolerance { remainder: 1e-7, load: 3e-5, first: false };
+/// Tight enough for difference quotients of results.
+const TIGHT: Tolerance = Tolerance { remainder: 1e-9, load: 1e-5, first: false };
 /// Temperatures within some thousandths of a kelvin (docs/speed.md).
 const LOOSE: Tolerance = Tolerance { remainder: 1e-3, load: 1e-2, first: true };
 
