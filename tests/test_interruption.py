@@ -74,7 +74,7 @@ def blocks(count: int, *, linear: bool = False, nodes: int | None = None) -> dic
 @cache
 def text() -> str:
     """A large description as YAML."""
-    return json.dumps(blocks(100), indent=1)  # JSON is YAML
+    return json.dumps(blocks(200), indent=1)  # JSON is YAML
 
 
 @cache
