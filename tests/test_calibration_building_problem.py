@@ -212,8 +212,8 @@ PLACES = np.array([0.62, 0.35, 0.41, 0.55, 0.33, 0.47, 0.58])
 def seven() -> CalibrationProblem:
     """The seven parameters of the LGI cell on two days, against data that a known truth made.
 
-    One sensor is a mean over its interval, one an output that the records are turned into. The start is periodic
-    within 1e-9 K, so that differences of runs do not show its tolerance.
+    One sensor is a mean over its interval, one an output that the records are turned into. The start is
+    periodic within 1e-9 K, so that differences of runs do not show its tolerance.
     """
     monkeypatch = pytest.MonkeyPatch()
     monkeypatch.setattr(compiling, "REPEATED_WITHIN", 1e-9)
