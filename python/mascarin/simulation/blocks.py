@@ -19,22 +19,27 @@ if TYPE_CHECKING:
 
 #: Size of a block. [B] The engine fills one while another one is written.
 SIZE: Final = 32 * 2**20
+#: Blocks that stay in memory are smaller: beside them are all records.
+PARTS: Final = 8
 
 
-def rows_of(columns: int) -> int:
+def rows_of(columns: int, *, kept: bool = False) -> int:
     """Rows of a block.
 
     Parameters
     ----------
     columns : int
         Numbers in a row.
+    kept : bool
+        Whether the records stay in memory.
 
     Examples
     --------
     >>> rows_of(1024)
     4096
     """
-    return max(SIZE // (8 * max(columns, 1)), 1)
+    size = SIZE // PARTS if kept else SIZE
+    return max(size // (8 * max(columns, 1)), 1)
 
 
 class InMemory:

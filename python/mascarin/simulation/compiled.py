@@ -157,7 +157,7 @@ class CompiledRun:
         """
         recorded = readings or self.readings
         whole = InMemory(self._rows(0, 1), len(recorded.recipes))
-        raw = self.run_into(vector, whole.take, recorded, progress=progress)
+        raw = self.run_into(vector, whole.take, recorded, kept=True, progress=progress)
         return whole.records, raw
 
     def run_into(
@@ -166,6 +166,7 @@ class CompiledRun:
         take: Callable[[Array], object],
         readings: Readings | None = None,
         *,
+        kept: bool = False,
         progress: Report | None = None,
     ) -> dict[str, Any]:
         """Run once, and hand the outputs over in blocks of rows while the run goes on.
@@ -178,6 +179,8 @@ class CompiledRun:
             Called with the next rows, shape (n, outputs); what it raises ends the run.
         readings : Readings, optional
             Outputs other than those of the compiled run.
+        kept : bool
+            Whether the rows stay in memory: blocks are smaller then.
         progress : callable, optional
             Called with the number of steps done and their total; with 0 while a first period is repeated.
 
@@ -199,7 +202,7 @@ class CompiledRun:
                 vector,
                 self.forcing,
                 self.options(recorded),
-                rows_of(len(recorded.recipes)),
+                rows_of(len(recorded.recipes), kept=kept),
                 lambda rows: take(recorded.values(rows)),
                 _of_total(progress, len(self.forcing)),
             )

@@ -296,7 +296,7 @@ class Simulation(VectorRuns):
             Called with the number of steps done and their total.
         """
         whole = InMemory(self.times.rows, len(self.outputs))
-        found = self._run_through(vector, whole.take, progress)
+        found = self._run_through(vector, whole.take, progress, kept=True)
         return Results(
             outputs=self.outputs,
             times=self.times,
@@ -370,7 +370,7 @@ class Simulation(VectorRuns):
         return StoredRun(target, self.outputs, self.times, found)
 
     def _run_through(
-        self, vector: Array, take: Callable[[Array], object], progress: Report | None
+        self, vector: Array, take: Callable[[Array], object], progress: Report | None, *, kept: bool = False
     ) -> Finished:
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
@@ -382,7 +382,7 @@ class Simulation(VectorRuns):
             watch.add(rows)
             take(rows[:, :count])
 
-        raw = self.compiled.run_into(vector, seen, self._recorded, progress=progress)
+        raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         warnings = [*energy.warnings(), *watch.melting.warnings()]
