@@ -102,7 +102,7 @@ def test_a_zone_of_too_many_surfaces_is_refused_with_what_it_would_take() -> Non
     plain = box().to_dict()
     name, surface = next(iter(plain["surfaces"].items()))
     many = {f"{name}_{k}": surface for k in range(MOST_SURFACES + 1 - len(plain["surfaces"]))}
-    with pytest.raises(InputError, match=rf"{MOST_SURFACES + 1} surfaces.*260 MB.*0\.033 min for each day"):
+    with pytest.raises(InputError, match=rf"{MOST_SURFACES + 1} surfaces.*230 MB.*0\.075 min for each day"):
         Building.from_dict(plain | {"surfaces": plain["surfaces"] | many})
 
 

@@ -34,9 +34,9 @@ VIEW_FACTOR_TOLERANCE = 0.05
 FRACTION_TOLERANCE = 0.02
 #: Surfaces of one zone, glass and frames of windows included. All exchange radiation with each other.
 MOST_SURFACES = 2000
-#: What one zone of that many surfaces takes, by a measurement with 1000: memory [B], and processor time of a
-#: day in steps of 15 min [s]. Both grow with the square of their number; derivatives grow with the cube.
-_MEMORY_OF_MOST, _TIME_OF_MOST = 260e6, 2.0
+#: What one zone of that many surfaces takes, as measured: memory [B], and processor time of a day in steps of
+#: 15 min [s]. Both grow with the square of their number; derivatives grow with the cube.
+_MEMORY_OF_MOST, _TIME_OF_MOST = 230e6, 4.5
 
 
 def faults(building: Description) -> Faults:
