@@ -102,7 +102,8 @@ def test_a_zone_of_too_many_surfaces_is_refused_with_what_it_would_take() -> Non
     plain = box().to_dict()
     name, surface = next(iter(plain["surfaces"].items()))
     many = {f"{name}_{k}": surface for k in range(MOST_SURFACES + 1 - len(plain["surfaces"]))}
-    with pytest.raises(InputError, match=rf"{MOST_SURFACES + 1} surfaces.*230 MB.*0\.075 min for each day"):
+    takes = r"230 MB of memory and about 0\.075 min for each day, its derivatives 1\.2 GB and 5 min"
+    with pytest.raises(InputError, match=f"{MOST_SURFACES + 1} surfaces.*{takes}"):
         Building.from_dict(plain | {"surfaces": plain["surfaces"] | many})
 
 

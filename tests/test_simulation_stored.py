@@ -65,10 +65,8 @@ def test_records_in_memory_are_filled_block_by_block(simulation: Simulation) -> 
         patch.setattr(blocks, "SIZE", 2**25)
         whole = Simulation(box(), box_climate(), step="15min", outputs=OUTPUTS).run()
     assert in_blocks == whole
-    raw = simulation.compiled.plan.simulate(
-        simulation.values, simulation.compiled.forcing, simulation.compiled.options()
-    )
-    assert np.array_equal(whole.records, simulation.compiled.readings.values(raw["records"]))
+    members, _, _ = simulation.compiled.ensemble(simulation.vector({})[None])
+    assert np.array_equal(whole.records, members[0])
 
 
 def test_xarray_reads_what_it_would_have_written(simulation: Simulation, tmp_path: Path) -> None:

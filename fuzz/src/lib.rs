@@ -93,7 +93,7 @@ pub fn plan(data: &[u8]) -> bool {
     Ready::read(data).is_some()
 }
 
-/// `Plan.simulate`.
+/// `Plan.simulate_into`.
 pub fn march(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     let Some(forcing) = ready.forcing() else { return false };

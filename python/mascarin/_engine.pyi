@@ -67,20 +67,6 @@ class Plan:
     def window_ratings(self, values: _Array) -> _Array:
         """Windows x (U value [W/(m2 K)], solar heat gain, normal and hemispherical transmittance [-])."""
 
-    def simulate(
-        self,
-        values: _Array,
-        forcing: _Array,
-        options: dict[str, Any],
-        report: Callable[[int], object] | None = None,
-    ) -> dict[str, Any]:
-        """One run: records (rows x probes), ledger [J], counters. `report` gets the number of steps done.
-
-        `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
-        [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws
-        evaluated there; None unless `options["residuals"]` is true, with which a run takes longer. [W]
-        """
-
     def simulate_into(
         self,
         values: _Array,
@@ -90,10 +76,15 @@ class Plan:
         take: Callable[[_Array], object],
         report: Callable[[int], object] | None = None,
     ) -> dict[str, Any]:
-        """One run as `simulate`; `take` gets the records in blocks of `rows` rows while the run goes on.
+        """One run: ledger [J] and counters; the entry `records` is empty.
 
-        The engine goes on while `take` works, by one block at most. What `take` raises ends the run and is
-        raised. The entry `records` of the result is empty.
+        `take` gets the records (rows x probes) in blocks of `rows` rows while the run goes on: the engine
+        goes on while `take` works, by one block at most. What `take` raises ends the run and is raised.
+        `report` gets the number of steps done.
+
+        `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
+        [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws
+        evaluated there; None unless `options["residuals"]` is true, with which a run takes longer. [W]
         """
 
     def ensemble(
@@ -131,7 +122,7 @@ class Trajectory:
         """A run that keeps about `memory` bytes."""
 
     def run(self) -> dict[str, Any]:
-        """The result of `Plan.simulate`."""
+        """The result of `Plan.simulate_into`, with the records."""
 
     def pull(self, weights: _Array) -> _Array:
         """Slopes by all parameters of the sum of weights (rows x probes) times records."""

@@ -4,7 +4,7 @@ use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::{Run, Watch, march, march_streamed};
+use mascarin_engine::march::{Run, Watch, march_streamed};
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::vapour::VapourFlow;
@@ -87,33 +87,10 @@ impl Plan {
         })
     }
 
-    /// One run: a dictionary of records, ledger and counters. `report` is called with the number of steps done.
-    #[pyo3(signature = (values, forcing, options, report=None))]
-    fn simulate<'py>(
-        &self,
-        py: Python<'py>,
-        values: PyReadonlyArray1<'py, f64>,
-        forcing: PyReadonlyArray3<'py, f64>,
-        options: RunOptions,
-        report: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        caught(|| {
-            let options = options.read()?;
-            let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-            let drive =
-                Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
-            let plan = &self.plan;
-            let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
-            let mut run = attended(py, report, |watch| march(plan, values, &drive, &options, watch))?;
-            // Moved: a year of many rooms is gigabytes.
-            let records = PyArray1::from_vec(py, std::mem::take(&mut run.records));
-            describe_run(py, &run, records.reshape([options.rows(drive.steps()), options.probes.len()])?)
-        })
-    }
-
-    /// One run as `simulate`, which calls `take` with its records (rows x probes) in blocks of `rows` rows; its own records are empty.
+    /// One run: a dictionary of ledger and counters, whose records are empty. `take` is called with the records (rows x probes) in blocks of
+    /// `rows` rows while the run goes on, `report` with the number of steps done.
     #[pyo3(signature = (values, forcing, options, rows, take, report=None))]
-    #[allow(clippy::too_many_arguments, reason = "those of `simulate`, and where the records go")]
+    #[allow(clippy::too_many_arguments, reason = "what a run needs, and where the records go")]
     fn simulate_into<'py>(
         &self,
         py: Python<'py>,

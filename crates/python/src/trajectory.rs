@@ -50,7 +50,7 @@ impl Trajectory {
         })
     }
 
-    /// What `Plan.simulate` gives.
+    /// What `Plan.simulate_into` gives, with the records.
     fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         caught(|| {
             let steps = self.forcing.len() / (self.stages * self.channels);

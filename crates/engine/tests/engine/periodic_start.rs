@@ -17,8 +17,15 @@ use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 
 const HOUR: f64 = 3600.0;
-/// Thickness of concrete and of insulation outside of it [m].
-const HOUSES: [[f64; 2]; 6] = [[0.2, 0.0], [0.5, 0.0], [0.2, 0.1], [0.5, 0.1], [0.5, 0.3], [1.0, 0.2]];
+/// Thickness of concrete and of insulation outside of it [m], and how far the start may be from the air after 400 days [K].
+const HOUSES: [([f64; 2], f64); 6] = [
+    ([0.2, 0.0], 0.02),
+    ([0.5, 0.0], 0.02),
+    ([0.2, 0.1], 0.02),
+    ([0.5, 0.1], 0.02),
+    ([0.5, 0.3], 0.02),
+    ([1.0, 0.2], 0.08),
+];
 
 /// A house without floor, of concrete behind insulation.
 fn house([concrete, insulation]: [f64; 2]) -> Plan {
@@ -51,12 +58,12 @@ fn air(warmup: Option<Warmup>) -> Options {
 /// alone, which end a tolerance over the decay of the slowest mode away (0.1 to 1 K).
 #[test]
 fn heavy_houses_need_few_repetitions() {
-    for layers in HOUSES {
+    for (layers, most) in HOUSES {
         let plan = house(layers);
         let found = run(&plan, &same_days(&plan, 1), &air(Some(warmup(HOUR))));
         let long = run(&plan, &same_days(&plan, 400), &air(None)).records;
         let error = (found.records[0] - long[24 * 400]).abs();
-        assert!(found.cycles <= 9 && error < 0.1, "{layers:?}: {} repetitions, {error} K", found.cycles);
+        assert!(found.cycles <= 9 && error < most, "{layers:?}: {} repetitions, {error} K", found.cycles);
     }
 }
 
