@@ -76,13 +76,13 @@ def _rooms(grid: Grid, loads: bool) -> Building:
         return mc.load(file)
 
 
-def simulation(case: Case, scheme: Scheme) -> Simulation:
-    """A case with a scheme; it records airs, surfaces and loads."""
+def simulation(case: Case, scheme: Scheme, step: float = STEP) -> Simulation:
+    """A case with a scheme and a step [s]; it records airs, surfaces and loads."""
     start = case.climate.index[0] if case.start is None else case.start
     outputs = [output.name for output in case.building.outputs() if output.kind in (*AIRS, *SURFACES, *LOADS)]
     end = start + timedelta(days=case.days)
     return Simulation(
-        case.building, case.climate, step=STEP, scheme=scheme, start=start, end=end, outputs=outputs
+        case.building, case.climate, step=step, scheme=scheme, start=start, end=end, outputs=outputs
     )
 
 

@@ -93,8 +93,12 @@ class Plan:
         forcing: _Array,
         options: dict[str, Any],
         report: Callable[[int], object] | None = None,
+        single: bool = False,
     ) -> tuple[_Array, _Array, list[tuple[int, str]]]:
-        """Members (rows of values): records (members x rows x probes), closures, failures."""
+        """Members (rows of values): records (members x rows x probes), closures, failures.
+
+        `single`: in single precision; members whose energy balance does not close are run in double.
+        """
 
     def jacobian(
         self,

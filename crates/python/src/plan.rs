@@ -119,8 +119,8 @@ impl Plan {
         })
     }
 
-    /// Members (rows of `values`): records (members x rows x probes), closures, failures.
-    #[pyo3(signature = (values, forcing, options, report=None))]
+    /// Members (rows of `values`), in single precision to screen many: records (members x rows x probes), closures, failures.
+    #[pyo3(signature = (values, forcing, options, report=None, single=false))]
     fn ensemble<'py>(
         &self,
         py: Python<'py>,
@@ -128,6 +128,7 @@ impl Plan {
         forcing: PyReadonlyArray3<'py, f64>,
         options: RunOptions,
         report: Option<&Bound<'py, PyAny>>,
+        single: bool,
     ) -> PyResult<EnsembleArrays<'py>> {
         caught(|| {
             let options = options.read()?;
@@ -137,8 +138,8 @@ impl Plan {
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
             let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
-            let result =
-                attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
+            let run = if single { batch::screening } else { batch::ensemble };
+            let result = attended(py, report, |watch| run(plan, numbers, &drive, &options, watch))?;
             let rows = options.rows(drive.steps());
             let records =
                 PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;

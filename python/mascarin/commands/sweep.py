@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -36,6 +36,8 @@ def sweep(
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",
+    scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
+    precision: Literal["double", "single"] = "double",
     workers: int | None = None,
     settings: Settings = None,
     as_json: AsJson = False,
@@ -71,6 +73,11 @@ def sweep(
         Start of the period, local time. Default: the start of the weather file.
     end : str
         End of the period. Default: the end of the weather file.
+    scheme : str
+        Time-stepping scheme, as of 'mascarin run'.
+    precision : str
+        'single' runs twice as many members at once, to screen many; how far their results are from
+        double precision is measured in some of them and printed.
     workers : int
         Number of processes. Default: threads of one process.
     """
@@ -94,6 +101,8 @@ def sweep(
             outputs=outputs or list(dict.fromkeys(statistic.output for statistic in kept.values())),
             objectives=kept,
             step=seconds(step),
+            scheme=scheme,
+            precision=precision,
             start=start,
             end=end,
             workers=workers,
@@ -146,6 +155,8 @@ def _print(store: Store, as_json: bool) -> int:
         "closure": float(table["closure"].max()),
         "warnings": store.warnings(),
         "objectives": {name: {"min": low, "mean": mean, "max": high} for name, low, mean, high in rows},
+        "precision": store.precision,
+        "single_precision": store.manifest.get("single_precision", {}),
         "store": str(store.path),
         **{key: store.manifest[key] for key in ("mascarin_version", "identity", "samples", "seed")},
     }
@@ -157,6 +168,8 @@ def _print(store: Store, as_json: bool) -> int:
         return code
     if rows:
         print_table(("objective", "min", "mean", "max"), rows)
+    for line in store.single_precision():
+        print(f"single precision differs from double precision in {line}")
     residual = result["closure"]
     print(f"{len(table)} members, largest relative energy-balance residual {residual:.1e}; in {store.path}")
     if len(failed):

@@ -18,13 +18,22 @@ from mascarin._io.locks import FolderLock
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.members import members as read_members
 from mascarin.ensemble.store import Store
-from mascarin.ensemble.work import CLOSURE, Chunk, EnsembleInputs, Objective, attributes, dataset
+from mascarin.ensemble.work import (
+    CLOSURE,
+    Chunk,
+    EnsembleInputs,
+    Objective,
+    attributes,
+    dataset,
+    run_chunk,
+)
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.energy import ensemble_warnings
-from mascarin.simulation.options import RunOptions, described
+from mascarin.simulation.options import RunOptions, described, require_precision
+from mascarin.simulation.single_precision import Difference, differences, members_to_check
 from mascarin.weather import summary, summary_of_measurements
 
 if TYPE_CHECKING:
@@ -35,7 +44,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
     from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.options import Precision, Scheme, TimeLike
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate, Measurements
 
@@ -52,6 +61,7 @@ def sweep(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
+    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
@@ -87,7 +97,8 @@ def sweep(
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
         ``closure``, the relative energy-balance residual [-]. NaN for a member that failed, with its reason
         in the attribute ``failures``; the attribute ``warnings`` says whether the energy balance of a member
-        does not close. Coordinates ``time`` (UTC) and ``local_time``.
+        does not close, and in single precision ``single_precision`` how far each output or objective of some
+        members is from double precision. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
     ------
@@ -111,7 +122,7 @@ def sweep(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    inputs, found = _prepared(building, climate, samples, options, objectives)
+    inputs, found = _prepared(building, climate, samples, options, objectives, precision)
     _require_room(inputs, found)
     order = found.by_structure()
     with reporting(progress, "members") as report:
@@ -132,7 +143,8 @@ def sweep(
         .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
-            warnings=ensemble_warnings(closure),
+            warnings=ensemble_warnings(closure, precision=precision),
+            **({} if precision == "double" else {"single_precision": _said(_differences(inputs, found))}),
         )
     )
 
@@ -150,6 +162,7 @@ def sweep_into(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
+    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
@@ -181,7 +194,8 @@ def sweep_into(
     Returns
     -------
     Store
-        The complete ensemble, with the reasons of members that failed.
+        The complete ensemble, with the reasons of members that failed, and in single precision with the
+        difference from double precision in some members.
 
     Raises
     ------
@@ -210,7 +224,7 @@ def sweep_into(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    inputs, found = _prepared(building, climate, samples, options, objectives, ranges)
+    inputs, found = _prepared(building, climate, samples, options, objectives, precision, ranges)
     folder = Path(store)
     Store.require_usable(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -223,8 +237,25 @@ def sweep_into(
 
         for chunk in _chunks(inputs, found, kept.gaps(), workers, count):
             kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
-        kept.finish()
+        if not kept.complete:
+            kept.finish([] if precision == "double" else _differences(inputs, found))
     return kept
+
+
+def _differences(inputs: EnsembleInputs, members: Members) -> list[Difference]:
+    """How far results in single precision are from those in double precision, in some members."""
+    some = members.taken(members_to_check(members.count))
+    single, double = (
+        run_chunk(replace(inputs, precision=precision), some, 0).kept for precision in ("single", "double")
+    )
+    if inputs.objectives:
+        return differences(list(inputs.objectives), [""] * len(inputs.objectives), single, double)
+    outputs = _first(inputs, members).outputs
+    return differences([one.name for one in outputs], [one.unit for one in outputs], single, double)
+
+
+def _said(found: Sequence[Difference]) -> list[str]:
+    return [str(one) for one in found]
 
 
 def _prepared(
@@ -233,6 +264,7 @@ def _prepared(
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     options: RunOptions,
     objectives: Mapping[str, Objective] | None,
+    precision: Precision,
     ranges: Mapping[str, tuple[float, float]] | None = None,
 ) -> tuple[EnsembleInputs, Members]:
     """What the members have in common, with its hash, and the members.
@@ -245,6 +277,7 @@ def _prepared(
             f"samples: found {kind_of(samples)}, expected values by path, one for each member, such as "
             "{'zones.room.volume': [30, 40]}, or a pandas.DataFrame with paths as columns"
         )
+    require_precision(precision, options.scheme)
     functions = mapping_of("objectives", objectives, "functions by name: {'peak': function}")
     building = in_climate(
         building,
@@ -260,6 +293,7 @@ def _prepared(
         options=replace(options, parameters=None),
         ranges=_joined(members.ranges, ranges or {}),
         objectives=functions,
+        precision=precision,
         identity="",
     )
     clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}
@@ -268,7 +302,7 @@ def _prepared(
     structure = _first_structure(members)
     compiled = inputs.compiled(structure)
     whole = hashlib.sha256(compiled.identity.encode())
-    whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
+    whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives), precision]).encode())
     inputs = replace(inputs, identity=whole.hexdigest())
     inputs.keep(structure, compiled)
     return inputs, members
@@ -387,6 +421,7 @@ def _manifest(inputs: EnsembleInputs, members: Members, seed: int | None) -> dic
         "kept": dict.fromkeys(inputs.objectives, "") if inputs.objectives else units,
         "step_seconds": simulation.step_seconds,
         "scheme": inputs.options.scheme,
+        "precision": inputs.precision,
         "timezone": str(simulation.index.tz),
         "time": [] if inputs.objectives else [str(time) for time in times],
     }

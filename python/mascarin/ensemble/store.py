@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,6 +21,7 @@ from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.single_precision import Difference
 from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
@@ -151,7 +152,13 @@ class Store:
             ("parameters", ", ".join(manifest["paths"])),
             ("objectives" if manifest["objectives"] else "outputs", ", ".join(manifest["kept"])),
             ("step", f"{manifest['step_seconds']:g} s, {manifest['scheme']}"),
+            *(("single precision", line) for line in self.single_precision()),
         ]
+
+    @property
+    def precision(self) -> str:
+        """``double`` or ``single``."""
+        return str(self.manifest.get("precision", "double"))
 
     @property
     def count(self) -> int:
@@ -196,12 +203,20 @@ class Store:
         with atomic.drafted(target) as draft:
             pq.write_table(self._table(chunk, members), draft)
 
-    def finish(self) -> None:
-        """Join the chunks to one file and mark the store as complete."""
+    def finish(self, single_precision: Sequence[Difference] = ()) -> None:
+        """Join the chunks to one file and mark the store as complete.
+
+        Parameters
+        ----------
+        single_precision : sequence of Difference
+            How far the results of some members are from double precision, for the manifest.
+        """
         if self.complete:
             return
         with atomic.drafted(self.path / RESULTS) as draft:
             self._join(draft)
+        if single_precision:
+            self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
         self.manifest["complete"] = True
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
         shutil.rmtree(self.path / "pieces", ignore_errors=True)
@@ -254,7 +269,12 @@ class Store:
 
     def warnings(self) -> list[str]:
         """One line where the energy balance of a member does not close, else nothing."""
-        return ensemble_warnings(self.to_dataframe()["closure"].to_numpy())
+        return ensemble_warnings(self.to_dataframe()["closure"].to_numpy(), precision=self.precision)
+
+    def single_precision(self) -> list[str]:
+        """How far some members are from double precision: a line for each result; none in double."""
+        found = self.manifest.get("single_precision", {})
+        return [str(Difference(name, **values)) for name, values in found.items()]
 
     def to_xarray(self, first: int = 0, last: int | None = None) -> xr.Dataset:
         """Members from `first` to before `last`, as `sweep` returns them.
@@ -308,9 +328,10 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
-            "warnings": ensemble_warnings(data["closure"][1], first),
+            "warnings": ensemble_warnings(data["closure"][1], first, self.precision),
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
+            **({"single_precision": said} if (said := self.single_precision()) else {}),
         }
         return xr.Dataset(data, coords=coords, attrs=facts)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building, Output
     from mascarin.ensemble.members import Members
-    from mascarin.simulation.options import RunOptions
+    from mascarin.simulation.options import Precision, RunOptions
     from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
@@ -34,6 +34,8 @@ CLOSURE: Final = {"units": "1", "long_name": "relative energy-balance residual"}
 
 #: Series that are kept in memory at once before they are reduced to objectives. [bytes]
 _IN_MEMORY: Final = 64 * 2**20
+#: Members that the engine runs at once, in single precision; half as many in double.
+_PACK: Final = 16
 #: Weather of the compiled buildings that a worker keeps for the next chunks. [bytes]
 _MOST_COMPILED: Final = 256 * 2**20
 
@@ -54,6 +56,8 @@ class EnsembleInputs:
         Ranges of the samples, so that every worker chooses the same mesh. [unit of each]
     objectives : mapping of str to callable
         What is kept of each member instead of its series: functions of a Dataset over (member, time).
+    precision : str
+        Of the runs: ``double`` or ``single``.
     identity : str
         Hash of all this; a worker finds its compiled buildings by it.
     """
@@ -63,6 +67,7 @@ class EnsembleInputs:
     options: RunOptions
     ranges: Mapping[str, tuple[float, float]]
     objectives: Mapping[str, Objective]
+    precision: Precision
     identity: str
 
     def compiled(self, structure: Mapping[str, Any]) -> Simulation:
@@ -142,7 +147,9 @@ def run_chunk(
             vectors = _vectors(simulation, members, batch)
             before = done
             call = None if report is None else (lambda count, _, before=before: report(before + count))
-            records, closures, failed = simulation.ensemble(vectors, progress=call)
+            records, closures, failed = simulation.ensemble(
+                vectors, precision=inputs.precision, progress=call
+            )
             kept = _reduced(inputs, simulation, records)
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
@@ -185,7 +192,7 @@ def _batches(inputs: EnsembleInputs, simulation: Simulation, rows: list[int]) ->
     size = len(rows)
     if inputs.objectives:
         row = 8 * len(simulation.index) * len(simulation.outputs)
-        size = max(_IN_MEMORY // row // 8 * 8, 8)
+        size = max(_IN_MEMORY // row // _PACK * _PACK, _PACK)
     return [rows[k : k + size] for k in range(0, len(rows), size)]
 
 

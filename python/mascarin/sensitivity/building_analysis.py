@@ -21,8 +21,9 @@ from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.energy import ensemble_warnings
-from mascarin.simulation.options import described
+from mascarin.simulation.options import described, require_precision
 from mascarin.simulation.simulation import Simulation
+from mascarin.simulation.single_precision import differences, members_to_check
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
     from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.options import Precision, Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -129,6 +130,7 @@ def sensitivity_analysis(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
+    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
@@ -214,6 +216,7 @@ def sensitivity_analysis(
         leave_out=[*names_of("leave_out", leave_out), *given], only=only,
     )  # fmt: skip
     finite_number("confidence", confidence, 0.0, 1.0)  # before the runs
+    require_precision(precision, scheme)
     runs = plan(chosen, method, replicates=replicates, samples=samples, order=order, seed=seed)
     simulation = Simulation(
         building, climate, parameters=parameters, outputs=outputs, start=start, end=end, step=step,
@@ -224,11 +227,30 @@ def sensitivity_analysis(
     taken = collector(
         runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
+    remarks: list[str] = []
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
-            taken.add(first, run_samples(simulation, runs.paths, x, first, every=every))
+            records = run_samples(simulation, runs.paths, x, first, every=every, precision=precision)
+            taken.add(first, records)
+            if first == 0 and precision == "single":
+                remarks = _single_precision(simulation, runs.paths, x, records, every)
             report(first + len(x), len(runs))
-    return replace(taken.result(confidence=confidence), times=simulation.index[::every])
+    found = taken.result(confidence=confidence)
+    return replace(found, times=simulation.index[::every], warnings=(*found.warnings, *remarks))
+
+
+def _single_precision(
+    simulation: Simulation, paths: Sequence[str], samples: Array, single: Array, every: int
+) -> list[str]:
+    """How far outputs of some runs in single precision are from those in double precision: a line each."""
+    some = members_to_check(len(samples))
+    double = run_samples(simulation, paths, samples[some], 0, every=every)
+    outputs = simulation.outputs
+    names, units = [one.name for one in outputs], [one.unit for one in outputs]
+    return [
+        f"single precision differs from double precision in {line}"
+        for line in differences(names, units, single[some], double)
+    ]
 
 
 def screen(
@@ -278,6 +300,7 @@ def run_samples(
     *,
     start: int = 0,
     every: int = 1,
+    precision: Precision = "double",
 ) -> Array:
     """Run consecutive members of a plan.
 
@@ -293,6 +316,8 @@ def run_samples(
         Number of the first run, for messages.
     start, every : int
         First recorded row and spacing of the recorded rows, in steps.
+    precision : str
+        ``double`` or ``single``.
 
     Returns
     -------
@@ -305,8 +330,10 @@ def run_samples(
         A run failed; the text names its parameters.
     """
     vectors = simulation.varied(paths, samples)
-    records, residuals, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
-    for line in ensemble_warnings(residuals, first):
+    records, residuals, failures = simulation.ensemble(
+        vectors, record_from=start, record_every=every, precision=precision
+    )
+    for line in ensemble_warnings(residuals, first, precision):
         warnings.warn(f"sensitivity analysis: {line}", stacklevel=2)
     if failures:
         failed = failures[0]

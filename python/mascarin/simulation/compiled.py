@@ -16,6 +16,7 @@ from mascarin import _engine
 from mascarin._io import memory
 from mascarin.engine_errors import plan_of, translated
 from mascarin.simulation.blocks import InMemory, rows_of
+from mascarin.simulation.options import require_precision
 from mascarin.simulation.readings import Readings
 from mascarin.weather.timezones import parse_timezone
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.progress import Report
+    from mascarin.simulation.options import Precision
 
     Array = npt.NDArray[np.float64]
 
@@ -209,7 +211,13 @@ class CompiledRun:
         return raw
 
     def ensemble(
-        self, vectors: Array, *, record_from: int = 0, record_every: int = 1, progress: Report | None = None
+        self,
+        vectors: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        precision: Precision = "double",
+        progress: Report | None = None,
     ) -> tuple[Array, Array, list[Failure]]:
         """Run many parameter vectors, several at a time in lanes and threads.
 
@@ -219,6 +227,9 @@ class CompiledRun:
             One parameter vector a row. [unit of each]
         record_from, record_every : int
             First recorded row and spacing of the recorded rows, in steps.
+        precision : str
+            ``double`` or ``single``; in single precision, members whose energy balance does not close within
+            1e-4 are run again in double precision.
         progress : callable, optional
             Called with the number of members done and their total.
 
@@ -230,7 +241,13 @@ class CompiledRun:
             Relative energy-balance residual of each member. [-]
         failures : list of Failure
             Members that failed, and why.
+
+        Raises
+        ------
+        InputError
+            A precision that does not exist, or does not go with the scheme.
         """
+        require_precision(precision, str(self.settings["scheme"]))
         options = self.options(None, record_from, record_every)
         rows = self._rows(record_from, record_every)
         # Weather, sun and shadows of each stage are kept for all members.
@@ -238,7 +255,7 @@ class CompiledRun:
         self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
         with translated(self.dated):
             raw, residuals, failed = self.plan.ensemble(
-                vectors, self.forcing, options, _of_total(progress, len(vectors))
+                vectors, self.forcing, options, _of_total(progress, len(vectors)), precision == "single"
             )
         failures = [Failure(member, self.dated(reason)) for member, reason in failed]
         return self.readings.values(raw), residuals, failures

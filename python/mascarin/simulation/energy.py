@@ -34,7 +34,11 @@ CLOSED: Final = 1e-10
 """Relative energy-balance residual up to which an energy balance closes: rounding stays below it. [-]"""
 
 
-def ensemble_warnings(residuals: Array, first: int = 0) -> list[str]:
+CLOSED_SINGLE: Final = 1e-4
+"""The same in single precision: members that are above it have been run again in double precision. [-]"""
+
+
+def ensemble_warnings(residuals: Array, first: int = 0, precision: str = "double") -> list[str]:
     """One line where the energy balance of a member of an ensemble does not close, else nothing.
 
     Parameters
@@ -43,6 +47,8 @@ def ensemble_warnings(residuals: Array, first: int = 0) -> list[str]:
         Relative energy-balance residual of each member; NaN for one that failed. [-]
     first : int
         Number of the first member.
+    precision : str
+        Of the members: ``double`` or ``single``.
 
     Returns
     -------
@@ -54,14 +60,15 @@ def ensemble_warnings(residuals: Array, first: int = 0) -> list[str]:
     >>> ensemble_warnings(np.array([1e-12, np.nan, 2e-9]))[0][:56]
     'the energy balance of 1 of 3 members does not close: the'
     """
-    open_ones = np.flatnonzero(residuals > CLOSED)
+    closed = CLOSED_SINGLE if precision == "single" else CLOSED
+    open_ones = np.flatnonzero(residuals > closed)
     if not open_ones.size:
         return []
     worst = int(np.nanargmax(residuals))
     return [
         f"the energy balance of {len(open_ones)} of {len(residuals)} members does not close: the heat stored "
         "and the heat that flowed in differ by more than "
-        f"{CLOSED:g} of all heat exchanged, most in member {first + worst} ({residuals[worst]:.1e}). Their "
+        f"{closed:g} of all heat exchanged, most in member {first + worst} ({residuals[worst]:.1e}). Their "
         "temperatures may be wrong by as much or more: use another time-stepping scheme "
         "('apparent-capacity' never closes) or a shorter step"
     ]

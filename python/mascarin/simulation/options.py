@@ -25,6 +25,9 @@ local time of the climate."""
 Scheme = Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"]
 SCHEMES: Final[tuple[Scheme, ...]] = ("sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity")
 
+Precision = Literal["double", "single"]
+PRECISIONS: Final[tuple[Precision, ...]] = ("double", "single")
+
 TABLE: Final[Mapping[str, tuple[str, str]]] = {
     "parameters": (
         "mapping of str to float, optional",
@@ -51,6 +54,11 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
         "that is enough: faster, within some thousandths of a kelvin), ``backward-euler`` (first order), or "
         "``apparent-capacity`` (for "
         "comparison with the literature only: it does not conserve latent heat).",
+    ),
+    "precision": (
+        "str",
+        "``double``, or ``single`` to screen many members: twice as many at a time, within some thousandths "
+        "of a kelvin. The difference is measured in some members, see `ensembles`.",
     ),
     "initial": (
         "'repeat', float, mapping, GivenStart or MeasuredStart",
@@ -122,6 +130,33 @@ class RunOptions:
     def keywords(self) -> dict[str, Any]:
         """The options as keyword arguments."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def require_precision(precision: str, scheme: str) -> None:
+    """Check the precision of an ensemble.
+
+    Parameters
+    ----------
+    precision : str
+        What was given.
+    scheme : str
+        Time-stepping scheme.
+
+    Raises
+    ------
+    InputError
+        It does not exist, or does not go with the scheme.
+    """
+    if precision not in PRECISIONS:
+        raise InputError(
+            f"precision: found '{precision}', expected one of {', '.join(PRECISIONS)}. "
+            f"{did_you_mean(precision, PRECISIONS)}".rstrip()
+        )
+    if precision == "single" and scheme == "apparent-capacity":
+        raise InputError(
+            "precision: found 'single' with the scheme 'apparent-capacity', expected another scheme: "
+            "members in single precision are checked by their energy balance, which it does not close"
+        )
 
 
 def _wrapped(text: str) -> list[str]:

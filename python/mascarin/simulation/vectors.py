@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import Report
+    from mascarin.simulation.options import Precision
     from mascarin.simulation.times import Times
 
     Array = npt.NDArray[np.float64]
@@ -201,6 +202,7 @@ class VectorRuns:
         *,
         record_from: int = 0,
         record_every: int = 1,
+        precision: Precision = "double",
         progress: Report | None = None,
     ) -> tuple[Array, Array, list[Failure]]:
         """Check the vectors and run them by `CompiledRun.ensemble`, which explains arguments and results.
@@ -213,8 +215,9 @@ class VectorRuns:
         members: Array = np.ascontiguousarray(vectors, dtype=np.float64)
         self._require_possible(members)
         return self.compiled.ensemble(
-            members, record_from=record_from, record_every=record_every, progress=progress
-        )
+            members, record_from=record_from, record_every=record_every, precision=precision,
+            progress=progress,
+        )  # fmt: skip
 
     def jacobian_vector(
         self,

@@ -1,7 +1,7 @@
 //! The energy ledger: heat that entered the building by flow, heat stored, and the energy-balance residual.
 
 use crate::balance::vapour::VapourLedger;
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Real};
 
 /// Flows by which heat enters a building.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,7 +152,7 @@ pub struct Ledger<S> {
 
 /// Part of the heat content of a building that counts as nothing in a step [-]. Stored heat is a difference of contents, which are
 /// rounded to 1e-16; some thousand roundings add up in a step.
-const NOTHING: f64 = 1e-12;
+const NOTHING: ByPrecision = ByPrecision { double: 1e-12, single: 1e-6 };
 
 impl<S: Real> Ledger<S> {
     /// No heat yet.
@@ -184,7 +184,7 @@ impl<S: Real> Ledger<S> {
 
     /// Sets the heat that a building contains [J] and the number of steps, see [`Self::closure`].
     pub(crate) fn set_content(&mut self, content: S, steps: usize) {
-        self.nothing = content.scale(NOTHING * steps as f64);
+        self.nothing = content.scale(NOTHING.of::<S>() * steps as f64);
     }
 
     /// Relative energy-balance residual [-]: imbalance over total heat exchanged, summed over steps so that opposite errors do

@@ -1,6 +1,6 @@
 //! The vapour ledger: vapour that entered the zones by flow, vapour stored in air and surfaces, and what is missing.
 
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Real};
 
 /// Flows by which vapour enters a building.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub struct VapourLedger<S> {
 }
 
 /// Part of the vapour stored in a building that counts as nothing in a step [-]; see [`Ledger`](super::ledger::Ledger).
-const NOTHING: f64 = 1e-12;
+const NOTHING: ByPrecision = ByPrecision { double: 1e-12, single: 1e-6 };
 
 impl<S: Real> VapourLedger<S> {
     /// No vapour yet.
@@ -89,7 +89,7 @@ impl<S: Real> VapourLedger<S> {
         self.stored += step.stored;
         self.total_exchanged += step.total_exchanged;
         self.imbalance += (step.stored - total).abs();
-        self.nothing += content.abs().scale(NOTHING);
+        self.nothing += content.abs().scale(NOTHING.of::<S>());
     }
 
     /// Relative residual of the vapour balance [-]: imbalance over all vapour exchanged. Zero where nothing is exchanged, and the

@@ -17,6 +17,7 @@ use super::cell::{Cell, Matter};
 use super::ids::SurfaceId;
 use crate::input::description::{self, Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
+use crate::number::elementary::sin_of_degrees;
 use crate::number::real::Real;
 use crate::physics::blinds::{Blind, OPEN};
 use crate::physics::optics::{Diffuse, Optics, Rating};
@@ -308,7 +309,7 @@ impl<S: Real> Glass<S> {
     }
 
     fn new(optics: Optics<S>, gaps: Vec<(usize, GasGap<S>)>, tilt: S) -> Self {
-        let sine = tilt.scale(core::f64::consts::PI / 180.0).sin();
+        let sine = sin_of_degrees(tilt);
         Self { horizon: optics.beam.horizon(sine), optics, gaps, blind: None }
     }
 

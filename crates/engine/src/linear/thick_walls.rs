@@ -11,14 +11,14 @@ use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::Response;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 
 /// Heat that may be lacking at a surface in an iteration that is not the last [W/m2].
-const ACCEPTED: f64 = 1e-6;
+const ACCEPTED: ByPrecision = ByPrecision { double: 1e-6, single: 1e-4 };
 /// Heat that may be lacking in the last one: rounding [W/m2].
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: ByPrecision = ByPrecision { double: 1e-13, single: 1e-5 };
 /// What is left of an error after all rounds [-].
-const LEFT: f64 = 1e-14;
+const LEFT: ByPrecision = ByPrecision { double: 1e-14, single: 1e-6 };
 /// Most rounds: enough where less than 0.996 of the heat of a surface reaches the other one within a stage.
 const MOST_ROUNDS: usize = 10_000;
 
@@ -74,7 +74,7 @@ impl<S: Real> ThickWalls<S> {
         self.rounds = S::zero();
         let mut left = share;
         for _ in 0..MOST_ROUNDS {
-            let more = S::constant(LEFT).lt(left);
+            let more = S::constant(LEFT.of::<S>()).lt(left);
             if !more.any() {
                 break;
             }
@@ -116,14 +116,18 @@ impl<S: Real> ThickWalls<S> {
     /// Where the solution may be the last: it had lacked little before anything was added.
     #[inline(always)]
     pub(crate) fn accepts(lacked: S) -> S::Mask {
-        lacked.lt(S::constant(ACCEPTED))
+        lacked.lt(S::constant(ACCEPTED.of::<S>()))
     }
 
     /// Where another round is needed: by the heat that is lacking, and what had been lacking at first. Derivatives take all rounds:
     /// of them nothing is known.
     #[inline(always)]
     pub(crate) fn lacks(&self, lacking: S, lacked: S, round: S) -> S::Mask {
-        let enough = S::select(Self::accepts(lacked), S::constant(ROUNDING), S::constant(ACCEPTED));
+        let enough = S::select(
+            Self::accepts(lacked),
+            S::constant(ROUNDING.of::<S>()),
+            S::constant(ACCEPTED.of::<S>()),
+        );
         let left = round.lt(self.rounds + S::one());
         if S::DERIVATIVES { left } else { left & enough.lt(lacking) }
     }

@@ -12,13 +12,13 @@
 
 use crate::building::vents::VentPlan;
 use crate::linear::coupled::CoupledSystem;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::vents::{PressureFlow, flow};
 
 /// Iterations at most. Secants alone need some 45.
 const MAX_ITERATIONS: usize = 80;
 /// Largest imbalance of a zone over the sum of all flows [-].
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: ByPrecision = ByPrecision { double: 1e-12, single: 1e-6 };
 /// Tangents are taken where the imbalance has fallen to this part of the one before [-], in the first iterations; then secants alone.
 const MUCH_NEARER: f64 = 0.6;
 const WITH_TANGENTS: usize = 30;
@@ -78,7 +78,7 @@ impl<'a, S: Real> VentNetwork<'a, S> {
         let mut before = S::constant(f64::INFINITY);
         for iteration in 0..MAX_ITERATIONS {
             let (worst, all) = self.evaluate(true);
-            active = active & all.scale(TOLERANCE).lt(worst);
+            active = active & all.scale(TOLERANCE.of::<S>()).lt(worst);
             if !active.any() {
                 break;
             }

@@ -12,7 +12,7 @@ use core::ops::Range;
 
 use crate::building::coefficients::{Matter, WallCoefficients};
 use crate::linear::tridiagonal::Link;
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Real};
 use crate::physics::pcm::{PcmCoefficients, PcmMemory, PcmPoint};
 
 /// Enthalpy of a cell near the current iterate, `offset + capacity (T - reference)` [J/m3].
@@ -364,14 +364,14 @@ impl<S: Real> PhaseChange<S> {
         flux: impl Fn(usize) -> S,
     ) -> S {
         /// Rounding of a temperature, by which enthalpies may differ [K].
-        const ROUNDING: f64 = 1e-14;
+        const ROUNDING: ByPrecision = ByPrecision { double: 1e-14, single: 1e-5 };
         let mut largest = S::zero();
         for layer in &self.layers {
             for i in layer.cells.clone() {
                 let (held, old) = (&storage[i], &self.points[i]);
                 let new = wall.pcm[layer.law].at(held.reference + held.change, &memory[i]);
                 let enthalpy = (new.enthalpy - held.at_solution()).abs();
-                let rounding = new.capacity.max(held.capacity).scale(ROUNDING);
+                let rounding = new.capacity.max(held.capacity).scale(ROUNDING.of::<S>());
                 let conductivity = new.conductivity - old.conductivity - old.conductivity_slope * held.change;
                 let heat = flux(i).abs().max(flux(i + 1).abs());
                 let flow = (conductivity * heat / old.conductivity).abs();

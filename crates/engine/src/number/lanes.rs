@@ -2,7 +2,8 @@
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::number::elementary::{Bits, cos, logistic, sin};
+use crate::number::elementary::double::logistic;
+use crate::number::elementary::{Bits, cos, sin};
 use crate::number::macros::{add_assign, elementary_functions};
 use crate::number::real::{Logistic, Mask, Real};
 
@@ -16,6 +17,11 @@ pub struct Lanes<const N: usize>(pub [f64; N]);
 pub struct LaneMask<const N: usize>([bool; N]);
 
 impl<const N: usize> Lanes<N> {
+    /// The first numbers of a slice.
+    #[inline(always)]
+    pub fn of(numbers: &[f64]) -> Self {
+        Self(core::array::from_fn(|lane| numbers[lane]))
+    }
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self(core::array::from_fn(|i| f(self.0[i])))
@@ -96,6 +102,10 @@ impl<const N: usize> Real for Lanes<N> {
         self.0[lane]
     }
     #[inline(always)]
+    fn of_lanes(number: impl Fn(usize) -> f64) -> Self {
+        Self(core::array::from_fn(number))
+    }
+    #[inline(always)]
     fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
         let found = self.0.map(find);
         core::array::from_fn(|k| Self(core::array::from_fn(|lane| found[lane][k])))
@@ -105,7 +115,7 @@ impl<const N: usize> Real for Lanes<N> {
         self.map(f64::sqrt)
     }
     // One copy only: inlining multiplies compile time.
-    elementary_functions!(never: exp, ln, inverse_cbrt);
+    elementary_functions!(never double: exp, ln, inverse_cbrt);
     #[inline(always)]
     fn logistic(self) -> Logistic<Self> {
         logistic(self)

@@ -12,12 +12,12 @@ macro_rules! add_assign {
     };
 }
 
-/// Methods that are functions of one number in [`elementary`](super::elementary).
+/// Methods that are functions of one number in [`elementary`](super::elementary), in a precision.
 macro_rules! elementary_functions {
-    ($inline:ident: $($function:ident),*) => {$(
+    ($inline:ident $precision:ident: $($function:ident),*) => {$(
         #[inline($inline)]
         fn $function(self) -> Self {
-            $crate::number::elementary::$function(self)
+            $crate::number::elementary::$precision::$function(self)
         }
     )*};
 }

@@ -1,9 +1,9 @@
 //! The root of a function of one number, with its derivatives.
 
-use super::real::Real;
+use super::real::{ByPrecision, Real};
 
 /// Half of the distance between the points of a slope, relative to the larger of one and the place.
-const WIDTH: f64 = 1e-5;
+const WIDTH: ByPrecision = ByPrecision { double: 1e-5, single: 5e-3 };
 
 /// Root of a falling function between two limits, by Newton's method with slopes from differences.
 ///
@@ -18,7 +18,7 @@ pub(crate) fn falling_root<S: Real>(
     let mut at = start;
     for _ in 0..iterations {
         let fixed = at.fixed();
-        let width = fixed.abs().min(S::one()).max(S::constant(1e-3)).scale(WIDTH);
+        let width = fixed.abs().min(S::one()).max(S::constant(1e-3)).scale(WIDTH.of::<S>());
         let slope = (excess(fixed + width, true) - excess(fixed - width, true)) / (width + width);
         let slope = slope.min(S::constant(-1e-9));
         at = (at - excess(at, false) / slope).max(low).min(high);

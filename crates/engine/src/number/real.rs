@@ -81,6 +81,8 @@ pub trait Real:
     /// True when the number carries derivatives. (Steps are followed along known solutions; where tests make a whole run of such
     /// numbers, to compare with that, Newton's method adds one iteration, so that derivatives converge too.)
     const DERIVATIVES: bool;
+    /// Whether it has single precision.
+    const SINGLE: bool = false;
     /// How many neighbouring numbers of an array are computed at once, see [`Chunk`].
     const CHUNK: usize = 1;
     /// Whether [`Self::CHUNK`] of them fit into one or two registers, so that a row of a matrix can stay in registers.
@@ -100,6 +102,11 @@ pub trait Real:
     #[inline(always)]
     fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
         find(self.lane(0)).map(Self::constant)
+    }
+    /// Numbers by lane. (Without derivatives, this is for numbers of one lane and for lanes in registers.)
+    #[inline(always)]
+    fn of_lanes(number: impl Fn(usize) -> f64) -> Self {
+        Self::constant(number(0))
     }
     /// The value alone, without derivatives.
     #[inline(always)]
@@ -121,7 +128,7 @@ pub trait Real:
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Exponential; the argument is clamped to \[-708, 709\].
+    /// Exponential; the argument is clamped to \[-708, 709\], in single precision to \[-87, 88\].
     #[must_use]
     fn exp(self) -> Self;
     /// Natural logarithm of a positive normal number.
@@ -213,6 +220,21 @@ pub trait Real:
     fn pow4(self) -> Self {
         let square = self * self;
         square * square
+    }
+}
+
+/// A tolerance or a step that depends on the rounding of numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ByPrecision {
+    pub(crate) double: f64,
+    pub(crate) single: f64,
+}
+
+impl ByPrecision {
+    /// The one for a kind of numbers.
+    #[inline(always)]
+    pub(crate) fn of<S: Real>(self) -> f64 {
+        if const { S::SINGLE } { self.single } else { self.double }
     }
 }
 

@@ -338,7 +338,11 @@ fn nusselt_at_90<S: Real>(rayleigh: S, [factor, onset]: [S; 2]) -> S {
     let exponent = choose(2.298_475_5, 0.4134, 1.0 / 3.0);
     let gain = choose(1.759_667_8e-10, 0.028_154, 0.067_383_8);
     let core = choose(1.0, 0.0, 0.0) + (logarithm * exponent).exp() * gain;
-    if onset.lt(rayleigh).any() { core.max(factor * logarithm.scale(0.272).exp()) } else { core }
+    let circulates = onset.lt(rayleigh);
+    if !circulates.any() {
+        return core;
+    }
+    S::select(circulates, core.max(factor * logarithm.scale(0.272).exp()), core)
 }
 
 /// 60 deg, `max(Nu1, Nu2)`: `Nu1 = [1 + (0.0936 Ra^0.314/(1 + G))^7]^1/7`, `G = 0.5/[1 + (Ra/3160)^20.6]^0.1`;

@@ -6,10 +6,10 @@
 
 use std::collections::VecDeque;
 
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 
 /// Part of the square of a change that must not lie in the space of newer changes: otherwise it says nothing new, only round-off.
-const NEW_PART: f64 = 1e-10;
+const NEW_PART: ByPrecision = ByPrecision { double: 1e-10, single: 1e-4 };
 
 /// What is known of a map from the last iterates.
 #[derive(Debug, Clone)]
@@ -95,7 +95,7 @@ impl<S: Real> Anderson<S> {
                 shares[i] = shares[i] - entry * shares[k];
                 lower[i][k] = entry;
             }
-            let new = S::constant(NEW_PART).lt(pivot);
+            let new = S::constant(NEW_PART.of::<S>()).lt(pivot);
             inverse[i] = S::select(new, S::one() / pivot, S::zero());
         }
         for i in (0..count).rev() {

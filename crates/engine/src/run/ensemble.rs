@@ -1,7 +1,8 @@
 //! Ensembles: members in lanes, packs of members on threads.
 //!
 //! A member's bits do not depend on its neighbours, the lane width or the number of threads. A pack takes as long as some four
-//! members one after the other (`docs/speed.md`): fewer members than that run by themselves, as all do on machines without registers for lanes.
+//! members one after the other (`docs/speed.md`): fewer members than that run by themselves, as all do on machines without registers for
+//! lanes. In single precision the members of a short pack stay in lanes: alone they would have other bits.
 
 use rayon::prelude::*;
 
@@ -9,7 +10,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
-use crate::number::simd::{LaneTask, Level, WIDTH, run};
+use crate::number::simd::{LaneTask, Level, SINGLE_WIDTH, WIDTH, run, run_single};
 use crate::run::march::march_in;
 use crate::run::options::Options;
 use crate::step::control::RunControl;
@@ -17,6 +18,28 @@ use crate::weather::conditions::Weather;
 
 /// Members behind the last full pack that run by themselves.
 const FEW: usize = 3;
+/// Relative residual of the energy balance from which a member in single precision is run again in double precision [-]. Rounding alone
+/// gives some 1e-6.
+const CLOSES: f64 = 1e-4;
+
+/// Precision of the numbers of an ensemble.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Precision {
+    /// Eight members in the lanes of a pack.
+    Double,
+    /// Sixteen members.
+    Single,
+}
+
+impl Precision {
+    /// Members in a pack.
+    fn width(self) -> usize {
+        match self {
+            Self::Double => WIDTH,
+            Self::Single => SINGLE_WIDTH,
+        }
+    }
+}
 
 /// Results of an ensemble, by member.
 #[derive(Debug)]
@@ -46,6 +69,33 @@ pub fn ensemble(
     options: &Options,
     control: &RunControl,
 ) -> Result<Ensemble, EngineError> {
+    run_all(Precision::Double, plan, numbers, forcing, options, control)
+}
+
+/// Runs members in single precision, sixteen in a pack, to screen many of them: results differ from those of [`ensemble`] by rounding,
+/// and energy balances close within it only. Members whose iteration fails, or whose energy balance does not close, run again alone in
+/// double precision; so do all on machines without registers for lanes.
+///
+/// # Errors
+/// As those of [`ensemble`].
+pub fn screening(
+    plan: &Plan,
+    numbers: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    control: &RunControl,
+) -> Result<Ensemble, EngineError> {
+    run_all(Precision::Single, plan, numbers, forcing, options, control)
+}
+
+fn run_all(
+    precision: Precision,
+    plan: &Plan,
+    numbers: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    control: &RunControl,
+) -> Result<Ensemble, EngineError> {
     let width = plan.description.parameters.len();
     if width == 0 || !numbers.len().is_multiple_of(width) {
         return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
@@ -59,10 +109,12 @@ pub fn ensemble(
         closure: vec![f64::NAN; members],
         failures: Vec::new(),
     };
-    let few = if members % WIDTH <= FEW { members % WIDTH } else { 0 };
+    let lanes = precision.width();
+    let alone = precision == Precision::Double && members % lanes <= FEW;
+    let few = if alone { members % lanes } else { 0 };
     let (in_packs, alone) = result.closure.split_at_mut(members - few);
     let (mut first, mut rest) = (0, &mut result.records[..]);
-    let packs = in_packs.chunks_mut(WIDTH).chain(alone.chunks_mut(1)).map(|closure| {
+    let packs = in_packs.chunks_mut(lanes).chain(alone.chunks_mut(1)).map(|closure| {
         let records;
         (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
         first += closure.len();
@@ -72,8 +124,10 @@ pub fn ensemble(
     let failures: Result<Vec<_>, EngineError> = packs
         .into_par_iter()
         .map(|(first, mut target)| {
-            let members = &numbers[first * width..(first + target.closure.len()) * width];
-            let failed = run_pack(level, plan, members, &weather, options, control, &mut target)?;
+            let members = target.closure.len();
+            let numbers = &numbers[first * width..(first + members) * width];
+            let pack = Pack { plan, numbers, members, weather: &weather, options, control };
+            let failed = pack.run_into(level, precision, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
@@ -88,7 +142,23 @@ struct Target<'a> {
     row: usize,
 }
 
+impl Target<'_> {
+    /// Writes the records of a pack, one after the other, and the closure of each member.
+    fn write<S: Real>(&mut self, records: &[S], closure: S) {
+        let mut rows: Vec<_> = self.records.chunks_mut(self.row.max(1)).collect();
+        for (k, record) in records.iter().enumerate() {
+            for (member, row) in rows.iter_mut().enumerate() {
+                row[k] = record.lane(member);
+            }
+        }
+        for (member, own) in self.closure.iter_mut().enumerate() {
+            *own = closure.lane(member);
+        }
+    }
+}
+
 /// A pack to be run in lanes.
+#[derive(Clone, Copy)]
 struct Pack<'a, 'w> {
     plan: &'a Plan,
     numbers: &'a [f64],
@@ -98,64 +168,96 @@ struct Pack<'a, 'w> {
     control: &'a RunControl,
 }
 
-impl LaneTask for Pack<'_, '_> {
-    /// Records and closure of each member; none for one whose iteration failed.
-    type Output = Result<Vec<Option<(Vec<f64>, f64)>>, EngineError>;
+/// A pack, and where it writes.
+struct InLanes<'t, 'a, 'w> {
+    pack: Pack<'a, 'w>,
+    target: &'t mut Target<'a>,
+}
 
-    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output {
-        let width = self.plan.description.parameters.len();
-        let lanes: Vec<S> = (0..width)
-            // A short pack repeats its last member.
-            .map(|p| pack(core::array::from_fn(|lane| self.numbers[lane.min(self.members - 1) * width + p])))
-            .collect();
-        let run = march_in(self.plan, &lanes, self.weather, self.options, self.control)?;
+impl LaneTask for InLanes<'_, '_, '_> {
+    /// Members that have no results yet.
+    type Output = Result<Vec<usize>, EngineError>;
+
+    fn run<S: Real>(self, pack: impl Fn(&[f64]) -> S + Copy) -> Self::Output {
+        let Pack { plan, numbers, members, weather, options, control } = self.pack;
+        let width = plan.description.parameters.len();
+        // A short pack repeats its last member.
+        let of = |p: usize| (0..S::LANES).map(move |lane| numbers[lane.min(members - 1) * width + p]);
+        let lanes: Vec<S> = (0..width).map(|p| pack(&of(p).collect::<Vec<_>>())).collect();
+        let run = march_in(plan, &lanes, weather, options, control)?;
         let closure = run.ledger.worst_closure();
-        let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
-        Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
+        self.target.write(&run.records, closure);
+        let closed = closure.lt(S::constant(CLOSES)) | S::Mask::splat(!S::SINGLE);
+        let lost = |lane: usize| run.failed.lane(lane) || !closed.lane(lane);
+        Ok((0..members).filter(|&member| lost(member)).collect())
     }
 
     fn without_lanes(self) -> Self::Output {
-        Ok(vec![None; self.members])
+        Ok((0..self.pack.members).collect())
     }
 }
 
-/// Runs a pack in lanes, or its only member alone; members whose iteration fails in lanes are run again alone.
-fn run_pack(
-    level: Level,
-    plan: &Plan,
-    numbers: &[f64],
-    weather: &Weather<'_>,
-    options: &Options,
-    control: &RunControl,
-    target: &mut Target<'_>,
-) -> Result<Vec<(usize, EngineError)>, EngineError> {
-    let width = plan.description.parameters.len();
-    let members = target.closure.len();
-    let mut failures = Vec::new();
-    let none = vec![None; members];
-    let results = if members == 1 {
-        none
-    } else {
-        match run(level, Pack { plan, numbers, members, weather, options, control }) {
-            Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => none,
-            other => other?,
-        }
-    };
-    for (member, result) in results.into_iter().enumerate() {
-        let alone = || {
-            let numbers = &numbers[member * width..(member + 1) * width];
-            march_in(plan, numbers, weather, options, control)
-                .map(|run| (run.records, run.ledger.worst_closure()))
-        };
-        match result.map_or_else(alone, Ok) {
-            Ok((records, closure)) => {
-                target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&records);
-                target.closure[member] = closure;
+impl<'a> Pack<'a, '_> {
+    /// Runs the pack in lanes, or its only member alone; members without results in lanes are run again alone.
+    fn run_into(
+        self,
+        level: Level,
+        precision: Precision,
+        target: &mut Target<'a>,
+    ) -> Result<Vec<(usize, EngineError)>, EngineError> {
+        let left = match self.run_in_lanes(level, precision, target) {
+            Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => {
+                (0..self.members).collect()
             }
-            Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
-            Err(error) => failures.push((member, error)),
+            other => other?,
+        };
+        let mut failures = Vec::new();
+        for member in left {
+            match self.run_alone(member, target) {
+                Ok(()) => {}
+                Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
+                Err(error) => failures.push((member, error)),
+            }
+        }
+        self.control.count(self.members);
+        Ok(failures)
+    }
+
+    /// Runs the pack in lanes. Gives the members that have no results.
+    fn run_in_lanes(
+        self,
+        level: Level,
+        precision: Precision,
+        target: &mut Target<'a>,
+    ) -> Result<Vec<usize>, EngineError> {
+        let task = InLanes { pack: self, target };
+        match precision {
+            Precision::Double if self.members == 1 => task.without_lanes(),
+            Precision::Double => run(level, task),
+            Precision::Single => run_single(level, task),
         }
     }
-    control.count(members);
-    Ok(failures)
+
+    /// Runs a member by itself. Its results are NaN where that fails.
+    fn run_alone(self, member: usize, target: &mut Target<'_>) -> Result<(), EngineError> {
+        let width = self.plan.description.parameters.len();
+        let numbers = &self.numbers[member * width..(member + 1) * width];
+        let found = march_in(self.plan, numbers, self.weather, self.options, self.control);
+        let (records, closure) = (
+            &mut target.records[member * target.row..(member + 1) * target.row],
+            &mut target.closure[member],
+        );
+        match found {
+            Ok(run) => {
+                records.copy_from_slice(&run.records);
+                *closure = run.ledger.worst_closure();
+                Ok(())
+            }
+            Err(error) => {
+                records.fill(f64::NAN);
+                *closure = f64::NAN;
+                Err(error)
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
 use crate::run::periodic_start::PeriodicStart;
@@ -10,6 +10,9 @@ use crate::step::control::RunControl;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
+
+/// Least change of a temperature between two repetitions that is asked for [K]: in single precision, smaller ones are rounding.
+const LEAST: ByPrecision = ByPrecision { double: 0.0, single: 2e-3 };
 
 /// Repeats the first period until every lane has converged; such a lane keeps its state. Gives the number of repetitions
 /// and the largest change in the last one [K].
@@ -22,6 +25,7 @@ pub(super) fn warm_up<'a, S: Real>(
     observe: &mut impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
+    let tolerance = warmup.tolerance.max(LEAST.of::<S>());
     let mut active = S::Mask::splat(true);
     let mut change_left = S::zero();
     let mut known: Option<PeriodicStart<S>> = None;
@@ -37,13 +41,13 @@ pub(super) fn warm_up<'a, S: Real>(
         let change = next.distance(state);
         let reached = active;
         change_left = S::select(active, change, change_left);
-        active = active & !stepper.failed() & S::constant(warmup.tolerance).lt(change);
+        active = active & !stepper.failed() & S::constant(tolerance).lt(change);
         if !active.any() {
             state.take(reached, &next);
             return Ok((cycle, change_left));
         }
         let start = if let Some(known) = &mut known {
-            known.next(&stepper.model, state, &next, change, warmup.tolerance)
+            known.next(&stepper.model, state, &next, change, tolerance)
         } else {
             known = Some(PeriodicStart::new(&stepper.model, state, &next));
             next.clone()
@@ -53,5 +57,5 @@ pub(super) fn warm_up<'a, S: Real>(
         stepper.guess.move_by(&next, state);
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
-    Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
+    Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance })
 }

@@ -46,7 +46,7 @@ pub(crate) struct StagePlace {
 impl StagePlace {
     /// The stage that brings surfaces into balance: too short for anything to be stored.
     pub(crate) fn instant() -> Self {
-        Self { stage: 0, length: INSTANT, ratio: 0.0 }
+        Self { stage: 0, length: INSTANT.double, ratio: 0.0 }
     }
 }
 

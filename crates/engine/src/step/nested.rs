@@ -27,7 +27,7 @@ impl<S: Real> StageSolver<'_, S> {
         let model = stage.model;
         let state = State { memory: complete_memory(model, stage.state), ..stage.state.clone() };
         let stage = &Stage { state: &state, ..*stage };
-        let enough = S::constant(TOLERANCE);
+        let enough = S::constant(TOLERANCE.of::<S>());
         let mut outer =
             Unknowns { cells: state.cells.clone(), surfaces: state.surfaces.clone(), air: state.air.clone() };
         self.iterate.copy_from(&outer);
@@ -56,7 +56,7 @@ impl<S: Real> StageSolver<'_, S> {
         for _ in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, Some(outer));
             let change = self.change(stage.model);
-            if change.lt(S::constant(TOLERANCE)).any() {
+            if change.lt(S::constant(TOLERANCE.of::<S>())).any() {
                 return Some(change);
             }
             self.iterate.copy_from(&self.solution);

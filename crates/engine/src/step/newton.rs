@@ -10,7 +10,7 @@ use crate::linear::building_system::BuildingSystem;
 use crate::linear::laws::StageInputs;
 use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::control::RunControl;
 use crate::step::linearisation::Linearisation;
 use crate::step::remainder::NonlinearLaws;
@@ -18,7 +18,7 @@ use crate::step::scheme::Tableau;
 use crate::step::stage::{Stage, StageStart};
 
 /// Largest change of a temperature in the last iteration, where many have not brought the residual down [K].
-pub(super) const TOLERANCE: f64 = 1e-6;
+pub(super) const TOLERANCE: ByPrecision = ByPrecision { double: 1e-6, single: 1e-4 };
 /// Iterations after which every third moves half of the step only, so that the iteration leaves a cycle.
 pub(super) const PATIENCE: usize = 20;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
@@ -224,7 +224,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         if iteration < PATIENCE {
             return small;
         }
-        small | (change.lt(S::constant(TOLERANCE)) & ThickWalls::accepts(self.lacked))
+        small | (change.lt(S::constant(TOLERANCE.of::<S>())) & ThickWalls::accepts(self.lacked))
     }
 
     /// Where what the tangents leave out at the solution is accepted, see [`NonlinearLaws::accepts`].

@@ -106,7 +106,8 @@ impl<S: Real> NonlinearLaws<S> {
         for &surface in &self.outdoors {
             sun = sun.max(stage.conditions.surfaces[surface].solar);
         }
-        self.limit = Limit::new((sun + S::constant(LEAST_FLOW)).scale(stage.tableau.tolerance.remainder));
+        self.limit =
+            Limit::new((sun + S::constant(LEAST_FLOW)).scale(stage.tableau.tolerance.remainder.of::<S>()));
     }
 
     /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].

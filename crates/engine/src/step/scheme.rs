@@ -10,6 +10,7 @@
 //! doi:10.1007/978-3-642-05221-7.
 
 use crate::linear::wall::StorageRule;
+use crate::number::real::ByPrecision;
 
 /// Time-stepping scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,9 +46,9 @@ pub(crate) struct Tableau {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tolerance {
     /// Heat that the tangents of the laws leave out, over the largest heat flow density [-].
-    pub(crate) remainder: f64,
+    pub(crate) remainder: ByPrecision,
     /// How far the ideal loads that are missing would move the air [K]: the last stage supplies them.
-    pub(crate) load: f64,
+    pub(crate) load: ByPrecision,
     /// Whether the first solution of a stage may be the last.
     pub(crate) first: bool,
 }
@@ -56,9 +57,17 @@ pub(crate) struct Tolerance {
 const SDIRK2: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
 
 /// Tight enough for difference quotients of results.
-const TIGHT: Tolerance = Tolerance { remainder: 1e-9, load: 1e-5, first: false };
+const TIGHT: Tolerance = Tolerance {
+    remainder: ByPrecision { double: 1e-9, single: 1e-5 },
+    load: ByPrecision { double: 1e-5, single: 2e-3 },
+    first: false,
+};
 /// Temperatures within some thousandths of a kelvin (docs/speed.md).
-const LOOSE: Tolerance = Tolerance { remainder: 1e-3, load: 1e-2, first: true };
+const LOOSE: Tolerance = Tolerance {
+    remainder: ByPrecision { double: 1e-3, single: 1e-3 },
+    load: ByPrecision { double: 1e-2, single: 1e-2 },
+    first: true,
+};
 
 const TWO_STAGES: Tableau = Tableau {
     diagonal: SDIRK2,

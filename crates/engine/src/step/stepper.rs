@@ -9,7 +9,7 @@ use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::vent_network::VentNetwork;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::control::RunControl;
 use crate::step::guess::Guess;
 use crate::step::halving::{Part, StepParts};
@@ -24,8 +24,8 @@ use crate::step::state::{Initial, State};
 use crate::step::vapour::balances::VapourBalances;
 use crate::weather::conditions::{Instant, Weather};
 
-/// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored.
-pub(super) const INSTANT: f64 = 1e-3;
+/// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored, by more than rounding.
+pub(super) const INSTANT: ByPrecision = ByPrecision { double: 1e-3, single: 0.1 };
 
 /// Computes the steps of a building one by one.
 #[derive(Debug, Clone)]
@@ -114,7 +114,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.control_vents(state, now.row, 0.0);
                 self.drive_vents(state);
                 self.begin_step(state, 0.0);
-                self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
+                self.solve_stage(state, INSTANT.of::<S>(), (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
                 self.known.accept(Part::whole(0), state);
                 self.weather.average_instant(&self.model);

@@ -140,7 +140,8 @@ fn source_of<S: Real>(coefficients: &Coefficients<S>, index: SurfaceId) -> Optio
         (None, Boundary::Outdoors(outdoors)) if surface.exposure.sun => {
             let (plane, ground) = (&outdoors.plane, coefficients.ground_reflectance);
             let first = |number: S| S::constant(number.lane(0));
-            Some(if plane.same(&plane.map(first)) && same(ground, first(ground)) {
+            // In single precision a plain number has other roundings, by which a member would depend on its neighbours.
+            Some(if !S::SINGLE && plane.same(&plane.map(first)) && same(ground, first(ground)) {
                 IrradianceSource::Uniform(plane.map(|number| number.lane(0)), ground.lane(0), index)
             } else {
                 IrradianceSource::Varied(*plane, index)

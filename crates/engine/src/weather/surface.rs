@@ -2,14 +2,14 @@
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed};
 use crate::building::ids::SurfaceId;
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Real};
 use crate::physics::convection::Forced;
 use crate::weather::instant::Instant;
 
 /// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
 /// the surface counts as windward: its cosine is zero but for round-off, so the limit lies 6e-8 deg behind the surface. (Walton
 /// 1983 takes 100 deg off the normal as the limit; the windward coefficient has no basis beyond 90 deg.)
-const LEEWARD_COSINE: f64 = -1e-9;
+const LEEWARD_COSINE: ByPrecision = ByPrecision { double: -1e-9, single: -1e-6 };
 /// Surfaces within about 11 deg of horizontal are always windward (Walton 1983).
 const FLAT: f64 = 0.98;
 
@@ -38,7 +38,7 @@ pub(crate) fn forced<S: Real>(
     };
     let [north, east] = now.wind_from;
     let facing = outdoors.heading[0].scale(north) + outdoors.heading[1].scale(east);
-    let onto = S::constant(LEEWARD_COSINE).lt(facing);
+    let onto = S::constant(LEEWARD_COSINE.of::<S>()).lt(facing);
     let flat = S::constant(FLAT).lt(surface.upward.abs());
     convection.forced(&now.wind, onto | flat)
 }

@@ -28,6 +28,7 @@ mod order_with_windows;
 mod periodic_start;
 mod properties;
 mod rooms_side_by_side;
+mod single_precision;
 mod slopes_of_stages;
 mod stepwise;
 mod streamed;

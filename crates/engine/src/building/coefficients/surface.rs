@@ -12,6 +12,7 @@ use crate::building::plan::Plan;
 use crate::input::description::{Exposure, Facing, OutdoorLongwave, ParamId, Side, Surface};
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::input::values::Values;
+use crate::number::elementary::{cos_of_degrees, sin_of_degrees};
 use crate::number::real::Real;
 use crate::physics::convection::{Placement, SurfaceConvection};
 use crate::physics::horizon;
@@ -87,10 +88,9 @@ impl<S: Real> SurfaceCoefficients<S> {
         let wall = &plan.description.surfaces[index.wall()];
         let side = plan.side(index);
         let degrees = values.get(wall.tilt);
-        let tilt = radians(degrees);
         let placement = Placement {
             area: net_area(wall, values),
-            upward: outward::<S>(index) * tilt.cos(),
+            upward: outward::<S>(index) * cos_of_degrees(degrees),
             wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
             inclination: degrees.min(S::constant(180.0) - degrees),
             density: air::density(plan, values),
@@ -111,10 +111,6 @@ impl<S: Real> SurfaceCoefficients<S> {
 /// 1 for an outside surface, whose normal has the tilt and azimuth of the description; -1 for an inside surface.
 fn outward<S: Real>(surface: SurfaceId) -> S {
     if surface.is_outside() { S::one() } else { -S::one() }
-}
-
-fn radians<S: Real>(degrees: S) -> S {
-    degrees.scale(core::f64::consts::PI / 180.0)
 }
 
 fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
@@ -175,10 +171,10 @@ fn plane<S: Real>(
     side: &Side,
     values: &Values<'_, S>,
 ) -> (Plane<S>, [S; 2]) {
-    let (tilt, azimuth) = (radians(values.get(wall.tilt)), radians(values.get(wall.azimuth)));
+    let (tilt, azimuth) = (values.get(wall.tilt), values.get(wall.azimuth));
     let outward = outward::<S>(index);
-    let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
-    let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
+    let (sin_tilt, cos_tilt) = (sin_of_degrees(tilt), cos_of_degrees(tilt) * outward);
+    let heading = [cos_of_degrees(azimuth) * outward, sin_of_degrees(azimuth) * outward];
     let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
     let normal = [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt];
     (Plane { normal, sin_tilt, sky_view, ground_view: (S::one() - cos_tilt).scale(0.5) }, heading)

@@ -8,11 +8,11 @@
 //! Source: Hestenes & Stiefel (1952), J. Res. Nat. Bur. Standards 49(6), 409-436, doi:10.6028/jres.049.044.
 
 use crate::number::dense::solve_many;
-use crate::number::real::{Chunk, ChunkTask, Mask, Real};
+use crate::number::real::{ByPrecision, Chunk, ChunkTask, Mask, Real};
 use crate::number::simd::WIDTH;
 
 /// Squared norm of the residual, relative to that of the right-hand side, at which a solution is accepted: round-off.
-const ROUND_OFF: f64 = 1e-32;
+const ROUND_OFF: ByPrecision = ByPrecision { double: 1e-32, single: 1e-14 };
 /// Iterations that are always allowed; then as many as half of the unknowns before the equations are eliminated instead.
 const LEAST_ITERATIONS: usize = 100;
 /// Right-hand sides that are solved together: the matrix is read once for all of them.
@@ -129,7 +129,7 @@ fn iterate<S: Real, V: Chunk<S>, const K: usize>(
         let lines = k * line..(k + 1) * line;
         let (residual, direction) = (&residuals[lines.clone()], &mut directions[lines]);
         progress.left = turn::<S, V>(residual, &inverse, direction, |_| S::zero());
-        progress.accepted = progress.left.scale(ROUND_OFF);
+        progress.accepted = progress.left.scale(ROUND_OFF.of::<S>());
         progress.open = progress.accepted.lt(progress.left);
     }
     for _ in 0..most {

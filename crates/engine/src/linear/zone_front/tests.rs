@@ -290,11 +290,11 @@ fn all_fronts<S: Real>() -> Vec<S> {
 
 impl LaneTask for AllFronts {
     type Output = Vec<u64>;
-    fn run<S: Real>(self, _: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<u64> {
+    fn run<S: Real>(self, _: impl Fn(&[f64]) -> S + Copy) -> Vec<u64> {
         S::vectorised(all_fronts::<S>).iter().map(|value| value.lane(WIDTH - 1).to_bits()).collect()
     }
     fn without_lanes(self) -> Vec<u64> {
-        self.run(Lanes)
+        self.run(Lanes::<WIDTH>::of)
     }
 }
 

@@ -68,4 +68,5 @@ operations! {
         [0, 1].map(|i| _mm256_castsi256_pd(_mm256_srli_epi64::<BY>(_mm256_castpd_si256(a[i]))))
     }
 }
-super::eight::eight!(super::token::Avx2, "avx2");
+super::registers::registers!(Eight, EightMask of WIDTH f64: super::token::Avx2, "avx2", double);
+super::registers::double_bits!(Eight);

@@ -51,4 +51,5 @@ operations! {
         _mm512_castsi512_pd(_mm512_srli_epi64::<BY>(_mm512_castpd_si512(a)))
     }
 }
-super::eight::eight!(super::token::Avx512, "avx512f");
+super::registers::registers!(Eight, EightMask of WIDTH f64: super::token::Avx512, "avx512f", double);
+super::registers::double_bits!(Eight);

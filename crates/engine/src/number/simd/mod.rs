@@ -1,10 +1,10 @@
-//! Eight numbers at once in the vector registers of the machine.
+//! Eight numbers at once in the vector registers of the machine, or sixteen in single precision.
 //!
-//! The only module with `unsafe` code. Each type `Eight` below holds eight numbers and computes with one set of vector
-//! instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every
-//! level gives the bits of a plain `f64`.
+//! The only module with `unsafe` code. Each type `Eight` or `Sixteen` below holds that many numbers and computes with one set of
+//! vector instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every
+//! level gives the bits of a plain `f64`, or of a plain `f32`.
 //!
-//! Two kinds of work use them: a [`LaneTask`] computes eight members of an ensemble, a [`ChunkTask`] eight neighbouring
+//! Two kinds of work use them: a [`LaneTask`] computes eight or sixteen members of an ensemble, a [`ChunkTask`] eight neighbouring
 //! numbers of one member.
 
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
@@ -13,10 +13,16 @@ mod array;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
+mod avx2_single;
+#[cfg(target_arch = "x86_64")]
 mod avx512;
-mod eight;
+#[cfg(target_arch = "x86_64")]
+mod avx512_single;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+#[cfg(target_arch = "aarch64")]
+mod neon_single;
+mod registers;
 mod token;
 
 #[cfg(test)]
@@ -29,13 +35,15 @@ use crate::number::real::{ChunkTask, Real};
 
 /// Members in one pack.
 pub const WIDTH: usize = 8;
+/// Members in one pack in single precision.
+pub const SINGLE_WIDTH: usize = 16;
 
-/// Work on eight members of an ensemble, with lanes of any kind.
+/// Work on members of an ensemble, with lanes of any kind.
 pub trait LaneTask {
     /// Its result.
     type Output;
-    /// Does the work with one kind of lanes, which `pack` makes.
-    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output;
+    /// Does the work with one kind of lanes, which `pack` makes of [`Real::LANES`] numbers.
+    fn run<S: Real>(self, pack: impl Fn(&[f64]) -> S + Copy) -> Self::Output;
     /// What is given where the machine has no registers for lanes, so that each member must be computed by itself.
     fn without_lanes(self) -> Self::Output;
 }
@@ -50,6 +58,19 @@ pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
         #[cfg(target_arch = "aarch64")]
         Level::Neon(token) => task.run(move |numbers| neon::Eight::new(token, numbers)),
         // Compiled for arrays, all laws and solvers once more would be a seventh of the library, for machines without AVX2.
+        _ => task.without_lanes(),
+    }
+}
+
+/// Does a task on sixteen members in single precision with the registers of a level.
+pub fn run_single<T: LaneTask>(level: Level, task: T) -> T::Output {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(token) => task.run(move |numbers| avx512_single::Sixteen::new(token, numbers)),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(token) => task.run(move |numbers| avx2_single::Sixteen::new(token, numbers)),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(token) => task.run(move |numbers| neon_single::Sixteen::new(token, numbers)),
         _ => task.without_lanes(),
     }
 }

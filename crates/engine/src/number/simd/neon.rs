@@ -72,4 +72,5 @@ operations! {
         number(each!(i => vshrq_n_u64::<BY>(a[i])))
     }
 }
-super::eight::eight!(super::token::Neon, "neon");
+super::registers::registers!(Eight, EightMask of WIDTH f64: super::token::Neon, "neon", double);
+super::registers::double_bits!(Eight);

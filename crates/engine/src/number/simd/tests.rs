@@ -1,13 +1,8 @@
 //! Every level gives the bits of a plain number, for every operation.
 
-use super::{LaneTask, Level, WIDTH, in_chunks_at, run};
+use super::{LaneTask, Level, SINGLE_WIDTH, WIDTH, in_chunks_at, run, run_single};
 use crate::number::lanes::Lanes;
 use crate::number::real::{Chunk, ChunkTask, Mask, Real};
-
-/// A single number of a lane, by itself: what lanes are held to.
-fn alone(value: f64) -> f64 {
-    value
-}
 
 /// Numbers of many sizes, with zeros of both signs, subnormal numbers, infinities and no number at all.
 fn samples() -> Vec<[f64; WIDTH]> {
@@ -99,17 +94,18 @@ of!(Functions, functions);
 of!(Choices, choices);
 
 impl<F: Of> LaneTask for Bits<F> {
-    type Output = Vec<[u64; WIDTH]>;
+    type Output = Vec<Vec<u64>>;
 
-    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output {
-        let [x, y] = self.0.map(pack);
+    fn run<S: Real>(self, pack: impl Fn(&[f64]) -> S + Copy) -> Self::Output {
+        // In sixteen lanes the numbers stand twice.
+        let [x, y] = self.0.map(|numbers| pack(&numbers.repeat(S::LANES / WIDTH)));
         S::vectorised(|| self.1.of(x, y))
             .into_iter()
-            .map(|value| core::array::from_fn(|lane| bits(value.lane(lane))))
+            .map(|value| (0..S::LANES).map(|lane| bits(value.lane(lane))).collect())
             .collect()
     }
     fn without_lanes(self) -> Self::Output {
-        self.run(Lanes)
+        self.run(Lanes::<WIDTH>::of)
     }
 }
 
@@ -120,17 +116,28 @@ fn bits(value: f64) -> u64 {
 
 fn hold_to_plain_numbers<F: Of>(f: F, numbers: [[f64; WIDTH]; 2]) {
     for level in Level::available() {
-        for (k, lanes) in run(level, Bits(numbers, f)).iter().enumerate() {
-            for (lane, &found) in lanes.iter().enumerate() {
-                let [x, y] = numbers.map(|numbers| numbers[lane]);
-                let expected = f.of(alone(x), alone(y))[k];
-                assert_eq!(
-                    found,
-                    bits(expected),
-                    "{level:?}, operation {k} of {x} and {y}: {} is not {expected}",
-                    f64::from_bits(found)
-                );
-            }
+        hold_to::<f64>(f, numbers, &run(level, Bits(numbers, f)), level);
+        // Arrays have double precision only.
+        if level != Level::Array {
+            hold_to::<f32>(f, numbers, &run_single(level, Bits(numbers, f)), level);
+        }
+    }
+}
+
+/// Holds lanes to plain numbers of a kind.
+fn hold_to<P: Real>(f: impl Of, numbers: [[f64; WIDTH]; 2], found: &[Vec<u64>], level: Level) {
+    for (k, lanes) in found.iter().enumerate() {
+        assert!(lanes.len() == if P::SINGLE { SINGLE_WIDTH } else { WIDTH });
+        for (lane, &found) in lanes.iter().enumerate() {
+            let [x, y] = numbers.map(|numbers| P::constant(numbers[lane % WIDTH]));
+            let expected = f.of(x, y)[k].lane(0);
+            assert_eq!(
+                found,
+                bits(expected),
+                "{level:?}, {} lanes, operation {k} of {x:?} and {y:?}: {} is not {expected}",
+                lanes.len(),
+                f64::from_bits(found)
+            );
         }
     }
 }
@@ -160,26 +167,28 @@ struct Marks;
 impl LaneTask for Marks {
     type Output = ();
 
-    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) {
-        assert_eq!(S::LANES, WIDTH);
-        for marked in 0..WIDTH {
-            let below = pack(core::array::from_fn(|lane| if lane == marked { -1.0 } else { 1.0 }));
-            let mask = below.lt(S::zero());
+    fn run<S: Real>(self, pack: impl Fn(&[f64]) -> S + Copy) {
+        assert_eq!(S::LANES, if S::SINGLE { SINGLE_WIDTH } else { WIDTH });
+        for marked in 0..S::LANES {
+            let mut numbers = vec![1.0; S::LANES];
+            numbers[marked] = -1.0;
+            let mask = pack(&numbers).lt(S::zero());
             assert!(mask.any() && !(mask & !mask).any() && (mask | !mask).lane(0));
-            for lane in 0..WIDTH {
+            for lane in 0..S::LANES {
                 assert_eq!((mask.lane(lane), (!mask).lane(lane)), (lane == marked, lane != marked));
             }
         }
         assert!(!S::constant(f64::NAN).lt(S::one()).any() && !S::one().lt(S::constant(f64::NAN)).any());
     }
     fn without_lanes(self) {
-        self.run(Lanes);
+        self.run(Lanes::<WIDTH>::of);
     }
 }
 
 #[test]
 fn masks_of_all_levels_mark_their_lanes() {
     Level::available().for_each(|level| run(level, Marks));
+    Level::available().for_each(|level| run_single(level, Marks));
 }
 
 /// Neighbouring numbers, loaded, computed with and stored again; and which type did it.

@@ -13,6 +13,7 @@
 use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, any_power, cube_root};
 use super::wind::Forced;
+use crate::number::elementary::sin_of_degrees;
 use crate::number::real::{Mask, Real};
 use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY};
 
@@ -55,7 +56,7 @@ impl<S: Real> Iso15099<S> {
     pub(super) fn new(length: S, factor: S, surface: &Placement<S>) -> Self {
         let [conductivity, viscosity] = INDOOR_AIR;
         let degrees = surface.inclination;
-        let sine = degrees.scale(core::f64::consts::PI / 180.0).sin();
+        let sine = sin_of_degrees(degrees);
         let (level, flat) = (degrees.lt(S::constant(1.0)), degrees.lt(S::constant(15.0)));
         let heat = GRAVITY * AIR_SPECIFIC_HEAT / (INDOOR * viscosity * conductivity);
         // Ra over |d|, and h over the Nusselt number.

@@ -23,7 +23,16 @@ const MANY: usize = 64;
 ///
 /// `weights` holds `A_i F_ij` up to errors of closure; it is scaled symmetrically until every row sums to the
 /// surface's area, so that reciprocity and closure hold exactly at the areas of this run.
+///
+/// In double precision also where numbers have single precision: scales of a zone whose areas cannot close grow without bound.
 pub fn exchange_areas<S: Real>(areas: &[S], emissivities: &[S], weights: &[S]) -> Vec<S> {
+    if const { S::SINGLE } {
+        let of =
+            |lane: usize, numbers: &[S]| numbers.iter().map(|number| number.lane(lane)).collect::<Vec<_>>();
+        let of = |lane| exchange_areas(&of(lane, areas), &of(lane, emissivities), &of(lane, weights));
+        let found: Vec<Vec<f64>> = (0..S::LANES).map(of).collect();
+        return (0..weights.len()).map(|place| S::of_lanes(|lane| found[lane][place])).collect();
+    }
     let n = areas.len();
     let direct = direct_exchange_areas(areas, weights);
     let exchange = if n < MANY {
@@ -141,7 +150,7 @@ fn sums_of_rows<S: Real>(weights: &[S], scale: &[S], first: usize) -> [S; ROWS] 
 mod tests {
     use super::*;
     use crate::number::dual::Dual;
-    use crate::number::simd::{LaneTask, Level, WIDTH, run};
+    use crate::number::simd::{LaneTask, Level, run};
 
     /// Many surfaces, some of which do not see each other, and a black one.
     fn enclosure<S: Real>(n: usize) -> [Vec<S>; 3] {
@@ -176,7 +185,7 @@ mod tests {
 
     impl LaneTask for Both {
         type Output = Vec<u64>;
-        fn run<S: Real>(self, _: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<u64> {
+        fn run<S: Real>(self, _: impl Fn(&[f64]) -> S + Copy) -> Vec<u64> {
             both::<S>()
         }
         fn without_lanes(self) -> Vec<u64> {

@@ -22,7 +22,8 @@ pub struct Curves<S> {
 impl<S: Real> Curves<S> {
     /// Through units at angles rising from 0 to 90 deg.
     pub(super) fn new(angles: &[f64], units: &[Unit<S>]) -> Self {
-        let knots: Vec<f64> = angles.iter().rev().map(|angle| cosine(*angle)).collect();
+        // As they are in the numbers that are compared with them.
+        let knots: Vec<f64> = angles.iter().rev().map(|angle| S::constant(cosine(*angle)).lane(0)).collect();
         let count = units[0].len();
         let mut pieces = vec![[S::zero(); 4]; (knots.len() - 1) * count];
         for quantity in 0..count {

@@ -22,12 +22,13 @@
 use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
 use crate::number::line::Line;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::ideal_loads::limits::{Limits, TOLERANCE};
 use crate::step::ideal_loads::rises::Change;
 
-/// Conductance that holds an air, over the largest of those that act on it [-].
-const STIFFNESS: f64 = 1e3;
+/// Conductance that holds an air, over the largest of those that act on it [-]. The rounding of the air times this is heat that is not
+/// known.
+const STIFFNESS: ByPrecision = ByPrecision { double: 1e3, single: 1e2 };
 /// What acts on the air of a zone beside its storage, for each m2 of its surfaces [W/(m2 K)]: only its magnitude matters.
 const SURFACE_CONDUCTANCE: f64 = 10.0;
 /// Part of the heat that loads lack which the iteration may leave to the next sweep [-], and its largest number of
@@ -40,7 +41,7 @@ const MOST_SHARE: f64 = 1.0;
 /// Sweeps after which `C` is taken as diagonal.
 const DIAGONAL_SWEEPS: usize = 2;
 /// Changes of a load from which the diagonal is learned: those that move the air by more [K].
-const TELLING: f64 = 1e-3;
+const TELLING: ByPrecision = ByPrecision { double: 1e-3, single: 1e-2 };
 /// Allowance for what walls store in the largest number of the diagonal [-].
 const WALLS: f64 = 1.05;
 
@@ -160,7 +161,7 @@ impl<S: Real> HeldAirs<S> {
             let area = numbers.areas.iter().fold(S::zero(), |sum, &area| sum + area);
             let storage = numbers.capacity.scale(1.0 / length);
             air.conductance = storage + area.scale(SURFACE_CONDUCTANCE);
-            air.holding = air.conductance.max(self.flows[zone]).scale(STIFFNESS);
+            air.holding = air.conductance.max(self.flows[zone]).scale(STIFFNESS.of::<S>());
             air.carried = storage.scale(ratio);
             air.most_slope = 1.0 + WALLS * ratio;
             let first = S::one() + air.carried / air.conductance;
@@ -225,7 +226,7 @@ impl<S: Real> HeldAirs<S> {
     #[inline(always)]
     pub(super) fn write_changes(&self, active: S::Mask, changes: &mut [Change<S>]) {
         for (air, change) in self.airs.iter().zip(changes) {
-            let tells = air.conductance.scale(TELLING).lt(air.change.abs()) & active;
+            let tells = air.conductance.scale(TELLING.of::<S>()).lt(air.change.abs()) & active;
             *change = Change { load: air.change, tells, conductance: air.conductance };
         }
     }
@@ -413,7 +414,8 @@ impl<S: Real> HeldAir<S> {
     /// change, in active lanes.
     #[inline(always)]
     fn learn(&mut self, missing: S, active: S::Mask) {
-        let tells = self.conductance.scale(TELLING).lt(self.change.abs()) & self.mode.holds() & active;
+        let tells =
+            self.conductance.scale(TELLING.of::<S>()).lt(self.change.abs()) & self.mode.holds() & active;
         let change = S::select(tells, self.change, S::one());
         let slope = ((self.missing - missing) / change).max(S::one()).min(S::constant(self.most_slope));
         self.slope = S::select(tells, slope, self.slope);
@@ -444,7 +446,7 @@ impl<S: Real> HeldAir<S> {
         // An air that is not held is held from where it passes a set point: without load, or with more than it needs.
         let [cold, hot] = limits.asks(air);
         let idle = !S::zero().lt(load.abs());
-        let slack = S::constant(TOLERANCE);
+        let slack = S::constant(TOLERANCE.of::<S>());
         let enough = S::zero().lt(load) & (limits.set_points[0] + slack).lt(air);
         let enough_cooling = load.lt(S::zero()) & air.lt(limits.set_points[1] - slack);
         let begins: Mode<S> = Mode {

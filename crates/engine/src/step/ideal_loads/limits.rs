@@ -1,10 +1,10 @@
 //! Limits of an ideal load over a step: set points and capacities.
 
 use crate::building::coefficients::ZoneCoefficients;
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Real};
 
 /// Airs closer to their set points than this count as on them [K].
-pub(super) const TOLERANCE: f64 = 1e-8;
+pub(super) const TOLERANCE: ByPrecision = ByPrecision { double: 1e-8, single: 1e-4 };
 /// Magnitude of the set point without heating or cooling, which is never reached [degC].
 const NEVER: f64 = 1e6;
 
@@ -32,7 +32,7 @@ impl<S: Real> Limits<S> {
     /// Where an air asks for heating, and where for cooling.
     #[inline(always)]
     pub(super) fn asks(&self, air: S) -> [S::Mask; 2] {
-        let slack = S::constant(TOLERANCE);
+        let slack = S::constant(TOLERANCE.of::<S>());
         let cold = air.lt(self.set_points[0] - slack) & S::zero().lt(self.most[0]);
         let hot = (self.set_points[1] + slack).lt(air) & S::zero().lt(self.most[1]);
         [cold, hot]

@@ -88,7 +88,7 @@ impl<S: Real> IdealLoads<S> {
     pub(crate) fn new(model: &Model<'_, S>, unknowns: &Unknowns<S>, tableau: &Tableau) -> Self {
         let (zones, rows) = (&model.plan.ideal_loads, model.plan.rows());
         let zeros = |n: usize| vec![S::zero(); n];
-        let (count, stages, close) = (zones.len(), tableau.weights.len(), tableau.tolerance.load);
+        let (count, stages, close) = (zones.len(), tableau.weights.len(), tableau.tolerance.load.of::<S>());
         let nothing = Limits { set_points: [S::zero(); 2], most: [S::zero(); 2] };
         let kept = if count == 0 { 0 } else { stages };
         // Numbers with derivatives take the responses: slopes of loads follow from them without iteration.

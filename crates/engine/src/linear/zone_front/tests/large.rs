@@ -79,7 +79,7 @@ fn large_fronts<S: Real>() -> Vec<S> {
 
 impl LaneTask for LargeFronts {
     type Output = Vec<u64>;
-    fn run<S: Real>(self, _: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<u64> {
+    fn run<S: Real>(self, _: impl Fn(&[f64]) -> S + Copy) -> Vec<u64> {
         S::vectorised(large_fronts::<S>).iter().map(|value| value.lane(WIDTH - 1).to_bits()).collect()
     }
     fn without_lanes(self) -> Vec<u64> {
@@ -135,8 +135,8 @@ const RIGHTS: [f64; WIDTH] = [1.0, 1.0, 0.0, 1e-9, 0.0, 5.0, 1.0, -1.0];
 
 impl LaneTask for Lines {
     type Output = Vec<[u64; WIDTH]>;
-    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<[u64; WIDTH]> {
-        let all = [5, 1000].map(|most| lines(pack(PARTS), pack(RIGHTS), most));
+    fn run<S: Real>(self, pack: impl Fn(&[f64]) -> S + Copy) -> Vec<[u64; WIDTH]> {
+        let all = [5, 1000].map(|most| lines(pack(&PARTS), pack(&RIGHTS), most));
         let bits = |number: &S| core::array::from_fn(|lane| number.lane(lane).to_bits());
         all.iter().flat_map(|lines| lines.iter().map(bits).collect::<Vec<_>>()).collect()
     }

@@ -1,8 +1,8 @@
-//! Eight numbers in vector registers: the parts that are the same for all instruction sets.
+//! Numbers in vector registers: the parts that are the same for all instruction sets and both precisions.
 //!
-//! SAFETY of every call below: the operations may run only where the machine has their instructions. The type `Eight` of a
-//! module is private to [`simd`](super). Other code gets it as a type parameter only, from [`super::run`] and
-//! [`super::in_chunks`]. Both need the token that only detection makes ([`super::token`]). So code that has the type, and
+//! SAFETY of every call below: the operations may run only where the machine has their instructions. The types of a module are
+//! private to [`simd`](super). Other code gets them as a type parameter only, from [`super::run`], [`super::run_single`] and
+//! [`super::in_chunks`]. All need the token that only detection makes ([`super::token`]). So code that has the type, and
 //! with it `constant`, `splat` or any operation, runs on a machine that has the instructions.
 
 /// Operators that are one operation on the registers of a type: trait, method, operation.
@@ -20,58 +20,55 @@ macro_rules! operators {
 }
 pub(super) use operators;
 
-/// Defines `Eight` and `EightMask`. The module must define `Vector`, `Flags` and the functions called below on them, and
-/// names its token and its target features.
-macro_rules! eight {
-    ($token:ty, $features:tt) => {
-        use super::WIDTH;
-        use crate::number::elementary::{
-            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, logistic, sin,
-        };
+/// Defines a type of numbers and that of their truth values. The module must define `Vector`, `Flags` and the functions called
+/// below on them; it names its token, its target features, and the module of elementary functions of its precision.
+macro_rules! registers {
+    ($kind:ident, $mask:ident of $width:ident $number:ident: $token:ty, $features:tt, $elementary:ident) => {
+        use crate::number::elementary::{cos, sin};
         use crate::number::macros::{add_assign, elementary_functions};
         use crate::number::real::{Logistic, Mask, Real};
         use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-        /// Eight numbers.
+        /// Numbers in registers.
         #[derive(Clone, Copy)]
         #[repr(transparent)]
-        pub struct Eight(Vector);
+        pub struct $kind(Vector);
 
-        /// Truth values of eight numbers.
+        /// Truth values of such numbers.
         #[derive(Clone, Copy)]
         #[repr(transparent)]
-        pub struct EightMask(Flags);
+        pub struct $mask(Flags);
 
-        impl Eight {
+        impl $kind {
             /// Numbers in registers that the machine has, as the token proves.
             #[inline(always)]
-            pub fn new(_token: $token, numbers: [f64; WIDTH]) -> Self {
-                Self::of(numbers)
+            pub fn new(_token: $token, numbers: &[f64]) -> Self {
+                Self::of(core::array::from_fn(|lane| $number::constant(numbers[lane])))
             }
             /// The same, for code that was given this type with a token.
             #[inline(always)]
-            pub(super) fn of(numbers: [f64; WIDTH]) -> Self {
-                // SAFETY: a vector is eight numbers in memory.
-                Self(unsafe { core::mem::transmute::<[f64; WIDTH], Vector>(numbers) })
+            pub(super) fn of(numbers: [$number; super::$width]) -> Self {
+                // SAFETY: a vector is that many numbers in memory.
+                Self(unsafe { core::mem::transmute::<[$number; super::$width], Vector>(numbers) })
             }
             #[inline(always)]
-            pub(super) fn numbers(self) -> [f64; WIDTH] {
-                // SAFETY: a vector is eight numbers in memory.
-                unsafe { core::mem::transmute::<Vector, [f64; WIDTH]>(self.0) }
+            pub(super) fn numbers(self) -> [$number; super::$width] {
+                // SAFETY: a vector is that many numbers in memory.
+                unsafe { core::mem::transmute::<Vector, [$number; super::$width]>(self.0) }
             }
         }
-        impl core::fmt::Debug for Eight {
+        impl core::fmt::Debug for $kind {
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
                 self.numbers().fmt(f)
             }
         }
-        impl core::fmt::Debug for EightMask {
+        impl core::fmt::Debug for $mask {
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                core::array::from_fn::<bool, WIDTH, _>(|lane| self.lane(lane)).fmt(f)
+                core::array::from_fn::<bool, { super::$width }, _>(|lane| self.lane(lane)).fmt(f)
             }
         }
-        super::eight::operators!(Eight: Add add add, Sub sub sub, Mul mul mul, Div div div);
-        impl Neg for Eight {
+        super::registers::operators!($kind: Add add add, Sub sub sub, Mul mul mul, Div div div);
+        impl Neg for $kind {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
@@ -79,9 +76,9 @@ macro_rules! eight {
                 Self(unsafe { negate(self.0) })
             }
         }
-        add_assign!([] Eight);
-        super::eight::operators!(EightMask: BitAnd bitand both, BitOr bitor either);
-        impl Not for EightMask {
+        add_assign!([] $kind);
+        super::registers::operators!($mask: BitAnd bitand both, BitOr bitor either);
+        impl Not for $mask {
             type Output = Self;
             #[inline(always)]
             fn not(self) -> Self {
@@ -89,7 +86,7 @@ macro_rules! eight {
                 Self(unsafe { not(self.0) })
             }
         }
-        impl Mask for EightMask {
+        impl Mask for $mask {
             #[inline(always)]
             fn splat(value: bool) -> Self {
                 // SAFETY: see the top of this file.
@@ -106,12 +103,13 @@ macro_rules! eight {
                 unsafe { packed(self.0) >> lane & 1 == 1 }
             }
         }
-        impl Real for Eight {
-            type Mask = EightMask;
+        impl Real for $kind {
+            type Mask = $mask;
             type Equations = ();
-            const LANES: usize = WIDTH;
+            const LANES: usize = super::$width;
             const DERIVATIVES: bool = false;
             const IN_REGISTERS: bool = true;
+            const SINGLE: bool = <$number as Real>::SINGLE;
 
             #[inline(always)]
             fn vectorised<R>(work: impl FnOnce() -> R) -> R {
@@ -125,26 +123,30 @@ macro_rules! eight {
             #[inline(always)]
             fn constant(value: f64) -> Self {
                 // SAFETY: see the top of this file.
-                Self(unsafe { splat(value) })
+                Self(unsafe { splat($number::constant(value)) })
             }
             #[inline(always)]
             fn lane(self, lane: usize) -> f64 {
-                self.numbers()[lane]
+                self.numbers()[lane].lane(0)
+            }
+            #[inline(always)]
+            fn of_lanes(number: impl Fn(usize) -> f64) -> Self {
+                Self::of(core::array::from_fn(|lane| $number::constant(number(lane))))
             }
             #[inline(always)]
             fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-                let found = self.numbers().map(find);
-                core::array::from_fn(|k| Self::of(core::array::from_fn(|lane| found[lane][k])))
+                let found = self.numbers().map(|number| find(number.lane(0)));
+                core::array::from_fn(|k| Self::of(core::array::from_fn(|lane| $number::constant(found[lane][k]))))
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
                 // SAFETY: see the top of this file.
                 Self(unsafe { sqrt(self.0) })
             }
-            elementary_functions!(always: exp, ln, inverse_cbrt);
+            elementary_functions!(always $elementary: exp, ln, inverse_cbrt);
             #[inline(always)]
             fn logistic(self) -> Logistic<Self> {
-                logistic(self)
+                crate::number::elementary::$elementary::logistic(self)
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
@@ -163,24 +165,34 @@ macro_rules! eight {
             }
             #[inline(always)]
             fn sin(self) -> Self {
-                Self::of(self.numbers().map(sin))
+                Self::of(self.numbers().map(|angle| $number::constant(sin(angle.lane(0)))))
             }
             #[inline(always)]
             fn cos(self) -> Self {
-                Self::of(self.numbers().map(cos))
+                Self::of(self.numbers().map(|angle| $number::constant(cos(angle.lane(0)))))
             }
             #[inline(always)]
-            fn lt(self, other: Self) -> EightMask {
+            fn lt(self, other: Self) -> $mask {
                 // SAFETY: see the top of this file.
-                EightMask(unsafe { less(self.0, other.0) })
+                $mask(unsafe { less(self.0, other.0) })
             }
             #[inline(always)]
-            fn select(mask: EightMask, yes: Self, no: Self) -> Self {
+            fn select(mask: $mask, yes: Self, no: Self) -> Self {
                 // SAFETY: see the top of this file.
                 Self(unsafe { choose(mask.0, yes.0, no.0) })
             }
         }
-        impl Bits for Eight {
+    };
+}
+pub(super) use registers;
+
+/// Operations on the bits of numbers in double precision.
+macro_rules! double_bits {
+    ($kind:ident) => {
+        use crate::number::elementary::Bits;
+        use crate::number::elementary::double::{EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52};
+
+        impl Bits for $kind {
             #[inline(always)]
             fn power_of_two(shifted: Self) -> Self {
                 // SAFETY: see the top of this file.
@@ -208,4 +220,37 @@ macro_rules! eight {
         }
     };
 }
-pub(super) use eight;
+pub(super) use double_bits;
+
+/// Operations on the bits of numbers in single precision.
+macro_rules! single_bits {
+    ($kind:ident) => {
+        use crate::number::elementary::Bits;
+        use crate::number::elementary::single::{EXPONENT_BIAS, INVERSE_CBRT, SPLIT, TWO_23};
+
+        impl Bits for $kind {
+            #[inline(always)]
+            fn power_of_two(shifted: Self) -> Self {
+                // SAFETY: see the top of this file.
+                Self(unsafe { shift_left::<23>(plus(shifted.0, EXPONENT_BIAS)) })
+            }
+            #[inline(always)]
+            fn split(self) -> (Self, Self) {
+                // SAFETY: see the top of this file.
+                unsafe {
+                    let exponent = shift_right::<23>(plus(self.0, SPLIT));
+                    let m = minus(plus(self.0, EXPONENT_BIAS << 23), shift_left::<23>(exponent));
+                    // The exponent lies below 2^23: its bits and those of 2^23 do not overlap.
+                    let e = plus(exponent, TWO_23);
+                    (Self(m), Self(e) - Self::constant(8_388_608.0 + f64::from(EXPONENT_BIAS)))
+                }
+            }
+            #[inline(always)]
+            fn inverse_cbrt_guess(self) -> Self {
+                // SAFETY: see the top of this file.
+                Self(unsafe { minus(bits(INVERSE_CBRT), third(self.0)) })
+            }
+        }
+    };
+}
+pub(super) use single_bits;

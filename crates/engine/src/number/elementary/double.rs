@@ -1,23 +1,9 @@
-//! Elementary functions, written once for plain numbers and lanes.
-//!
-//! They are branch-free and built from `+ - * /` and bit operations, each correctly rounded by IEEE 754: the result has
-//! the same bits alone, in a lane and on every processor. Those of angles are rare; they come from the crate `libm` (the
-//! functions of musl and FreeBSD in Rust), number by number, with the same bits on every processor too. Those of the
-//! standard library are the system's, which chooses among several by processor.
+//! Functions in double precision.
 
+use super::{Bits, polynomial};
 use crate::number::real::{Logistic, Real};
 
-pub(crate) use libm::{acos, cos, sin, sincos};
-
-/// Operations on the bits of a number that elementary functions need, in each lane.
-pub(super) trait Bits: Real {
-    /// `2^k` of the integer k that stands in the low bits of `1.5 * 2^52 + k`.
-    fn power_of_two(shifted: Self) -> Self;
-    /// (m, e) with x = m 2^e and m in \[sqrt(1/2), sqrt 2).
-    fn split(self) -> (Self, Self);
-    /// `x^(-1/3)` within 4 %, from a third of the exponent.
-    fn inverse_cbrt_guess(self) -> Self;
-}
+pub(crate) use super::inverse_cbrt;
 
 // ln 2 in two parts (Cody & Waite): the first has trailing zeros, so that k * LN2_HIGH is exact.
 const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
@@ -26,19 +12,9 @@ const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 /// 1.5 * 2^52: adding it rounds to an integer that can be read from the low bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Value of a polynomial whose highest coefficient comes first.
-#[inline(always)]
-fn polynomial<S: Real, const N: usize>(x: S, coefficients: [f64; N]) -> S {
-    let mut sum = S::constant(coefficients[0]);
-    for &coefficient in &coefficients[1..] {
-        sum = sum * x + S::constant(coefficient);
-    }
-    sum
-}
-
 /// e^x by reduction to |r| <= ln2/2 and its Taylor series to r^13 (truncation below 1e-17).
 #[inline(always)]
-pub(super) fn exp<S: Bits>(x: S) -> S {
+pub(crate) fn exp<S: Bits>(x: S) -> S {
     let x = x.max(S::constant(-708.0)).min(S::constant(709.0));
     let shifted = x.scale(core::f64::consts::LOG2_E) + S::constant(ROUND);
     let k = shifted - S::constant(ROUND);
@@ -67,7 +43,7 @@ pub(super) fn exp<S: Bits>(x: S) -> S {
 
 /// ln x of a positive normal number: x = m 2^e, ln m = 2 atanh((m-1)/(m+1)).
 #[inline(always)]
-pub(super) fn ln<S: Bits>(x: S) -> S {
+pub(crate) fn ln<S: Bits>(x: S) -> S {
     let (m, e) = x.split();
     let s = (m - S::one()) / (m + S::one());
     let z = s * s;
@@ -98,7 +74,7 @@ pub(super) fn ln<S: Bits>(x: S) -> S {
 /// what `2 atanh s` is beyond `2 s` are polynomials by Remez' exchange in 50 digits, within 3e-19 of their range for
 /// |r| <= 1/2 and within 4e-17 for `2^t` <= 1.
 #[inline(always)]
-pub(super) fn logistic<S: Bits>(x: S) -> Logistic<S> {
+pub(crate) fn logistic<S: Bits>(x: S) -> Logistic<S> {
     use core::f64::consts::{LN_2, SQRT_2};
     // Below this `2^t` is zero in the sum.
     const LEAST: f64 = -1000.0;
@@ -142,32 +118,21 @@ fn quintic<S: Real>(x: S, c: [f64; 6]) -> S {
     pair(0) + square * (pair(2) + square * pair(4))
 }
 
-/// x^(-1/3) of a positive normal number: two steps of `y (1 + r/3 + 2 r^2/9 + 14 r^3/81)`,
-/// r = 1 - x y^3, each of which takes the error to its fourth power; no division.
-#[inline(always)]
-pub(super) fn inverse_cbrt<S: Bits>(x: S) -> S {
-    let mut y = x.inverse_cbrt_guess();
-    for _ in 0..2 {
-        let r = S::one() - x * (y * y * y);
-        y = y + y * (r * polynomial(r, [14.0 / 81.0, 2.0 / 9.0, 1.0 / 3.0]));
-    }
-    y
-}
-
 // Bit patterns shared by all implementations of `Bits`.
-pub(super) const EXPONENT_BIAS: u64 = 1023;
+pub(crate) const EXPONENT_BIAS: u64 = 1023;
 /// Brings the exponent of a number above sqrt(1/2) of its binade to its own: `1023 * 2^52 - bits(sqrt(1/2))`.
-pub(super) const SPLIT: u64 = (EXPONENT_BIAS << 52) - 0x3FE6_A09E_667F_3BCD;
+pub(crate) const SPLIT: u64 = (EXPONENT_BIAS << 52) - 0x3FE6_A09E_667F_3BCD;
 /// Bits of 2^52: a small integer added to them reads as 2^52 + integer.
-pub(super) const TWO_52: u64 = 0x4330_0000_0000_0000;
+pub(crate) const TWO_52: u64 = 0x4330_0000_0000_0000;
 /// A third of 2^32, rounded up.
-pub(super) const THIRD: u64 = 0x5555_5556;
+pub(crate) const THIRD: u64 = 0x5555_5556;
 /// High word of the guess of `x^(-1/3)` before a third of the high word of x is subtracted.
-pub(super) const INVERSE_CBRT: u64 = 0x553F_0000;
+pub(crate) const INVERSE_CBRT: u64 = 0x553F_0000;
 
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "compared with the functions of the standard library")]
 mod tests {
+    use super::super::{acos, cos, sin, sincos};
     use super::*;
 
     fn close(a: f64, b: f64, tolerance: f64) {
@@ -189,7 +154,7 @@ mod tests {
             close(Real::cbrt(x), f64::cbrt(x), 8e-16);
             x *= 1.37;
         }
-        let mut x = -1e3;
+        let mut x = -1e3_f64;
         while x < 1e3 {
             let Logistic { rise, rest, tail } = logistic(x);
             let power = x.abs().mul_add(-core::f64::consts::LN_2, 0.0).exp();

@@ -1,0 +1,161 @@
+//! Ensembles in single precision: how near they are to double precision, and what their members depend on.
+
+use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
+use crate::common::glazed::{glazed_probes, glazed_rooms};
+use crate::common::linear::linear_cell;
+use crate::common::melting::{melting, melting_weather};
+use crate::common::{
+    cell, cell_members, cell_probes, cell_weather, forcing, options, values, warmup, weather,
+};
+use mascarin_engine::batch::{Ensemble, ensemble, screening};
+use mascarin_engine::description::Description;
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::{Options, Scheme, Watch};
+use mascarin_engine::number::simd::Level;
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+
+const STEP: f64 = 900.0;
+const DAYS: usize = 6;
+
+/// A building with its weather, run in both precisions.
+struct Both {
+    probes: Vec<Probe>,
+    single: Ensemble,
+    double: Ensemble,
+}
+
+impl Both {
+    fn new(
+        description: Description,
+        weather: fn(f64, &mut [f64]),
+        probes: Vec<Probe>,
+        scheme: Scheme,
+    ) -> Self {
+        let plan = Plan::new(description).unwrap();
+        let rows = forcing(&plan, scheme, DAYS * 96, STEP, weather);
+        let options = Options { warmup: Some(warmup(STEP)), ..options(scheme, STEP, probes.clone()) };
+        let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
+        let mut numbers = values(&plan).repeat(5);
+        for (k, number) in numbers.iter_mut().enumerate() {
+            // Some per cent more or less; never where a number is zero or a limit.
+            *number *= 1.0 - 1e-3 * (k % 7) as f64;
+        }
+        let run = |run: fn(&Plan, &[f64], &Forcing<'_>, &Options, &Watch) -> _| {
+            let found: Result<Ensemble, _> = run(&plan, &numbers, &drive, &options, &Watch::default());
+            found.unwrap()
+        };
+        Self { probes, single: run(screening), double: run(ensemble) }
+    }
+
+    /// Root mean square and largest difference of the outputs that are chosen.
+    fn apart(&self, chosen: impl Fn(&Probe) -> bool) -> [f64; 2] {
+        let of = |found: &Ensemble| -> Vec<f64> {
+            let records = found.records.iter().zip(self.probes.iter().cycle());
+            records.filter(|(_, probe)| chosen(probe)).map(|(record, _)| *record).collect()
+        };
+        let differences: Vec<f64> =
+            of(&self.single).iter().zip(of(&self.double)).map(|(a, b)| a - b).collect();
+        let sum: f64 = differences.iter().map(|difference| difference * difference).sum();
+        let most = differences.iter().fold(0.0, |most: f64, difference| most.max(difference.abs()));
+        [(sum / differences.len() as f64).sqrt(), most]
+    }
+
+    /// Whether it was really computed in single precision: not on machines without registers for lanes.
+    fn is_single(&self, name: &str) -> bool {
+        let found = self.single.closure.iter().all(|closure| (1e-9..1e-4).contains(closure));
+        assert_eq!(found, Level::widest().unwrap() != Level::Array, "{name}: {:?}", self.single.closure);
+        found
+    }
+}
+
+/// A building, its weather and its outputs.
+type Building = (&'static str, Description, fn(f64, &mut [f64]), Vec<Probe>);
+
+fn is_air(probe: &Probe) -> bool {
+    matches!(probe, Probe::AirTemperature { .. })
+}
+
+/// Phase change, radiation and convection that are not linear, ideal loads, windows, hysteresis: airs within 0.01 K.
+#[test]
+fn airs_are_within_a_hundredth_of_a_kelvin() {
+    let airs = |zones: usize| (0..zones).map(|zone| Probe::AirTemperature { zone }).collect::<Vec<_>>();
+    let buildings: [Building; 6] = [
+        ("cell", cell(1.0), cell_weather, cell_probes()),
+        ("sharp", cell(0.04), cell_weather, cell_probes()),
+        ("linear", linear_cell(), cell_weather, airs(1)),
+        ("loads", conditioned(0.5), conditioned_weather, conditioned_probes()),
+        ("glass", glazed_rooms().swap_remove(0), weather, glazed_probes()),
+        ("hysteresis", melting(None), melting_weather, airs(1)),
+    ];
+    for (name, description, weather, probes) in buildings {
+        for scheme in [Scheme::Sdirk2, Scheme::LinearlyImplicit] {
+            let both = Both::new(description.clone(), weather, probes.clone(), scheme);
+            assert!(both.single.failures.is_empty() && both.double.failures.is_empty(), "{name}");
+            let [rms, most] = both.apart(is_air);
+            assert!(rms < 4e-3 && most < 0.03, "{name}, {scheme:?}: {rms} K, at most {most} K");
+            if both.is_single(name) {
+                assert!(rms > 0.0, "{name}");
+            }
+        }
+    }
+}
+
+/// Loads are within 0.2 % of the largest.
+#[test]
+fn loads_are_near_those_in_double_precision() {
+    let both = Both::new(conditioned(0.5), conditioned_weather, conditioned_probes(), Scheme::Sdirk2);
+    let is_load = |probe: &Probe| matches!(probe, Probe::HeatingLoad { .. } | Probe::CoolingLoad { .. });
+    let [rms, _] = both.apart(is_load);
+    let largest = both
+        .double
+        .records
+        .iter()
+        .zip(both.probes.iter().cycle())
+        .filter(|(_, probe)| is_load(probe))
+        .fold(0.0_f64, |most, (record, _)| most.max(record.abs()));
+    assert!(largest > 100.0 && rms < 2e-3 * largest, "{rms} W of {largest} W");
+}
+
+/// The bits of a member depend neither on its place nor on the members beside it: a short pack is filled, and one member alone too.
+#[test]
+fn members_do_not_depend_on_their_neighbours() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
+    let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
+    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let members = cell_members(&plan, 19);
+    let width = values(&plan).len();
+    let run = |numbers: &[f64]| screening(&plan, numbers, &drive, &options, &Watch::default()).unwrap();
+    let all = run(&members);
+    let row = all.records.len() / 19;
+    for (first, last) in [(0, 1), (3, 5), (7, 18), (18, 19)] {
+        let some = run(&members[first * width..last * width]);
+        let expected = &all.records[first * row..last * row];
+        let differ = some.records.iter().zip(expected).position(|(a, b)| a.to_bits() != b.to_bits());
+        assert!(
+            differ.is_none(),
+            "from member {first}, record {differ:?}, {:?} {:?}",
+            some.closure,
+            &all.closure
+        );
+        assert_eq!(some.closure, all.closure[first..last]);
+    }
+    assert_ne!(all.records[..row], all.records[row..2 * row], "members differ");
+}
+
+/// A member whose energy balance cannot close (the scheme loses latent heat) is run again in double precision.
+#[test]
+fn members_that_do_not_close_are_run_in_double_precision() {
+    let scheme = Scheme::ApparentCapacity;
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let rows = forcing(&plan, scheme, 96, STEP, cell_weather);
+    let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
+    let options = options(scheme, STEP, cell_probes());
+    let members = cell_members(&plan, 4);
+    let [single, double] =
+        [screening, ensemble].map(|run| run(&plan, &members, &drive, &options, &Watch::default()).unwrap());
+    assert!(double.closure.iter().all(|&closure| closure > 1e-4));
+    assert_eq!(single.records, double.records);
+    assert_eq!(single.closure, double.closure);
+}
