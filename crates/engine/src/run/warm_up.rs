@@ -56,6 +56,11 @@ pub(super) fn warm_up<'a, S: Real>(
         state.take(active, &start);
         stepper.guess.move_by(&next, state);
     }
+    // Lanes that have converged do not depend on the others: these are run again alone.
+    if S::LANES > 1 && (!(active | stepper.failed())).any() {
+        stepper.give_up(active);
+        return Ok((warmup.max_cycles, change_left));
+    }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance })
 }

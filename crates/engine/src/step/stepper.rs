@@ -96,6 +96,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.solver.failed
     }
 
+    /// Marks lanes as failed.
+    pub(crate) fn give_up(&mut self, lanes: S::Mask) {
+        self.solver.failed = self.solver.failed | lanes;
+    }
+
     /// The next step does not continue the last one: its guess starts anew.
     pub fn forget(&mut self) {
         self.guess.forget();

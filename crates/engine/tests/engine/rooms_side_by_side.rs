@@ -14,7 +14,7 @@ use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 
 /// Of one shape: a front of eight and one of seven, beside the rooms at the ends.
-const ROOMS: usize = 17;
+pub const ROOMS: usize = 17;
 const STEP: f64 = 900.0;
 
 /// A unit by U and g: windows of this kind are computed together.
@@ -72,7 +72,7 @@ fn glaze(d: &mut Description, windows: &[usize], storing: bool) {
 
 /// A row of rooms with walls between them and a window each. Most have the same surfaces, whose areas and laws differ; those at the ends have
 /// one wall less between rooms, and the last one has a second wall to outdoors.
-fn row(loads: bool, storing: bool) -> Plan {
+pub fn row(loads: bool, storing: bool) -> Plan {
     let mut b = Builder::new();
     let concrete = b.solid("concrete", 1.4, 2200.0, 900.0);
     let board = b.solid("board", 0.2, 500.0, 1000.0);

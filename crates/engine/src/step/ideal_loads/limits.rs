@@ -4,7 +4,7 @@ use crate::building::coefficients::ZoneCoefficients;
 use crate::number::real::{ByPrecision, Real};
 
 /// Airs closer to their set points than this count as on them [K].
-pub(super) const TOLERANCE: ByPrecision = ByPrecision { double: 1e-8, single: 1e-4 };
+pub(super) const TOLERANCE: ByPrecision = ByPrecision { double: 1e-8, single: 2e-3 };
 /// Magnitude of the set point without heating or cooling, which is never reached [degC].
 const NEVER: f64 = 1e6;
 
