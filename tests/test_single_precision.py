@@ -20,7 +20,7 @@ from mascarin.ensemble import run as ensemble_run
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.single_precision import differences, members_to_check
+from mascarin.simulation.single_precision import differences, members_to_check, run_in_double
 from mascarin.weather import Climate
 from test_commands_run import BOX, PERIOD
 
@@ -56,7 +56,7 @@ def test_single_precision_is_near_and_says_how_near(
     assert apart.max() < 0.01
     assert "single_precision" not in double.attrs
     [line] = single.attrs["single_precision"]
-    said = re.fullmatch(rf"{AIR}: (\S+) degC \(rms\), (\S+) degC at most, in 8 members", line)
+    said = re.fullmatch(rf"{AIR} differs by (\S+) degC \(rms\), (\S+) degC at most, in 8 members", line)
     assert said is not None, line
     checked = apart[members_to_check(20)]
     assert float(said[1]) == pytest.approx(np.sqrt(np.mean(checked**2)), rel=0.05)
@@ -95,7 +95,7 @@ def test_a_store_keeps_the_difference(building: Building, climate: Climate, tmp_
     given: dict[str, Any] = {"objectives": HOTTEST, **OPTIONS}
     store = sweep_into(tmp_path / "single", building, climate, samples, precision="single", **given)
     [line] = store.single_precision()
-    assert re.fullmatch(r"hottest: \S+ \(rms\), \S+ at most, in 8 members", line)
+    assert re.fullmatch(r"hottest differs by \S+ \(rms\), \S+ at most, in 8 members", line)
     again = Store(tmp_path / "single")
     assert again.precision == "single"
     assert again.single_precision() == [line]
@@ -157,7 +157,7 @@ def test_sensitivity_in_single_precision(building: Building, climate: Climate) -
     )
     np.testing.assert_allclose(single.index, double.index, atol=1e-3)
     [line] = [line for line in single.warnings if "single precision" in line]
-    assert re.match(rf"single precision differs from double precision in {AIR}: \S+ degC", line)
+    assert re.match(rf"single precision: {AIR} differs by \S+ degC", line)
     assert not any("single precision" in line for line in double.warnings)
 
 
@@ -173,7 +173,7 @@ def test_the_command_prints_the_difference(
     ]  # fmt: skip
     assert cli.main([*call, "-o", str(tmp_path / "swept")]) == 0
     printed = capsys.readouterr().out
-    assert re.search(rf"single precision differs from double precision in max:{AIR}: \S+ \(rms\)", printed)
+    assert re.search(rf"single precision: max:{AIR} differs by \S+ \(rms\)", printed)
     assert cli.main([*call, "-o", str(tmp_path / "json"), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["precision"] == "single"
@@ -222,3 +222,17 @@ def test_the_engine_takes_the_precision(building: Building, climate: Climate) ->
     )
     assert np.abs(single - double).max() < 0.01
     assert (single != double).any() == LANES
+
+
+def test_members_in_double_precision_are_counted(
+    building: Building, climate: Climate, tmp_path: Path
+) -> None:
+    assert run_in_double(np.array([2e-6, np.nan])) == []
+    samples = _samples(building, 4)
+    store = sweep_into(
+        tmp_path / "swept", building, climate, samples, precision="single", objectives=HOTTEST, **OPTIONS
+    )
+    table = store.to_dataframe()
+    table.loc[2, "closure"] = 1e-14
+    table.reset_index().to_parquet(tmp_path / "swept" / "members.parquet")
+    assert store.single_precision()[1:] == ["1 of 4 members were run in double precision"]

@@ -169,7 +169,7 @@ def _print(store: Store, as_json: bool) -> int:
     if rows:
         print_table(("objective", "min", "mean", "max"), rows)
     for line in store.single_precision():
-        print(f"single precision differs from double precision in {line}")
+        print(f"single precision: {line}")
     residual = result["closure"]
     print(f"{len(table)} members, largest relative energy-balance residual {residual:.1e}; in {store.path}")
     if len(failed):

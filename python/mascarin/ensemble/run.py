@@ -33,7 +33,7 @@ from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.options import RunOptions, described, require_precision
-from mascarin.simulation.single_precision import Difference, differences, members_to_check
+from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def sweep(
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
             warnings=ensemble_warnings(closure, precision=precision),
-            **({} if precision == "double" else {"single_precision": _said(_differences(inputs, found))}),
+            **({} if precision == "double" else {"single_precision": _said(inputs, found, closure)}),
         )
     )
 
@@ -254,8 +254,8 @@ def _differences(inputs: EnsembleInputs, members: Members) -> list[Difference]:
     return differences([one.name for one in outputs], [one.unit for one in outputs], single, double)
 
 
-def _said(found: Sequence[Difference]) -> list[str]:
-    return [str(one) for one in found]
+def _said(inputs: EnsembleInputs, members: Members, closure: npt.NDArray[np.float64]) -> list[str]:
+    return [*map(str, _differences(inputs, members)), *run_in_double(closure)]
 
 
 def _prepared(

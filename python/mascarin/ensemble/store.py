@@ -21,7 +21,7 @@ from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
-from mascarin.simulation.single_precision import Difference
+from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
@@ -272,9 +272,10 @@ class Store:
         return ensemble_warnings(self.to_dataframe()["closure"].to_numpy(), precision=self.precision)
 
     def single_precision(self) -> list[str]:
-        """How far some members are from double precision: a line for each result; none in double."""
+        """How far some members are from double precision, and how many were run in it; nothing in double."""
         found = self.manifest.get("single_precision", {})
-        return [str(Difference(name, **values)) for name, values in found.items()]
+        lines = [str(Difference(name, **values)) for name, values in found.items()]
+        return [*lines, *run_in_double(self.to_dataframe()["closure"].to_numpy())] if lines else []
 
     def to_xarray(self, first: int = 0, last: int | None = None) -> xr.Dataset:
         """Members from `first` to before `last`, as `sweep` returns them.

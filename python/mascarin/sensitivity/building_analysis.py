@@ -247,10 +247,7 @@ def _single_precision(
     double = run_samples(simulation, paths, samples[some], 0, every=every)
     outputs = simulation.outputs
     names, units = [one.name for one in outputs], [one.unit for one in outputs]
-    return [
-        f"single precision differs from double precision in {line}"
-        for line in differences(names, units, single[some], double)
-    ]
+    return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
 
 
 def screen(

@@ -17,6 +17,27 @@ CHECKED: Final = 8
 """Members that are run again in double precision: as many as the engine runs at once."""
 
 
+#: Relative energy-balance residual: those in single precision are larger, those in double smaller. [-]
+_DOUBLE: Final = 1e-9
+
+
+def run_in_double(closure: Array) -> list[str]:
+    """One line where members of an ensemble in single precision were run in double precision, else nothing.
+
+    Parameters
+    ----------
+    closure : ndarray, shape (members,)
+        Relative energy-balance residual of each member, by which they are told apart. [-]
+
+    Examples
+    --------
+    >>> run_in_double(np.array([2e-6, 1e-14, 3e-6]))
+    ['1 of 3 members were run in double precision']
+    """
+    count = int(np.count_nonzero(closure < _DOUBLE))
+    return [f"{count} of {len(closure)} members were run in double precision"] if count else []
+
+
 @dataclass(frozen=True)
 class Difference:
     """Difference of one result between single and double precision.
@@ -37,7 +58,7 @@ class Difference:
     Examples
     --------
     >>> print(Difference("room.air_temperature", "degC", 0.0004, 0.0007, 8))
-    room.air_temperature: 0.0004 degC (rms), 0.0007 degC at most, in 8 members
+    room.air_temperature differs by 0.0004 degC (rms), 0.0007 degC at most, in 8 members
     """
 
     name: str
@@ -49,7 +70,7 @@ class Difference:
     def __str__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
         return (
-            f"{self.name}: {self.rms:.2g}{unit} (rms), {self.largest:.2g}{unit} at most, "
+            f"{self.name} differs by {self.rms:.2g}{unit} (rms), {self.largest:.2g}{unit} at most, "
             f"in {self.members} members"
         )
 
