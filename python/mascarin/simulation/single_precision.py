@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
+#: Units of differences that are not those of the results.
+_OF_DIFFERENCE: Final = {"degC": "K", "-": ""}
+
 CHECKED: Final = 8
 """Members that are run again in double precision: as many as the engine runs at once."""
 
@@ -47,7 +50,7 @@ class Difference:
     name : str
         The output or objective.
     unit : str
-        Its unit.
+        Unit of the difference: K for temperatures, nothing for ratios.
     rms : float
         Root mean square over the members (and times) that were compared. [unit of the result]
     largest : float
@@ -57,8 +60,8 @@ class Difference:
 
     Examples
     --------
-    >>> print(Difference("room.air_temperature", "degC", 0.0004, 0.0007, 8))
-    room.air_temperature differs by 0.0004 degC (rms), 0.0007 degC at most, in 8 members
+    >>> print(Difference("room.air_temperature", "K", 0.0004, 0.0007, 8))
+    room.air_temperature differs by 0.0004 K (rms), 0.0007 K at most, in 8 members
     """
 
     name: str
@@ -122,5 +125,5 @@ def differences(names: Sequence[str], units: Sequence[str], single: Array, doubl
         own = apart[:, :, k]
         own = own[np.isfinite(own).all(axis=1)]
         rms, largest = (np.sqrt(np.mean(own**2)), np.abs(own).max()) if own.size else (np.nan, np.nan)
-        found.append(Difference(name, unit, float(rms), float(largest), len(own)))
+        found.append(Difference(name, _OF_DIFFERENCE.get(unit, unit), float(rms), float(largest), len(own)))
     return found
