@@ -58,7 +58,7 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
     "precision": (
         "str",
         "``double``, or ``single`` to screen many members: twice as many at a time, within some thousandths "
-        "of a kelvin. The difference is measured in some members, see `ensembles`.",
+        "of a kelvin. The difference is measured in some members.",
     ),
     "initial": (
         "'repeat', float, mapping, GivenStart or MeasuredStart",

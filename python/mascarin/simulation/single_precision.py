@@ -111,7 +111,7 @@ def differences(names: Sequence[str], units: Sequence[str], single: Array, doubl
     Returns
     -------
     list of Difference
-        One for each result; NaN where no member can be compared.
+        One for each result of which a member can be compared.
 
     Examples
     --------
@@ -124,6 +124,7 @@ def differences(names: Sequence[str], units: Sequence[str], single: Array, doubl
     for k, (name, unit) in enumerate(zip(names, units, strict=True)):
         own = apart[:, :, k]
         own = own[np.isfinite(own).all(axis=1)]
-        rms, largest = (np.sqrt(np.mean(own**2)), np.abs(own).max()) if own.size else (np.nan, np.nan)
-        found.append(Difference(name, _OF_DIFFERENCE.get(unit, unit), float(rms), float(largest), len(own)))
+        if own.size:
+            rms, largest = float(np.sqrt(np.mean(own**2))), float(np.abs(own).max())
+            found.append(Difference(name, _OF_DIFFERENCE.get(unit, unit), rms, largest, len(own)))
     return found
