@@ -81,6 +81,7 @@ bench: $(BUILT) $(HYPERFINE)
 	$(PY) bench/through_python.py --hyperfine $(HYPERFINE) --write docs/speed.md
 	$(PY) bench/million.py --write docs/speed.md
 	$(PY) bench/linearly_implicit.py --write docs/speed.md
+	$(PY) bench/single_precision.py --write docs/speed.md
 	$(PY) bench/many_zones.py $(if $(ENERGYPLUS),--energyplus "$(ENERGYPLUS)") --write docs/speed.md
 
 $(HYPERFINE): | check-tools

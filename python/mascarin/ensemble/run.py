@@ -61,11 +61,11 @@ def sweep(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
-    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
+    precision: Precision = "double",
     objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
 ) -> xr.Dataset:
@@ -82,6 +82,9 @@ def sweep(
         whole part of the description (``surfaces.roof.outside.convection: [tarp, mowitt]``): members of
         the same structure are run together. [unit of each]
     <run options>
+    precision : str
+        ``double``, or ``single`` to screen many members: twice as many at a time, within some thousandths of
+        a kelvin. The difference is measured in some members.
     objectives : mapping of str to callable, optional
         What to keep of each member instead of its series: functions of a Dataset of the outputs over (member,
         time) that give one number a member, such as ``lambda run: run["room.air_temperature"].max("time")``.
@@ -162,11 +165,11 @@ def sweep_into(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
-    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
+    precision: Precision = "double",
     objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
     seed: int | None = None,
@@ -183,7 +186,7 @@ def sweep_into(
     building, climate, samples
         As in `sweep`.
     <run options>
-    objectives, workers
+    precision, objectives, workers
         As in `sweep`.
     seed : int, optional
         Seed that the samples were drawn with, for the manifest.

@@ -130,11 +130,11 @@ def sensitivity_analysis(
     end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
-    precision: Precision = "double",
     initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
+    precision: Precision = "double",
     interval: str | float = "1h",
     distributions: Mapping[str, DistributionName] | None = None,
     groups: Mapping[str, Sequence[str]] | None = None,
@@ -159,6 +159,8 @@ def sensitivity_analysis(
     method : str
         ``spectral`` (default), ``rbd-fast``, ``sobol`` or ``morris``; all but the first need SALib.
     <run options>
+    precision : str
+        ``double`` or ``single``, as in `mascarin.sweep`; the difference that it makes is among the warnings.
     interval : str or float
         Spacing of the outputs that are analyzed. [s]
     distributions : mapping of str to str, optional

@@ -55,11 +55,6 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
         "``apparent-capacity`` (for "
         "comparison with the literature only: it does not conserve latent heat).",
     ),
-    "precision": (
-        "str",
-        "``double``, or ``single`` to screen many members: twice as many at a time, within some thousandths "
-        "of a kelvin. The difference is measured in some members.",
-    ),
     "initial": (
         "'repeat', float, mapping, GivenStart or MeasuredStart",
         "``repeat``: the first period is repeated until no temperature changes by more than 0.01 K. "
