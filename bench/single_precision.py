@@ -98,9 +98,9 @@ def main() -> None:
     head = (
         "building",
         "double, SDIRK2 [members/s]",
-        "double",
-        "single",
-        "single, 30 min",
+        "double, linearly implicit",
+        "single, linearly implicit",
+        "the same, 30 min",
         "single from double [K]",
         "double from 1 min [K]",
         "single from 1 min",

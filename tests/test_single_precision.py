@@ -106,7 +106,7 @@ def test_a_store_keeps_the_difference(building: Building, climate: Climate, tmp_
     whole = sweep(building, climate, samples, precision="single", **given)
     np.testing.assert_array_equal(again.to_dataframe()["hottest"], whole["hottest"])
     # The same folder in double precision would be another ensemble.
-    with pytest.raises(InputError, match="differs in identity"):
+    with pytest.raises(InputError, match="differs in identity, precision"):
         sweep_into(tmp_path / "single", building, climate, samples, **given)
     other = sweep_into(tmp_path / "double", building, climate, samples, **given)
     assert other.precision == "double"

@@ -40,7 +40,7 @@ _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
 #: Entries of a manifest that must be equal to continue an ensemble.
-_SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept")
+_SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept", "precision")
 
 
 class Store:

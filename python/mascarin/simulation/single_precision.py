@@ -95,7 +95,7 @@ def members_to_check(count: int) -> list[int]:
     >>> members_to_check(3), members_to_check(15)
     ([0, 1, 2], [0, 2, 4, 6, 8, 10, 12, 14])
     """
-    return sorted({round(k * (count - 1) / max(CHECKED - 1, 1)) for k in range(CHECKED)})
+    return sorted({round(k * (count - 1) / (CHECKED - 1)) for k in range(CHECKED)})
 
 
 def differences(names: Sequence[str], units: Sequence[str], single: Array, double: Array) -> list[Difference]:

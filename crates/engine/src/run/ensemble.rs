@@ -19,7 +19,7 @@ use crate::weather::conditions::Weather;
 /// Members behind the last full pack that run by themselves.
 const FEW: usize = 3;
 /// Relative residual of the energy balance from which a member in single precision is run again in double precision [-]. Rounding alone
-/// gives some 1e-6.
+/// gives 1e-6 to 2e-5.
 const CLOSES: f64 = 1e-4;
 
 /// Precision of the numbers of an ensemble.
@@ -74,7 +74,8 @@ pub fn ensemble(
 
 /// Runs members in single precision, sixteen in a pack, to screen many of them: results differ from those of [`ensemble`] by rounding,
 /// and energy balances close within it only. Members whose iteration fails, or whose energy balance does not close, run again alone in
-/// double precision; so do all on machines without registers for lanes.
+/// double precision; so do all members of a pack where the ideal loads of one are not found, and all on machines without registers for
+/// lanes.
 ///
 /// # Errors
 /// As those of [`ensemble`].
