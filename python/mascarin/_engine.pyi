@@ -85,6 +85,8 @@ class Plan:
         `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
         [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws
         evaluated there; None unless `options["residuals"]` is true, with which a run takes longer. [W]
+        `outside` is how far temperatures are outside of their causes, beyond the scheme's overshoot [K], and
+        `outlier` the step, place, temperature and bound of the first of them, or None. [degC]
         """
 
     def ensemble(
@@ -94,8 +96,10 @@ class Plan:
         options: dict[str, Any],
         report: Callable[[int], object] | None = None,
         single: bool = False,
-    ) -> tuple[_Array, _Array, list[tuple[int, str]]]:
-        """Members (rows of values): records (members x rows x probes), closures, failures.
+    ) -> tuple[_Array, _Array, _Array, list[tuple[int, str]]]:
+        """Members (rows of values): records (members x rows x probes), closures, distances, failures.
+
+        A distance is how far temperatures are outside of their causes, beyond the scheme's overshoot. [K]
 
         `single`: in single precision; members whose energy balance does not close are run in double.
         """

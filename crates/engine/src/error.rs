@@ -41,6 +41,19 @@ pub enum EngineError {
         /// Largest change accepted [K].
         tolerance: f64,
     },
+    /// A step has led to what no building can do.
+    #[error(
+        "step {step} leads to what is impossible: {place} has {what}. The solver has failed there, or a number of this part is \
+         absurd: check its numbers, and use a shorter step."
+    )]
+    Impossible {
+        /// Index of the step from the start of the forcing.
+        step: usize,
+        /// Name of the part.
+        place: String,
+        /// Quantity, value and limit.
+        what: String,
+    },
     /// The caller stopped the run.
     #[error("interrupted")]
     Interrupted,

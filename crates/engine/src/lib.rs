@@ -46,7 +46,7 @@ pub mod march {
     pub use crate::step::{Counters, Scheme};
 }
 
-pub use run::{ratings, stepwise};
+pub use run::{physical_limits, ratings, stepwise};
 
 /// Quantities to record.
 pub mod probe {

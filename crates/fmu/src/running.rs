@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use mascarin_engine::error::EngineError;
+use mascarin_engine::physical_limits::Outlier;
 use mascarin_engine::stepwise::StepByStep;
 use self_cell::self_cell;
 
@@ -81,6 +82,11 @@ impl Running {
     /// Relative residual of the energy balance so far [-].
     pub(crate) fn closure(&self) -> f64 {
         self.with_dependent(|_, run| run.closure())
+    }
+
+    /// The first temperature that was outside of its causes by more than the scheme's overshoot.
+    pub(crate) fn outlier(&self) -> Option<Outlier> {
+        self.with_dependent(|_, run| run.outlier().cloned())
     }
 
     /// All numbers that the steps to come depend on.

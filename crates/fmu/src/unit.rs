@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use mascarin_engine::error::EngineError;
+use mascarin_engine::physical_limits::Outlier;
 
 use crate::contents::{Contents, Role, SetPoint};
 use crate::running::Running;
@@ -413,11 +414,19 @@ impl Unit {
         format!("in the step from {} s: {reason}", self.time())
     }
 
-    /// Ends the run; gives a remark on its energy balance.
+    /// Ends the run; gives a remark on its energy balance, and on a temperature without a cause.
     pub fn terminate(&mut self) -> String {
         self.mode = Mode::Terminated;
         let closure = self.running.as_ref().map_or(0.0, Running::closure);
-        format!("{} s simulated; relative residual of the energy balance: {closure:.1e}", self.time())
+        let balance =
+            format!("{} s simulated; relative residual of the energy balance: {closure:.1e}", self.time());
+        match self.running.as_ref().and_then(Running::outlier) {
+            None => balance,
+            Some(Outlier { step, place, temperature, bound }) => format!(
+                "{balance}; warning: {place} had {temperature:.1} degC in step {step}, beyond everything that acted on it \
+                 ({bound:.1} degC) and the overshoot of the scheme: export the unit with a shorter --step"
+            ),
+        }
     }
 
     /// The present state.

@@ -22,7 +22,7 @@ create_exception!(
     mascarin._engine,
     EngineSolverError,
     PyException,
-    "A step or a warm-up that did not converge."
+    "A step or a warm-up that did not converge, or that led to what is impossible."
 );
 create_exception!(
     mascarin._engine,
@@ -48,9 +48,9 @@ pub fn to_python(error: &EngineError) -> PyErr {
     let text = error.to_string();
     match error {
         EngineError::Description(_) | EngineError::Input(_) => EngineInputError::new_err(text),
-        EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. } => {
-            EngineSolverError::new_err(text)
-        }
+        EngineError::NotConverged { .. }
+        | EngineError::WarmUpNotConverged { .. }
+        | EngineError::Impossible { .. } => EngineSolverError::new_err(text),
         EngineError::Interrupted => PyKeyboardInterrupt::new_err(text),
     }
 }

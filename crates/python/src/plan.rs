@@ -5,6 +5,7 @@ use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::{Run, Watch, march_streamed};
+use mascarin_engine::physical_limits::Outlier;
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::vapour::VapourFlow;
@@ -26,8 +27,9 @@ pub struct Plan {
     pub plan: EnginePlan,
 }
 
-/// Records, closures and failures of an ensemble.
-type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
+/// Records, closures, how far temperatures are outside of their causes, and failures of an ensemble.
+type EnsembleArrays<'py> =
+    (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
 
 /// Records and their slopes.
 type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
@@ -119,7 +121,8 @@ impl Plan {
         })
     }
 
-    /// Members (rows of `values`), in single precision to screen many: records (members x rows x probes), closures, failures.
+    /// Members (rows of `values`), in single precision to screen many: records (members x rows x probes), closures, how far
+    /// temperatures are outside of their causes [K], failures.
     #[pyo3(signature = (values, forcing, options, report=None, single=false))]
     fn ensemble<'py>(
         &self,
@@ -144,7 +147,9 @@ impl Plan {
             let records =
                 PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
             let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
-            Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
+            let [closure, outside] =
+                [result.closure, result.outside].map(|numbers| PyArray1::from_vec(py, numbers));
+            Ok((records, closure, outside, PyList::new(py, failures)?))
         })
     }
 
@@ -229,6 +234,12 @@ pub fn describe_run<'py>(
     vapour.set_item("exchanged", run.ledger.vapour.total_exchanged)?;
     vapour.set_item("closure", run.ledger.vapour.closure())?;
     result.set_item("vapour", vapour)?;
+    result.set_item("outside", run.outside)?;
+    let outlier = run
+        .outlier
+        .as_ref()
+        .map(|Outlier { step, place, temperature, bound }| (*step, place.as_str(), *temperature, *bound));
+    result.set_item("outlier", outlier)?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.warm_up_change)?;
     result.set_item("iterations", run.counters.iterations)?;

@@ -117,7 +117,7 @@ def run(
             scheme=scheme, initial=_start(initial), more=report is not None,
         )  # fmt: skip
         if out is not None and report is None and interval is None and not as_json:
-            return 0 if _stored(simulation, out).energy.closes else 1
+            return 0 if _stored(simulation, out).sound else 1
         results = _simulated(simulation)
         if report is not None:
             _write_report(report, simulation, results, {"Building": building, "Weather": weather})
@@ -130,7 +130,7 @@ def run(
         print_json(_summary(results))
     elif out is None:
         _print(results)
-    return 0 if results.energy.closes else 1
+    return 0 if results.sound else 1
 
 
 def _start(temperature: float | None) -> float | Literal["repeat"]:

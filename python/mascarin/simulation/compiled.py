@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import cached_property
@@ -51,6 +51,41 @@ class Failure:
 
     member: int
     reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleRun:
+    """Results of an ensemble. ``records, residuals, failures = run`` takes the first three.
+
+    Parameters
+    ----------
+    records : ndarray, shape (M, rows, outputs)
+        NaN for a member that failed.
+    residuals : ndarray, shape (M,)
+        Relative energy-balance residual of each member. [-]
+    failures : list of Failure
+        Members that failed, and why.
+    outside : ndarray, shape (M,)
+        How far temperatures of each member are outside of their causes, see `Judgement`; NaN for one that
+        failed. [K]
+
+    Examples
+    --------
+    >>> records, residuals, failures = EnsembleRun(np.zeros((1, 2, 1)), np.zeros(1), [], np.zeros(1))
+    >>> failures
+    []
+    """
+
+    records: Array
+    residuals: Array
+    failures: list[Failure]
+    outside: Array
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.records, self.residuals, self.failures))
+
+    def __getitem__(self, place: int) -> Any:
+        return (self.records, self.residuals, self.failures)[place]
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +253,7 @@ class CompiledRun:
         record_every: int = 1,
         precision: Precision = "double",
         progress: Report | None = None,
-    ) -> tuple[Array, Array, list[Failure]]:
+    ) -> EnsembleRun:
         """Run many parameter vectors, several at a time in lanes and threads.
 
         Parameters
@@ -235,12 +270,8 @@ class CompiledRun:
 
         Returns
         -------
-        records : ndarray, shape (M, rows, outputs)
-            NaN for a member that failed.
-        residuals : ndarray, shape (M,)
-            Relative energy-balance residual of each member. [-]
-        failures : list of Failure
-            Members that failed, and why.
+        EnsembleRun
+            Records, energy-balance residuals, failures, and how far temperatures are outside of their causes.
 
         Raises
         ------
@@ -254,11 +285,11 @@ class CompiledRun:
         stages = float(np.prod(self.forcing.shape[:2])) * self.plan.stage_bytes
         self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
         with translated(self.dated):
-            raw, residuals, failed = self.plan.ensemble(
+            raw, residuals, outside, failed = self.plan.ensemble(
                 vectors, self.forcing, options, _of_total(progress, len(vectors)), precision == "single"
             )
         failures = [Failure(member, self.dated(reason)) for member, reason in failed]
-        return self.readings.values(raw), residuals, failures
+        return EnsembleRun(self.readings.values(raw), residuals, failures, outside)
 
     def jacobian(
         self,

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Output
     from mascarin.simulation.energy import EnergyLedger
+    from mascarin.simulation.judgement import Judgement
     from mascarin.simulation.provenance import Provenance
     from mascarin.simulation.times import Times
     from mascarin.simulation.vapour import VapourLedger
@@ -33,12 +34,20 @@ class Finished:
         Warnings about the run.
     vapour : VapourLedger or None
         The vapour balance of a building with humidity.
+    judgement : Judgement or None
+        Temperatures against their causes; None for a run of an earlier version.
     """
 
     energy: EnergyLedger
     provenance: Provenance
     warnings: tuple[str, ...] = ()
     vapour: VapourLedger | None = None
+    judgement: Judgement | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether the energy balance closes and every temperature has a cause."""
+        return self.energy.closes and (self.judgement is None or self.judgement.sound)
 
     def attributes(self, outputs: Sequence[Output], timezone: str) -> dict[str, Any]:
         """Version, provenance, energy balance and outputs, as files hold them.
@@ -57,6 +66,7 @@ class Finished:
             "provenance": json.dumps(self.provenance.to_dict()),
             "energy": json.dumps(self.energy.to_dict()),
             **({} if self.vapour is None else {"vapour": json.dumps(self.vapour.to_dict())}),
+            **({} if self.judgement is None else {"judgement": json.dumps(self.judgement.to_dict())}),
             "warnings": json.dumps(list(self.warnings)),
             "outputs": json.dumps([asdict(output) for output in outputs]),
         }

@@ -16,6 +16,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.finished import Finished
+from mascarin.simulation.judgement import Judgement
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
 from mascarin.simulation.times import Times
@@ -62,10 +63,12 @@ class Results(Mapping[str, "xr.DataArray"]):
     provenance : Provenance
         Version, inputs and options.
     warnings : tuple of str
-        An energy balance that does not close; phase-change layers that neither melted nor froze; a time step
-        that is too long.
+        An energy balance that does not close; temperatures without a cause; phase-change layers that neither
+        melted nor froze; a time step that is too long.
     vapour : VapourLedger or None
         The vapour balance of a building with humidity.
+    judgement : Judgement or None
+        Temperatures against their causes; None for a run of an earlier version.
 
     Examples
     --------
@@ -85,6 +88,16 @@ class Results(Mapping[str, "xr.DataArray"]):
     provenance: Provenance
     warnings: tuple[str, ...] = ()
     vapour: VapourLedger | None = None
+    judgement: Judgement | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether the energy balance closes and every temperature has a cause; `warnings` says what does not."""
+        return self._finished.sound
+
+    @property
+    def _finished(self) -> Finished:
+        return Finished(self.energy, self.provenance, self.warnings, self.vapour, self.judgement)
 
     @property
     def index(self) -> pd.DatetimeIndex:
@@ -144,6 +157,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             and self.records.tobytes() == other.records.tobytes()
             and self.energy == other.energy
             and self.vapour == other.vapour
+            and self.judgement == other.judgement
             and self.provenance.to_dict() == other.provenance.to_dict()
             and self.warnings == other.warnings
         )
@@ -281,8 +295,7 @@ class Results(Mapping[str, "xr.DataArray"]):
 
     def _attributes(self) -> dict[str, Any]:
         """Version, provenance, energy balance and outputs, as files hold them."""
-        known = Finished(self.energy, self.provenance, self.warnings, self.vapour)
-        return known.attributes(self.outputs, self.times.timezone)
+        return self._finished.attributes(self.outputs, self.times.timezone)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write everything to a NetCDF file, which appears when it is complete.
@@ -371,6 +384,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             provenance=Provenance.from_dict(json.loads(attributes["provenance"])),
             warnings=tuple(json.loads(attributes["warnings"])),
             vapour=VapourLedger.from_json(attributes.get("vapour")),
+            judgement=_judgement(attributes.get("judgement")),
         )
 
     def plot(
@@ -492,3 +506,7 @@ def _output(fields: Mapping[str, Any]) -> Output:
     from mascarin.building import Output  # pydantic, which an evaluation for GenOpt does without
 
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})
+
+
+def _judgement(text: str | None) -> Judgement | None:
+    return None if text is None else Judgement(**json.loads(text))

@@ -18,6 +18,7 @@ from mascarin.simulation.blocks import InMemory, Watch
 from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.finished import Finished, StoredRun
+from mascarin.simulation.judgement import Judgement
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
@@ -305,6 +306,7 @@ class Simulation(VectorRuns):
             provenance=found.provenance,
             warnings=found.warnings,
             vapour=found.vapour,
+            judgement=found.judgement,
         )
 
     def run_into(
@@ -385,7 +387,8 @@ class Simulation(VectorRuns):
         raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        warnings = [*energy.warnings(), *watch.melting.warnings()]
+        judgement = Judgement.read(raw, self.compiled.dated)
+        warnings = [*energy.warnings(), *judgement.warnings(self.step_seconds), *watch.melting.warnings()]
         warnings += vapour.warnings() if vapour is not None else []
         if self.scheme == "sdirk2":
             warnings += watch.bends.warnings(self.step_seconds)
@@ -407,6 +410,7 @@ class Simulation(VectorRuns):
             ),
             warnings=tuple(warnings),
             vapour=vapour,
+            judgement=judgement,
         )
 
     @cached_property

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
+from mascarin.simulation.compiled import MEMORY, CompiledRun, EnsembleRun, Trajectory
 from mascarin.simulation.limits import Limits, require_control_times, require_set_points_apart
 
 if TYPE_CHECKING:
@@ -204,7 +204,7 @@ class VectorRuns:
         record_every: int = 1,
         precision: Precision = "double",
         progress: Report | None = None,
-    ) -> tuple[Array, Array, list[Failure]]:
+    ) -> EnsembleRun:
         """Check the vectors and run them by `CompiledRun.ensemble`, which explains arguments and results.
 
         Raises

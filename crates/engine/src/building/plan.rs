@@ -163,6 +163,18 @@ impl Plan {
         let side = if surface.is_outside() { "outside" } else { "inside" };
         format!("surface {} ({side})", self.description.surfaces[surface.wall()].name)
     }
+
+    /// Name of the layer, or of the pane, of a cell of a wall, as error messages say it.
+    #[must_use]
+    pub fn cell_name(&self, wall: usize, cell: usize) -> String {
+        let surface = &self.description.surfaces[wall];
+        let layers = &self.description.constructions[surface.construction].layers;
+        let layer = self.walls[wall].cell_layers[cell];
+        match layers.get(layer) {
+            Some(layer) => format!("surface {} (layer {})", surface.name, layer.name),
+            None => format!("window {} (pane {})", surface.name, layer + 1),
+        }
+    }
 }
 
 #[cfg(test)]

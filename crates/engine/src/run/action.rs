@@ -4,6 +4,7 @@ use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::run::options::Options;
+use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
@@ -57,6 +58,20 @@ impl Action {
         [Self::Balance, Self::first(options)].into_iter().chain((1..steps).map(Self::Step))
     }
 
+    /// Index of the step that it takes; that of the first one where it takes none.
+    pub(crate) fn step(self) -> usize {
+        match self {
+            Self::BeginPeriod | Self::Balance | Self::FirstStep => 0,
+            Self::WarmUp(step) | Self::Step(step) => step,
+        }
+    }
+
+    /// The forcing of its first and of its last stage.
+    pub(crate) fn weather_rows<'w>(self, weather: &Weather<'w>, scheme: Scheme) -> [&'w [f64]; 2] {
+        let last = if self == Self::Balance { 0 } else { scheme.weights().len() - 1 };
+        [0, last].map(|stage| weather.row(self.step(), stage))
+    }
+
     /// Row of the records that the state after it is written to.
     pub(crate) fn row(self, options: &Options) -> Option<usize> {
         // Row k is the state at the start of step `record_from + k * record_every`.
@@ -74,7 +89,6 @@ impl Action {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::scheme::Scheme;
     use crate::step::state::Initial;
 
     /// The rows of the actions of a run are those that its options count, without gap.

@@ -48,6 +48,9 @@ pub struct Ensemble {
     pub records: Vec<f64>,
     /// Relative residual of the energy balance of each member, or of its vapour balance if that is larger [-]; NaN for one that failed.
     pub closure: Vec<f64>,
+    /// How far temperatures of each member were outside of their causes by more than the scheme's overshoot [K]; NaN for one that failed.
+    /// See [`physical_limits`](crate::run::physical_limits).
+    pub outside: Vec<f64>,
     /// Members that failed, with the reason.
     pub failures: Vec<(usize, EngineError)>,
 }
@@ -108,18 +111,20 @@ fn run_all(
     let mut result = Ensemble {
         records: vec![f64::NAN; members * row],
         closure: vec![f64::NAN; members],
+        outside: vec![f64::NAN; members],
         failures: Vec::new(),
     };
     let lanes = precision.width();
     let alone = precision == Precision::Double && members % lanes <= FEW;
     let few = if alone { members % lanes } else { 0 };
     let (in_packs, alone) = result.closure.split_at_mut(members - few);
-    let (mut first, mut rest) = (0, &mut result.records[..]);
+    let (mut first, mut rest, mut outsides) = (0, &mut result.records[..], &mut result.outside[..]);
     let packs = in_packs.chunks_mut(lanes).chain(alone.chunks_mut(1)).map(|closure| {
-        let records;
+        let (records, outside);
         (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
+        (outside, outsides) = core::mem::take(&mut outsides).split_at_mut(closure.len());
         first += closure.len();
-        (first - closure.len(), Target { records, closure, row })
+        (first - closure.len(), Target { records, closure, outside, row })
     });
     let packs: Vec<_> = packs.collect();
     let failures: Result<Vec<_>, EngineError> = packs
@@ -140,12 +145,13 @@ fn run_all(
 struct Target<'a> {
     records: &'a mut [f64],
     closure: &'a mut [f64],
+    outside: &'a mut [f64],
     row: usize,
 }
 
 impl Target<'_> {
-    /// Writes the records of a pack, one after the other, and the closure of each member.
-    fn write<S: Real>(&mut self, records: &[S], closure: S) {
+    /// Writes the records of a pack, one after the other, and the closure and the judgement of each member.
+    fn write<S: Real>(&mut self, records: &[S], closure: S, outside: S) {
         let mut rows: Vec<_> = self.records.chunks_mut(self.row.max(1)).collect();
         for (k, record) in records.iter().enumerate() {
             for (member, row) in rows.iter_mut().enumerate() {
@@ -154,6 +160,9 @@ impl Target<'_> {
         }
         for (member, own) in self.closure.iter_mut().enumerate() {
             *own = closure.lane(member);
+        }
+        for (member, own) in self.outside.iter_mut().enumerate() {
+            *own = outside.lane(member);
         }
     }
 }
@@ -187,7 +196,7 @@ impl LaneTask for InLanes<'_, '_, '_> {
         let lanes: Vec<S> = (0..width).map(|p| pack(&of(p).collect::<Vec<_>>())).collect();
         let run = march_in(plan, &lanes, weather, options, control)?;
         let closure = run.ledger.worst_closure();
-        self.target.write(&run.records, closure);
+        self.target.write(&run.records, closure, run.outside);
         let closed = closure.lt(S::constant(CLOSES)) | S::Mask::splat(!S::SINGLE);
         let lost = |lane: usize| run.failed.lane(lane) || !closed.lane(lane);
         Ok((0..members).filter(|&member| lost(member)).collect())
@@ -207,9 +216,11 @@ impl<'a> Pack<'a, '_> {
         target: &mut Target<'a>,
     ) -> Result<Vec<(usize, EngineError)>, EngineError> {
         let left = match self.run_in_lanes(level, precision, target) {
-            Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => {
-                (0..self.members).collect()
-            }
+            Err(
+                EngineError::NotConverged { .. }
+                | EngineError::WarmUpNotConverged { .. }
+                | EngineError::Impossible { .. },
+            ) => (0..self.members).collect(),
             other => other?,
         };
         let mut failures = Vec::new();
@@ -244,19 +255,17 @@ impl<'a> Pack<'a, '_> {
         let width = self.plan.description.parameters.len();
         let numbers = &self.numbers[member * width..(member + 1) * width];
         let found = march_in(self.plan, numbers, self.weather, self.options, self.control);
-        let (records, closure) = (
-            &mut target.records[member * target.row..(member + 1) * target.row],
-            &mut target.closure[member],
-        );
+        let records = &mut target.records[member * target.row..(member + 1) * target.row];
+        let (closure, outside) = (&mut target.closure[member], &mut target.outside[member]);
         match found {
             Ok(run) => {
                 records.copy_from_slice(&run.records);
-                *closure = run.ledger.worst_closure();
+                (*closure, *outside) = (run.ledger.worst_closure(), run.outside);
                 Ok(())
             }
             Err(error) => {
                 records.fill(f64::NAN);
-                *closure = f64::NAN;
+                (*closure, *outside) = (f64::NAN, f64::NAN);
                 Err(error)
             }
         }

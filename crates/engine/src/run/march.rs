@@ -4,10 +4,11 @@ use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
+use crate::run::physical_limits::{Outlier, PhysicalLimits, beyond_limits, require_limits};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::newton::Counters;
@@ -32,12 +33,18 @@ pub struct Run<S: Real> {
     pub counters: Counters<S>,
     /// Lanes that failed: their numbers have no meaning.
     pub failed: S::Mask,
+    /// How far temperatures were outside of their causes by more than the scheme's overshoot [K]; see
+    /// [`physical_limits`](crate::run::physical_limits).
+    pub outside: S,
+    /// Where that was first, in a run of one member.
+    pub outlier: Option<Outlier>,
 }
 
 /// Runs a plan at a parameter vector.
 ///
 /// # Errors
-/// [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`], [`EngineError::Interrupted`], [`EngineError::Input`].
+/// [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`], [`EngineError::Impossible`], [`EngineError::Interrupted`],
+/// [`EngineError::Input`].
 pub fn march<S: Real>(
     plan: &Plan,
     parameters: &[S],
@@ -93,13 +100,16 @@ pub(crate) fn march_observed<'a, S: Real>(
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
+    let mut limits = PhysicalLimits::new(&state, options.scheme);
     for action in Action::all(weather.steps(), options) {
         control.check()?;
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
         control.count_step();
+        limits.judge(&mut stepper, &state, action.weather_rows(weather, options.scheme), action.step())?;
         if action.row(options).is_some() {
             let step = stepper.readings();
             records.extend(options.probes.iter().map(|output| output.read(plan, &step, &state)));
+            judge_records(&mut stepper, &options.probes, &records, action.step())?;
         }
         observe(&stepper, &state, action)?;
     }
@@ -112,5 +122,27 @@ pub(crate) fn march_observed<'a, S: Real>(
         warm_up_change,
         counters: stepper.counters(),
         failed: stepper.failed(),
+        outside: limits.excess,
+        outlier: limits.outlier,
     })
+}
+
+/// Judges the last row of some records, see [`physical_limits`](crate::run::physical_limits).
+#[inline(always)]
+fn judge_records<S: Real>(
+    stepper: &mut Stepper<'_, S>,
+    outputs: &[Output],
+    records: &[S],
+    step: usize,
+) -> Result<(), EngineError> {
+    let row = &records[records.len() - outputs.len()..];
+    let beyond = beyond_limits(outputs, row);
+    if beyond.any() {
+        if const { S::LANES == 1 } {
+            let values: Vec<f64> = row.iter().map(|value| value.lane(0)).collect();
+            require_limits(outputs, &values, step)?;
+        }
+        stepper.give_up(beyond);
+    }
+    Ok(())
 }

@@ -8,6 +8,7 @@ pub mod march;
 pub mod options;
 pub mod outputs;
 pub(crate) mod periodic_start;
+pub mod physical_limits;
 pub mod ratings;
 pub mod stepwise;
 pub mod streamed;

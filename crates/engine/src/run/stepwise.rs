@@ -9,6 +9,7 @@ use crate::input::forcing::Forcing;
 use crate::run::action::Action;
 use crate::run::march::prepare;
 use crate::run::options::Options;
+use crate::run::physical_limits::{Outlier, PhysicalLimits, require_limits};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::state::State;
@@ -25,6 +26,7 @@ pub struct StepByStep<'a> {
     weather: Weather<'a>,
     state: State<f64>,
     ledger: Ledger<f64>,
+    limits: PhysicalLimits<f64>,
     /// Steps made since the start.
     steps: usize,
 }
@@ -37,7 +39,7 @@ impl<'a> StepByStep<'a> {
     /// first step.
     ///
     /// # Errors
-    /// [`EngineError::Input`], [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`].
+    /// [`EngineError::Input`], [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`], [`EngineError::Impossible`].
     pub fn start(
         plan: &'a Plan,
         parameters: &'a [f64],
@@ -54,30 +56,36 @@ impl<'a> StepByStep<'a> {
         let weather = Weather::for_single_run(plan, first_period, repeated);
         let control = RunControl::default();
         warm_up(&mut stepper, &mut state, &weather, options, &control, &mut |_, _, _| Ok(()))?;
-        let mut ledger = Ledger::new();
-        Action::Balance.take(&mut stepper, &mut state, &weather.of(first_step), options.dt, &mut ledger)?;
+        let (mut ledger, mut limits) = (Ledger::new(), PhysicalLimits::new(&state, options.scheme));
+        let first = weather.of(first_step);
+        Action::Balance.take(&mut stepper, &mut state, &first, options.dt, &mut ledger)?;
+        limits.judge(&mut stepper, &state, Action::Balance.weather_rows(&first, options.scheme), 0)?;
         let weather = Weather::for_single_run(plan, &Forcing::none(), 0);
-        Ok(Self { plan, options, stepper, weather, state, ledger, steps: 0 })
+        Ok(Self { plan, options, stepper, weather, state, ledger, limits, steps: 0 })
     }
 
-    /// Makes a step in its weather. The state stays as it was where it fails.
+    /// Makes a step in its weather. The state stays as it was where the step fails; after an impossible one the run cannot go on.
     ///
     /// # Errors
-    /// [`EngineError::Input`], [`EngineError::NotConverged`].
+    /// [`EngineError::Input`], [`EngineError::NotConverged`], [`EngineError::Impossible`].
     pub fn step(&mut self, forcing: &Forcing<'_>) -> Result<(), EngineError> {
         self.options.check_forcing(self.plan, forcing)?;
         // The forcing holds one step.
         let action = if self.steps == 0 { Action::first(self.options) } else { Action::Step(0) };
         let weather = self.weather.of(forcing);
-        let Self { stepper, state, ledger, .. } = self;
+        let Self { stepper, state, ledger, limits, .. } = self;
         action.take(stepper, state, &weather, self.options.dt, ledger).map_err(|error| match error {
             EngineError::NotConverged { stage, place, residual, iterations, .. } => {
                 EngineError::NotConverged { step: self.steps, stage, place, residual, iterations }
             }
             other => other,
         })?;
+        let rows = action.weather_rows(&weather, self.options.scheme);
+        limits.judge(stepper, state, rows, self.steps)?;
         self.steps += 1;
-        Ok(())
+        let mut values = Vec::new();
+        self.read(&mut values);
+        require_limits(&self.options.probes, &values, self.steps - 1)
     }
 
     /// Reads the outputs of the options: the state at the start, or after the last step.
@@ -85,6 +93,13 @@ impl<'a> StepByStep<'a> {
         values.clear();
         let step = self.stepper.readings();
         values.extend(self.options.probes.iter().map(|output| output.read(self.plan, &step, &self.state)));
+    }
+
+    /// The first temperature that was outside of its causes by more than the scheme's overshoot, if any; see
+    /// [`physical_limits`](crate::run::physical_limits).
+    #[must_use]
+    pub fn outlier(&self) -> Option<&Outlier> {
+        self.limits.outlier.as_ref()
     }
 
     /// Steps made since the start.
@@ -127,6 +142,7 @@ impl<'a> StepByStep<'a> {
         self.state.read(state, |mine, saved| *mine = saved);
         self.stepper.set_history(&history);
         self.ledger = Ledger::new();
+        self.limits = PhysicalLimits::new(&self.state, self.options.scheme);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and not negative")]
         let steps = steps as usize;
         self.steps = steps;

@@ -284,14 +284,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         for (w, wall) in plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
             for i in 0..wall.len() {
                 let k = wall.first_cell + i;
-                look(self.solution.cells[k], self.iterate.cells[k], &|| {
-                    let surface = &plan.description.surfaces[w];
-                    let layers = &plan.description.constructions[surface.construction].layers;
-                    match layers.get(wall.cell_layers[i]) {
-                        Some(layer) => format!("surface {} (layer {})", surface.name, layer.name),
-                        None => format!("window {} (pane {})", surface.name, wall.cell_layers[i] + 1),
-                    }
-                });
+                look(self.solution.cells[k], self.iterate.cells[k], &|| plan.cell_name(w, i));
             }
         }
         let (step, stage) = stage.place;

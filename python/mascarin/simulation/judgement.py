@@ -1,0 +1,127 @@
+"""What a run has done that its surroundings cannot cause; see docs/engine.md, "What is impossible"."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import numpy as np
+
+from mascarin.simulation.coarse import STEPS
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
+
+#: The step that is recommended, as a part of the step that was taken: the overshoot of a step of second order falls with its square. [-]
+_SHORTER: Final = 0.25
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Temperatures of a run against all that could cause them.
+
+    Parameters
+    ----------
+    outside : float
+        How far a temperature was below the lowest, or above the highest, of the start and of all temperatures
+        that acted on the building, beyond what the scheme may overshoot; zero in a sound run. [K]
+    place : str
+        Part of the building where that was first; empty in a sound run.
+    when : str
+        Step of that, with its time.
+    temperature : float
+        The temperature there. [degC]
+    bound : float
+        The lowest or highest of its causes. [degC]
+
+    Examples
+    --------
+    >>> Judgement().sound
+    True
+    """
+
+    outside: float = 0.0
+    place: str = ""
+    when: str = ""
+    temperature: float = 0.0
+    bound: float = 0.0
+
+    @property
+    def sound(self) -> bool:
+        """Whether every temperature has a cause."""
+        return self.outside <= 0.0
+
+    @classmethod
+    def read(cls, raw: Mapping[str, Any], dated: Callable[[str], str]) -> Self:
+        """Make one from what the engine returns of a run.
+
+        Parameters
+        ----------
+        raw : mapping
+            ``outside`` [K] and ``outlier``: step, place, temperature and bound [degC], or None.
+        dated : callable
+            Adds the time to a text that names a step.
+        """
+        if raw["outlier"] is None:
+            return cls()
+        step, place, temperature, bound = raw["outlier"]
+        return cls(float(raw["outside"]), place, dated(f"step {step}"), float(temperature), float(bound))
+
+    def warnings(self, step_seconds: float) -> list[str]:
+        """One line where a temperature has no cause, else nothing.
+
+        Parameters
+        ----------
+        step_seconds : float
+            Time step of the run. [s]
+        """
+        if self.sound:
+            return []
+        side, cause = ("below", "lowest") if self.temperature < self.bound else ("above", "highest")
+        return [
+            f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} everything that acts on it (the "
+            f"{cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping scheme can "
+            f"overshoot: do not use these results. Take a step of {_shorter(step_seconds):g} min, or the scheme "
+            "backward-euler"
+        ]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+
+def member_warnings(outside: Array, step_seconds: float, first: int = 0) -> list[str]:
+    """One line where members of an ensemble have temperatures without a cause, else nothing.
+
+    Parameters
+    ----------
+    outside : ndarray, shape (members,)
+        `Judgement.outside` of each member; NaN for one that failed. [K]
+    step_seconds : float
+        Time step. [s]
+    first : int
+        Number of the first member.
+
+    Examples
+    --------
+    >>> member_warnings(np.array([0.0, np.nan, 2.5]), 3600.0)[0][:53]
+    '1 of 3 members: temperatures lie outside of everythin'
+    """
+    members = np.flatnonzero(outside > 0.0)
+    if not members.size:
+        return []
+    worst = int(np.nanargmax(outside))
+    return [
+        f"{members.size} of {len(outside)} members: temperatures lie outside of everything that acts on the "
+        f"building, by {outside[worst]:.2g} K more than the time-stepping scheme can overshoot (member "
+        f"{first + worst}): do not use their results. Take a step of {_shorter(step_seconds):g} min, or the "
+        "scheme backward-euler"
+    ]
+
+
+def _shorter(step_seconds: float) -> float:
+    minutes = step_seconds / 60.0 * _SHORTER
+    return next((float(step) for step in STEPS if step <= minutes), minutes)
