@@ -6,9 +6,9 @@ import jsonschema
 import pytest
 
 from building_samples import ROOM
-from mascarin.building import Building, json_schema
+from mascarin.building import Building, check, json_schema
 from mascarin.building.material import PhaseChangeMaterial
-from mascarin.building.phase_change import TableLaw, TanhLaw
+from mascarin.building.phase_change import FractionsLaw, TableLaw, TanhLaw
 from mascarin.building.reading import parse, plain
 from mascarin.errors import InputError
 from mascarin.materials import Product, library, product
@@ -124,3 +124,93 @@ def test_unknown_properties_must_be_given(monkeypatch: pytest.MonkeyPatch) -> No
 def test_the_schema_allows_the_short_form() -> None:
     validator = jsonschema.Draft202012Validator(json_schema())
     validator.validate(plain(text("product: RT25HC"), "room.yaml"))
+
+
+def test_hysteresis_takes_both_curves_of_a_product() -> None:
+    taken = building("product: RT25HC, hysteresis: {model: curve_switch}")
+    material, one = taken.materials["pcm"], product("RT25HC")
+    assert isinstance(material, PhaseChangeMaterial)
+    assert one.heating is not None
+    assert one.cooling is not None
+    assert isinstance(material.law, FractionsLaw)
+    assert material.law.temperatures == one.heating.temperatures
+    assert material.cooling is not None
+    law, centre = material.cooling
+    assert isinstance(law, FractionsLaw)
+    for t, x in zip(one.cooling.temperatures, one.cooling.liquid_fraction, strict=True):
+        assert law.fraction(t - centre) == pytest.approx(x, abs=1e-12)
+    assert taken.parameter("materials.pcm.hysteresis.law.temperature_shift").varies
+    assert '"kind":"hysteresis"' in taken.to_engine().json.replace(" ", "")
+    assert material.written() == {"product": "RT25HC", "hysteresis": {"model": "curve_switch"}}
+    assert PhaseChangeMaterial(**material.written()) == material
+    other = taken.replace({"materials.pcm.product": "RT24HC"}).materials["pcm"]
+    assert other == pcm("product: RT24HC, hysteresis: {model: curve_switch}")
+
+
+def test_hysteresis_works_with_every_product_whose_curves_do_not_cross() -> None:
+    crossed = []
+    for name, one in library.products().items():
+        if one.heating is None or one.cooling is None:
+            continue
+        more = {key: {"conductivity": 0.2, "density": 900}[key] for key in one.missing}
+        try:
+            found = PhaseChangeMaterial.from_product(name, hysteresis={"model": "curve_track"}, **more)
+        except InputError as error:
+            assert "never more liquid on heating than on cooling" in str(error)  # noqa: PT017
+            crossed.append(name)
+            continue
+        # The enthalpy of all liquid over all solid is that of the table of the product.
+        solid, liquid = (float(x) for x in one.pair("specific_heat") or (0.0, 0.0))
+        low, high = found.melting
+        by_law = (
+            solid * (found.reference - low)
+            + liquid * (high - found.reference)
+            + float(found.latent_heat or 0.0)
+        )
+        assert by_law == pytest.approx(one.enthalpies([low, high], [0.0, 1.0])[1], abs=1.0)
+    assert crossed == ["RT21HC", "PX25", "Crodatherm-19", "Crodatherm-21", "SmartBoard-21"]
+
+
+@pytest.mark.parametrize(
+    ("material", "message"),
+    [
+        ("product: RT28HC, hysteresis: {model: curve_switch}", "the source of RT28HC does not give it"),
+        ("product: RT25HC, law: cooling, hysteresis: {model: curve_switch}", "cooling beside hysteresis"),
+        ("product: RT25HC, hysteresis: {model: curve_switch, law: heating}", "hysteresis.law: cooling"),
+        ("product: Energain, hysteresis: {model: curve_switch}", "freezing_temperature: needed"),
+        ("product: RT25HC, hysteresis: {model: odd}", "curve_track"),
+        ("product: RT25HC, hysteresis: 3", "hysteresis"),
+    ],
+)
+def test_hysteresis_that_a_product_cannot_have_is_refused_with_the_reason(
+    material: str, message: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        building(material)
+    assert message in str(caught.value)
+    assert str(caught.value).startswith("room.yaml:4: materials.pcm")
+
+
+def test_hysteresis_beside_a_product_takes_other_curves_too() -> None:
+    shifted = pcm(
+        "product: RT25HC, law: {temperature_shift: 1}, "
+        "hysteresis: {model: curve_scale, law: {curve: cooling, temperature_shift: -1}}"
+    )
+    assert isinstance(shifted.law, FractionsLaw)
+    assert float(shifted.law.temperature_shift) == 1.0
+    assert shifted.cooling is not None
+    assert shifted.cooling[1] == -1.0
+    assert PhaseChangeMaterial(**shifted.written()) == shifted
+    lower = pcm("product: Energain, hysteresis: {model: curve_switch, freezing_temperature: 20}")
+    assert lower.cooling is not None
+    assert lower.cooling[1] == 20.0
+
+
+def test_a_curve_that_is_not_used_is_said() -> None:
+    def said(material: str) -> list[str]:
+        return [line for line in check(building(material)) if "is not used" in line]
+
+    assert "RT25HC freezes by its cooling curve" in said("product: RT25HC")[0]
+    assert "RT25HC melts by its heating curve" in said("product: RT25HC, law: cooling")[0]
+    assert said("product: RT25HC, hysteresis: {model: curve_switch}") == []
+    assert said("product: RT28HC") == said("product: RT25HC, law: {kind: tanh, width: 1}") == []

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple, NoReturn, TextIO, cast
 from cyclopts import App, CycloptsError, Group
 
 from mascarin import __version__
-from mascarin._io import memory
+from mascarin._io import identity, memory
 from mascarin.errors import InputError, MascarinError, SolverError
 
 EXIT_OK: Final = 0
@@ -206,7 +206,8 @@ def _run(words: list[str], debug: bool, out: TextIO, err: TextIO) -> int:
         if not debug:
             warnings.showwarning = _show_warning
         try:
-            code = build_app(words[0] if words else None)(words)
+            with identity.of_command(words):
+                code = build_app(words[0] if words else None)(words)
             sys.stdout.flush()
         except Terminated:
             _say("terminated")

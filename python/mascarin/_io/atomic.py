@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Final
 
+from mascarin._io import identity
 from mascarin._io.regular import special
 from mascarin.errors import InputError
 
@@ -20,7 +21,7 @@ PART: Final = ".part"
 
 
 @contextlib.contextmanager
-def replacing(path: Path) -> Iterator[BinaryIO]:
+def replacing(path: Path, kind: str = "") -> Iterator[BinaryIO]:
     r"""Open a file for writing that takes the place of another only when it is complete.
 
     The content goes to a temporary file of a unique name in the same folder, is flushed to the disk, and is
@@ -30,6 +31,8 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     ----------
     path : Path
         File to write; its folder exists.
+    kind : str
+        A kind that is written back over its own file; see `identity`.
 
     Yields
     ------
@@ -38,6 +41,8 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
 
     Raises
     ------
+    InputError
+        It is an input, or no file.
     OSError
         The file cannot be written; the file that was there before is unchanged.
 
@@ -50,7 +55,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     >>> target.read_text()
     'a,b\n'
     """
-    _require_folder(path)
+    _require_possible(path, kind)
     handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=PART, dir=path.parent)
     draft = Path(name)
     try:
@@ -59,15 +64,18 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
             file.flush()
             os.fsync(file.fileno())
         draft.chmod(_usual_mode())
+        identity.require_no_input(path, kind)
         draft.replace(path)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+    identity.written(path)
     _flush_folder(path.parent)
 
 
-def _require_folder(path: Path) -> None:
-    """Name the folder that is missing, not the temporary file in it; keep pipes and devices."""
+def _require_possible(path: Path, kind: str) -> None:
+    """Name the folder that is missing, not the temporary file in it; keep inputs, pipes and devices."""
+    identity.require_no_input(path, kind)
     found = special(path)
     if found is not None:
         raise InputError(f"{path}: found {found}, expected a file to write; choose another name")
@@ -81,13 +89,15 @@ def _prefix(path: Path) -> str:
 
 
 @contextlib.contextmanager
-def drafted(path: Path) -> Iterator[Path]:
+def drafted(path: Path, kind: str = "") -> Iterator[Path]:
     """Give the name of a temporary file, for libraries that write to a name; see `replacing`.
 
     Parameters
     ----------
     path : Path
         File to write; its folder exists.
+    kind : str
+        A kind that is written back over its own file; see `identity`.
 
     Yields
     ------
@@ -96,20 +106,24 @@ def drafted(path: Path) -> Iterator[Path]:
 
     Raises
     ------
+    InputError
+        It is an input, or no file.
     OSError
         The file cannot be written; the file that was there before is unchanged.
     """
-    _require_folder(path)
+    _require_possible(path, kind)
     with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=PART, dir=path.parent) as folder:
         draft = Path(folder) / path.name
         yield draft
         with draft.open("rb+") as file:
             os.fsync(file.fileno())
+        identity.require_no_input(path, kind)
         draft.replace(path)
+    identity.written(path)
     _flush_folder(path.parent)
 
 
-def write(path: Path, content: str | bytes) -> Path:
+def write(path: Path, content: str | bytes, kind: str = "") -> Path:
     """Write a whole file at once; see `replacing`.
 
     Parameters
@@ -118,6 +132,8 @@ def write(path: Path, content: str | bytes) -> Path:
         File to write.
     content : str or bytes
         Its content; text is written as UTF-8 with the line ends it has.
+    kind : str
+        A kind that is written back over its own file; see `identity`.
 
     Returns
     -------
@@ -126,10 +142,12 @@ def write(path: Path, content: str | bytes) -> Path:
 
     Raises
     ------
+    InputError
+        It is an input, or no file.
     OSError
         The file cannot be written.
     """
-    with replacing(path) as file:
+    with replacing(path, kind) as file:
         file.write(content.encode() if isinstance(content, str) else content)
     return path
 

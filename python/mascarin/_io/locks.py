@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
+from mascarin._io import identity
 from mascarin._io.regular import special
 from mascarin.errors import InputError, InUse
 
@@ -107,8 +108,8 @@ def writing(*files: Path | None) -> Iterator[None]:
     Raises
     ------
     InputError
-        There is no such folder, it cannot be written, the name is that of a folder, a pipe or a device, or
-        another process is writing to the file.
+        There is no such folder, it cannot be written, the name is that of a folder, a pipe or a device, it
+        is an input (read before, or while it is held), or another process is writing to the file.
 
     Examples
     --------
@@ -117,6 +118,7 @@ def writing(*files: Path | None) -> Iterator[None]:
     ...     pass
     """
     with contextlib.ExitStack() as held:
+        held.enter_context(identity.outputs(*(file for file in files if file is not None)))
         for file in files:
             if file is not None:
                 _require_writable(file)

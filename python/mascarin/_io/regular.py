@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Final
 
-from mascarin._io import memory
+from mascarin._io import identity, memory
 from mascarin.errors import InputError
 
 _SPECIAL = {
@@ -70,8 +70,10 @@ def special(path: Path) -> str | None:
         return None
 
 
-def require_regular(path: Path, expected: str = "a file") -> Path:
+def require_regular(path: Path, expected: str = "a file", kind: str = "") -> Path:
     """Refuse what may never end (a pipe, a device) and what no memory holds, before it is opened.
+
+    From now on the file is an input, which nothing is written onto; see `identity`.
 
     Parameters
     ----------
@@ -79,6 +81,8 @@ def require_regular(path: Path, expected: str = "a file") -> Path:
         File to read. That it is missing is said where it is opened.
     expected : str
         What it should be, in words.
+    kind : str
+        A kind that is written back over its own file; see `identity`.
 
     Returns
     -------
@@ -88,7 +92,8 @@ def require_regular(path: Path, expected: str = "a file") -> Path:
     Raises
     ------
     InputError
-        It is a pipe, a device or a socket; it has no possible name; or it is larger than the free memory.
+        It is a pipe, a device or a socket; it has no possible name; it is larger than the free memory; or it
+        is an output of this command.
 
     Examples
     --------
@@ -104,6 +109,7 @@ def require_regular(path: Path, expected: str = "a file") -> Path:
     found = special(path)
     if found is not None:
         raise InputError(f"{path}: found {found}, expected {expected}; copy its content to a file first")
+    identity.remember(path, kind)
     try:
         size = path.stat().st_size
     except OSError:

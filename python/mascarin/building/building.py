@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import ValidationError, model_validator
 
-from mascarin._io import atomic, display
+from mascarin._io import atomic, display, identity
 from mascarin._io.arguments import mapping_of
 from mascarin._io.durations import seconds_of
 from mascarin._io.listing import Listing
@@ -219,7 +219,7 @@ class Building(Description):
         """
         text = text_of(self.to_dict())
         if path is not None:
-            atomic.write(Path(path), text)
+            atomic.write(Path(path), text, identity.DESCRIPTION)
         return text
 
     # --- parameters -----------------------------------------------------------------------------------------

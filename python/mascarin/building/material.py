@@ -15,7 +15,7 @@ from mascarin.building.leaves import leaves
 from mascarin.building.melting import Melting
 from mascarin.building.number import Fixed, Number
 from mascarin.building.part import Part, fault, insist, written_value
-from mascarin.building.phase_change import CapacityLaw, Law, TableLaw
+from mascarin.building.phase_change import CapacityLaw, FractionLaw, FractionsLaw, Hysteresis, Law, TableLaw
 from mascarin.building.products import DEFAULT_CURVE, expand
 
 
@@ -136,18 +136,22 @@ class PhaseChangeMaterial(Melting):
         return self
 
     def _curve_of_nothing(self) -> list[InitErrorDetails]:
-        law = self.law
-        if self.product is not None or not isinstance(law, TableLaw) or law.curve is None:
-            return []
-        if any(number.derived for _, number, _ in leaves(law)):
-            return []  # the law of a material with a product, used in another one
+        laws: dict[tuple[str, ...], Law | FractionLaw] = {("law",): self.law}
+        if self.hysteresis is not None and self.hysteresis.law is not None:
+            laws["hysteresis", "law"] = self.hysteresis.law
         return [
             fault(
-                ("law", "curve"),
+                (*place, "curve"),
                 f"'{law.curve}'",
                 "none: there is no 'product:' beside it",
                 "Remove 'curve:'.",
             )
+            for place, law in laws.items()
+            # Derived numbers: the law of a material with a product, used in another one.
+            if self.product is None
+            and isinstance(law, TableLaw | FractionsLaw)
+            and law.curve is not None
+            and not any(number.derived for _, number, _ in leaves(law))
         ]
 
     def written(self, *, keep_derived: bool = False) -> dict[str, Any]:
@@ -160,13 +164,26 @@ class PhaseChangeMaterial(Melting):
         for key in type(self).model_fields:
             if key in ("kind", "product") or key not in self.model_fields_set:
                 continue
-            value = _beside_product(self.law) if key == "law" else written_value(getattr(self, key))
+            if key == "law":
+                value = _beside_product(self.law, DEFAULT_CURVE)
+            elif key == "hysteresis" and self.hysteresis is not None:
+                value = _hysteresis_beside_product(self.hysteresis)
+            else:
+                value = written_value(getattr(self, key))
             if value not in (None, {}):
                 fields[key] = value
         return fields
 
 
-def _beside_product(law: Law) -> Any:
+def _hysteresis_beside_product(hysteresis: Hysteresis) -> Any:
+    """Content of a file for a hysteresis beside a product, whose cooling curve is that of the product."""
+    fields = hysteresis.written()
+    if hysteresis.law is not None:
+        fields["law"] = _beside_product(hysteresis.law, "cooling")
+    return {key: value for key, value in fields.items() if value not in (None, {})}
+
+
+def _beside_product(law: Law | FractionLaw, usual: str) -> Any:
     """Content of a file for a law beside a product: the whole law, or what differs from the product."""
     if not any(number.derived for _, number, _ in leaves(law)):
         return law.written()
@@ -176,8 +193,8 @@ def _beside_product(law: Law) -> Any:
         for key, value in fields.items()
         if value is not None and not (isinstance(value, list) and None in value)
     }
-    curve = law.curve if isinstance(law, TableLaw) else None
-    if curve in (None, DEFAULT_CURVE):
+    curve = law.curve if isinstance(law, TableLaw | FractionsLaw) else None
+    if curve in (None, usual):
         return fields
     return {"curve": curve, **fields} if fields else curve
 

@@ -262,6 +262,9 @@ class FractionsLaw(Part):
     temperatures: tuple[q.CurveTemperature, ...]
     fractions: tuple[q.CurveFraction, ...]
     temperature_shift: q.TemperatureShift = Number(0.0, source=Remark("the curve as measured"))
+    curve: Literal["heating", "cooling"] | None = Field(
+        None, description="Curve of the product that the fractions are; only beside 'product:'"
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> FractionsLaw:

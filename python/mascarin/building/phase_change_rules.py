@@ -265,7 +265,8 @@ def crossing_curves(material: Melting) -> list[InitErrorDetails]:
             ("hysteresis",),
             f"{melted:.3g} % liquid on heating and {left:.3g} % on cooling at {at:.2f} degC",
             "never more liquid on heating than on cooling",
-            "Exchange the two curves, lower freezing_temperature, or narrow the wider curve.",
+            "Exchange the two curves, lower freezing_temperature, narrow the wider curve, or leave "
+            "hysteresis out.",
         )
     ]
 

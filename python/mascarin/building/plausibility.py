@@ -11,10 +11,12 @@ from mascarin.building.geometry import volume as enclosed_volume
 from mascarin.building.humidity_rules import humidity_warnings
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.mesh import Mesh
+from mascarin.building.phase_change import TableLaw
 from mascarin.building.phase_change_rules import unordered_slopes
 from mascarin.building.phases import phase
 from mascarin.building.rules import shaded
 from mascarin.errors import InputError
+from mascarin.materials.library import curves, product
 
 #: Thermal diffusivities of building materials, from dense polymers to copper and silver [m2/s].
 _DIFFUSIVITIES = (1e-8, 2e-4)
@@ -69,12 +71,32 @@ def _implausible_melting(building: Description) -> Iterator[str]:
                 "flattens faster than the cooling curve: with curve_scale a small cycle there would melt "
                 "at a lower temperature than it freezes. Take curves of one shape and width, or curve_switch"
             )
+        unused = _unused_curve(material)
+        if unused is not None:
+            yield f"materials.{name}: {unused}"
         solid, liquid = (phase(material.density, state) for state in ("solid", "liquid"))
         if abs(solid / liquid - 1.0) > 0.25:
             yield (
                 f"materials.{name}.density: {solid:g} kg/m3 solid, {liquid:g} kg/m3 liquid: the layer keeps "
                 f"its mass and would be {100 * (solid / liquid - 1.0):+.0f} % thicker when molten"
             )
+
+
+def _unused_curve(material: PhaseChangeMaterial) -> str | None:
+    """What is ignored of a product that freezes by another curve than it melts by; None where nothing is."""
+    one = None if material.product is None else product(material.product)
+    if one is None or one.heating is None or one.cooling is None or material.hysteresis is not None:
+        return None
+    used = material.law.curve if isinstance(material.law, TableLaw) else None
+    if used is None:
+        return None  # a law of the user
+    other, does = ("cooling", "freezes") if used == "heating" else ("heating", "melts")
+    halves = {name: curve.temperature_at(0.5) for name, curve in curves(one)}
+    return (
+        f"{one.name} {does} by its {other} curve (half at {halves[other]:.1f} degC), which is not used: it "
+        f"melts and freezes by its {used} curve (half at {halves[used]:.1f} degC). For both curves write "
+        "'hysteresis: {model: curve_switch}' and no law"
+    )
 
 
 def _implausible_enclosures(building: Description) -> Iterator[str]:

@@ -47,6 +47,8 @@ def expand(raw: Any) -> Any:
     expanded |= {key: _over(expanded.get(key), value) for key, value in given.items()}
     expanded["product"] = one.name
     _complete(expanded, one)
+    if given.get("hysteresis") is not None:
+        return _with_hysteresis(expanded, given, one)
     law = _law(given.get("law"), one)
     if law is None:
         raise problem(
@@ -56,6 +58,97 @@ def expand(raw: Any) -> Any:
         )
     expanded["law"] = law
     return _melting(one) | expanded if _by_melting_temperature(law) else expanded
+
+
+def _with_hysteresis(expanded: dict[str, Any], given: Mapping[str, Any], one: Product) -> dict[str, Any]:
+    """The material with the curves of the product as liquid fractions, which hysteresis needs."""
+    law = _heating_fractions(given.get("law"), one)
+    hysteresis = _cooling_fractions(given["hysteresis"], law, one)
+    numbers = _melting(one)
+    if _is_fractions(law):
+        numbers = {"latent_heat": _latent_heat(one, law)}
+    return numbers | expanded | {"law": law, "hysteresis": hysteresis}
+
+
+def _heating_fractions(given: Any, one: Product) -> Any:
+    """The heating curve: a law as given, else that of the product."""
+    named = given if isinstance(given, str) else given.get("curve") if isinstance(given, Mapping) else None
+    if named is not None and named != DEFAULT_CURVE:
+        raise problem(
+            f"law: {named} beside hysteresis",
+            f"law: {DEFAULT_CURVE}, or none; the cooling curve belongs below hysteresis",
+            "Remove 'law:'.",
+        )
+    whole = isinstance(given, Mapping) and "kind" in given and named is None
+    if whole or not (given is None or isinstance(given, str | Mapping)):
+        return given
+    more = {key: value for key, value in given.items() if key != "kind"} if isinstance(given, Mapping) else {}
+    if one.heating is not None:
+        return _fractions(one, one.heating, DEFAULT_CURVE) | more
+    own = _own_law(one)
+    if own is None or named is not None:
+        raise problem(
+            f"hysteresis; {one.name} has no heating curve",
+            "law: how it melts, by its liquid fraction",
+            "Add 'law:', such as {kind: tanh, width: 1.0}, and freezing_temperature below hysteresis.",
+        )
+    return own | more
+
+
+def _cooling_fractions(given: Any, law: Any, one: Product) -> Any:
+    """What is given of the hysteresis, with the cooling curve of the product where no other is given."""
+    if not isinstance(given, Mapping):
+        keys = ("model", "freezing_temperature", "law")
+        if not all(hasattr(given, key) for key in keys):
+            return given
+        given = {key: getattr(given, key) for key in keys if getattr(given, key) is not None}
+    shape = given.get("law")
+    named = shape if isinstance(shape, str) else shape.get("curve") if isinstance(shape, Mapping) else None
+    if named is not None and named != "cooling":
+        raise problem(f"hysteresis.law: {named}", "hysteresis.law: cooling, or none", "Remove this 'law:'.")
+    partial = isinstance(shape, Mapping) and ("kind" not in shape or named is not None)
+    if shape is not None and named is None and not partial:
+        return given
+    if shape is None and (given.get("freezing_temperature") is not None or not _is_fractions(law)):
+        return given  # the shape of the heating curve, about another temperature
+    if one.cooling is None:
+        raise problem(
+            f"hysteresis without a cooling curve; the source of {one.name} does not give it",
+            "hysteresis: {model: ..., law: {kind: fractions, ...}}, or another law with freezing_temperature",
+            "Add the cooling curve, or choose a product with both curves: 'mascarin materials' shows them.",
+        )
+    more = {key: value for key, value in shape.items() if key != "kind"} if partial else {}
+    return {**given, "law": _fractions(one, one.cooling, "cooling") | more}
+
+
+def _is_fractions(law: Any) -> bool:
+    kind = law.get("kind") if isinstance(law, Mapping) else getattr(law, "kind", None)
+    return kind == "fractions"
+
+
+def _fractions(one: Product, curve: Curve, name: str) -> dict[str, Any]:
+    return {
+        "kind": "fractions",
+        "curve": name,
+        "temperatures": _noted(list(curve.temperatures), one),
+        "fractions": _noted(list(curve.liquid_fraction), one),
+    }
+
+
+def _latent_heat(one: Product, law: Any) -> Number:
+    """Latent heat in the middle of the heating curve, to which a law of fractions refers.
+
+    That of the product is at its melting temperature; between the two lies a difference of sensible heat.
+    """
+    found: Number = _noted(one.raw["latent_heat"], one)
+    heats, centre = one.pair("specific_heat"), one.melting_temperature
+    points = law.get("temperatures") if isinstance(law, Mapping) else law.temperatures
+    if heats is None or centre is None or heats[0] == heats[1] or not points:
+        return found
+    middle = 0.5 * (float(points[0]) + float(points[-1]))
+    moved = float(found) + (heats[1] - heats[0]) * (middle - centre)
+    note = f"at {middle:g} degC, from {float(found):g} J/kg at {centre:g} degC; {found.source}"
+    return Number(round(moved, 1), source=note, assumed=found.assumed, derived=True)
 
 
 def _over(own: Any, given: Any) -> Any:

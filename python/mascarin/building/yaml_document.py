@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
 from mascarin._io.memory import uncollected
+from mascarin._io.identity import DESCRIPTION
 from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
@@ -95,7 +96,7 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
 
     def one(file: Path) -> tuple[dict[str, Any], dict[Place, int]]:
         try:
-            text = require_regular(file, f"a YAML file of {what}").read_text(encoding="utf-8")
+            text = require_regular(file, f"a YAML file of {what}", DESCRIPTION).read_text("utf-8")
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io.limits import above, at_least, below
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation, Flags, Floats
 
@@ -40,8 +41,8 @@ def adaptive_en(here: Conditions, category: str) -> Evaluation:
     mean = _known(here.running_mean)
     outside = {
         "no running mean: fewer than seven days of weather before": np.isnan(mean),
-        f"running mean below {_EN_RANGE[0]:g} degC": mean < _EN_RANGE[0],
-        f"running mean above {_EN_RANGE[1]:g} degC": mean > _EN_RANGE[1],
+        f"running mean below {_EN_RANGE[0]:g} degC": below(mean, _EN_RANGE[0]),
+        f"running mean above {_EN_RANGE[1]:g} degC": above(mean, _EN_RANGE[1]),
     }
     return _around(here, 0.33 * mean + 18.8, EN_CATEGORIES[category], outside)
 
@@ -52,9 +53,11 @@ def adaptive_ashrae(here: Conditions, category: str) -> Evaluation:
     low, high = _ASHRAE_MET
     outside = {
         "no prevailing mean: fewer than seven days of weather before": np.isnan(mean),
-        f"prevailing mean below {_ASHRAE_RANGE[0]:g} degC": mean < _ASHRAE_RANGE[0],
-        f"prevailing mean above {_ASHRAE_RANGE[1]:g} degC": mean > _ASHRAE_RANGE[1],
-        f"metabolic rate outside {low:g} to {high:g} met": np.asarray(not low <= here.metabolic_rate <= high),
+        f"prevailing mean below {_ASHRAE_RANGE[0]:g} degC": below(mean, _ASHRAE_RANGE[0]),
+        f"prevailing mean above {_ASHRAE_RANGE[1]:g} degC": above(mean, _ASHRAE_RANGE[1]),
+        f"metabolic rate outside {low:g} to {high:g} met": np.asarray(
+            below(here.metabolic_rate, low) or above(here.metabolic_rate, high)
+        ),
     }
     return _around(here, 0.31 * mean + 17.8, ASHRAE_CATEGORIES[category], outside)
 
@@ -112,8 +115,8 @@ def rise_of_limit(air_speed: npt.ArrayLike, operative: npt.ArrayLike) -> Floats:
     speed, warm = np.broadcast_arrays(np.asarray(air_speed, dtype=np.float64), np.asarray(operative))
     rise = np.zeros(speed.shape)
     for least, kelvin in _RISES:
-        rise = np.where(speed >= least, kelvin, rise)
-    return np.where(warm > _RISES_ABOVE, rise, 0.0)
+        rise = np.where(at_least(speed, least), kelvin, rise)
+    return np.where(above(warm, _RISES_ABOVE), rise, 0.0)
 
 
 def _known(mean: Floats | float | None) -> Floats:

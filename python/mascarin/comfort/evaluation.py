@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io.limits import excess, shortfall
+
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
@@ -41,9 +43,12 @@ class Evaluation:
 
     @property
     def excess(self) -> Floats:
-        """How far the index is above the upper limit (positive) or below the lower one (negative), or 0."""
-        above = np.maximum(self.values - self.high, 0.0)
-        below = np.minimum(self.values - self.low, 0.0)
+        """How far the index is above the upper limit (positive) or below the lower one (negative), or 0.
+
+        By 1e-6 of the unit or less counts as 0.
+        """
+        above = excess(self.values, self.high)
+        below = -shortfall(self.values, self.low)
         # A value may be outside both limits where they cross: only the upper one counts then.
         return np.where(above > 0.0, above, below)
 
@@ -113,11 +118,11 @@ def discomfort(found: Evaluation, hours: npt.ArrayLike) -> Discomfort:
     """
     weights = np.asarray(hours, dtype=np.float64)
     known = ~np.isnan(found.values)
-    excess = np.where(known, found.excess, 0.0)
+    beyond = np.where(known, found.excess, 0.0)
     humid = np.zeros_like(known) if found.too_humid is None else known & found.too_humid
-    hot, cold = excess > 0.0, excess < 0.0
-    hot_degrees = np.maximum(excess, 0.0) @ weights
-    cold_degrees = -np.minimum(excess, 0.0) @ weights
+    hot, cold = beyond > 0.0, beyond < 0.0
+    hot_degrees = np.maximum(beyond, 0.0) @ weights
+    cold_degrees = -np.minimum(beyond, 0.0) @ weights
     shape = found.values.shape
     return Discomfort(
         hours=(hot | cold | humid) @ weights,

@@ -22,6 +22,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io.limits import above, below
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation, Floats
 from mascarin.weather.moisture import humidity_ratio, relative_humidity
@@ -79,9 +80,12 @@ def givoni(here: Conditions, _category: str) -> Evaluation:
     share = np.clip((ratio - dry_w) / (humid_w - dry_w), 0.0, 1.0)
     high = dry_t + share * (humid_t - dry_t)
     # At a given humidity ratio cool air is the more humid one: above 80 % it is outside the zone.
-    too_humid = (relative_humidity(values, ratio, here.pressure) > _HUMID_CORNER[1]) | (ratio > humid_w)
-    outside = {f"drier than {1000.0 * DRIEST:g} g/kg": ratio < DRIEST}
-    valid = np.where(ratio < DRIEST, np.nan, values)
+    too_humid = above(relative_humidity(values, ratio, here.pressure), _HUMID_CORNER[1]) | above(
+        1000.0 * ratio, 1000.0 * humid_w
+    )
+    dry = below(1000.0 * ratio, 1000.0 * DRIEST)  # g/kg, the unit of the limit
+    outside = {f"drier than {1000.0 * DRIEST:g} g/kg": dry}
+    valid = np.where(dry, np.nan, values)
     return Evaluation(valid, LOWEST, high, outside, too_humid)
 
 

@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io.limits import above, below
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation, Flags, Floats
 from mascarin.errors import InputError
@@ -158,7 +159,7 @@ def _limited(
     """Values inside the limits of an equation, NaN elsewhere, with the reasons."""
     outside: dict[str, Flags] = {}
     for key, (name, low, high, unit) in limits.items():
-        outside[f"{name} below {low:g} {unit}".rstrip()] = inputs[key] < low
-        outside[f"{name} above {high:g} {unit}".rstrip()] = inputs[key] > high
+        outside[f"{name} below {low:g} {unit}".rstrip()] = below(inputs[key], low)
+        outside[f"{name} above {high:g} {unit}".rstrip()] = above(inputs[key], high)
     invalid = np.any(np.stack(np.broadcast_arrays(*outside.values())), axis=0)
     return Evaluation(np.where(invalid, np.nan, values), *comfort, outside)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from mascarin._io import identity
 from mascarin._io.locks import writing_into
 from mascarin.commands.inputs import AsJson, Flag, Step, seconds
 from mascarin.commands.output import number, print_json, print_table
@@ -76,7 +77,7 @@ def bestest(
     _require_own(own, known)
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
-    with writing_into(out):
+    with writing_into(out), identity.outputs(*(() if out is None else (out / PAGE,))):
         rows_found = _compared(cases, own, wanted, known, weather, out, step, workers)
     if as_json:
         print_json([row.to_dict() for row in rows_found])

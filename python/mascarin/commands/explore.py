@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from mascarin._io import identity
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import (
     Columns,
@@ -95,7 +96,7 @@ def explore(
     target = _target(out, building)
     described = read_building(building, settings)
     given = set_values(settings)
-    with lines_named(building):
+    with lines_named(building), identity.outputs(target):
         climate, measured = run_inputs(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
             allow_outside=allow_outside,

@@ -66,7 +66,9 @@ def materials(
         from mascarin.materials.plots import plot as draw
 
         with writing(plot):
-            draw(chosen).savefig(plot)
+            figure = draw(chosen)
+            with drafted(plot) as part:
+                figure.savefig(part)
         print(f"wrote {plot}", file=sys.stderr)
 
 
@@ -270,7 +272,9 @@ def dsc(
         if out is not None:
             _write(material, name or material.name, described, out)
         if plot is not None:
-            material.plot().savefig(plot)
+            figure = material.plot()
+            with drafted(plot) as part:
+                figure.savefig(part)
             print(f"wrote {plot}", file=sys.stderr)
     if as_json:
         print_json({"material": described, **material.to_dict()})

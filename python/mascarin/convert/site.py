@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
+from mascarin._io.regular import require_regular
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import DAYS, Year, constant, year_of
@@ -71,7 +72,7 @@ def _location(work: Work, weather: Path | None) -> dict[str, Any]:
 
 
 def _of_weather(path: Path) -> list[float]:
-    with path.open(encoding="latin-1") as lines:
+    with require_regular(path).open(encoding="latin-1") as lines:
         cells = lines.readline().split(",")
     try:
         latitude, longitude, zone, altitude = (float(cell) for cell in cells[6:10])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.limits import at_least, at_most
 from mascarin.building.ties import expanded, spread
 from mascarin.design.description import MOST_DESIGNS
 from mascarin.errors import InputError
@@ -293,7 +294,12 @@ def _products(name: str, variable: Variable, building: Building, places: Places,
         )
     if variable.melting is not None:
         low, high = variable.melting
-        chosen = [one for one in chosen if low <= (one.melting_temperature or math.nan) <= high]
+        chosen = [
+            one
+            for one in chosen
+            if at_least(one.melting_temperature or math.nan, low)
+            and at_most(one.melting_temperature or math.nan, high)
+        ]
     if not chosen:
         raise InputError(f"found no product that melts between {variable.melting} degC; expected one or more")
     options = []

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.limits import TOLERANCE, at_least, excess, shortfall
 from mascarin.comfort import Surroundings
 
 if TYPE_CHECKING:
@@ -71,8 +72,8 @@ class Beyond:
         seconds, counted = _clock(run, self.hours)
         total = 0.0
         for name in self.outputs:
-            beyond = run[name].to_numpy()[:, 1:] - self.limit
-            beyond = np.maximum(beyond if self.above else -beyond, 0.0)
+            values = run[name].to_numpy()[:, 1:]
+            beyond = (excess if self.above else shortfall)(values, self.limit)
             weights = beyond if self.weighted else (beyond > 0.0).astype(np.float64)
             total = total + (weights * counted).sum(axis=1)
         return np.asarray(total * seconds / 3600.0 / len(self.outputs), dtype=np.float64)
@@ -143,7 +144,7 @@ class CycleDays:
 
     def __call__(self, run: xr.Dataset) -> Array:
         """Value for each member. [d]"""
-        return np.asarray((daily_change(run, self.output) >= self.least).sum(axis=1), dtype=np.float64)
+        return np.asarray(at_least(daily_change(run, self.output), self.least).sum(axis=1), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ class DaysInBin:
 
     def __call__(self, run: xr.Dataset) -> Array:
         """Value for each member. [d]"""
-        place = np.minimum((daily_change(run, self.output) * BINS).astype(np.int64), BINS - 1)
+        place = np.minimum(((daily_change(run, self.output) + TOLERANCE) * BINS).astype(np.int64), BINS - 1)
         return np.asarray((place == self.number).sum(axis=1), dtype=np.float64)
 
 

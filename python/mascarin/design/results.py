@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
+#: Files of a result folder.
+FILES: Final = ("designs.csv", "ranking.csv", "samples.csv", "designs.parquet", "design.json", "report.html")
 #: Climate of a ranking over all of them.
 ALL: Final = "all climates"
 
@@ -176,7 +178,7 @@ class DesignResults:
             The folder.
         """
         tables = {"designs": self.to_dataframe(), "ranking": self.ranking_table(), "samples": self._samples()}
-        for name in (*(f"{table}.csv" for table in tables), "designs.parquet", "design.json", "report.html"):
+        for name in FILES:
             atomic.remove_drafts_of(out / name)
         written = [
             atomic.write(out / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))

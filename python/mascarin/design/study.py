@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mascarin._io import identity
 from mascarin._io.locks import writing_into
 from mascarin.design.choices import Choice, Choices
 from mascarin.design.inputs import DesignInputs
-from mascarin.design.results import ALL, DesignResults, by_climate, rank_all, shortlist
-from mascarin.design.runs import Runs, runs_per_design
+from mascarin.design.results import ALL, FILES, DesignResults, by_climate, rank_all, shortlist
+from mascarin.design.runs import FOLDER, Runs, runs_per_design
 from mascarin.design.search import searched
 from mascarin.ensemble import latin_hypercube
 from mascarin.progress import reporting
@@ -55,6 +56,9 @@ def run_design(
     from mascarin.design.page import write_page
 
     out = Path(out)
+    identity.require_no_inputs_in(out / FOLDER)
+    for name in FILES:
+        identity.require_no_input(out / name)
     with writing_into(out), reporting(progress, "members") as report:
         runs = Runs(inputs, out, workers, report, expected=planned_runs(inputs)["runs"])
         designs, nominal = _designs(inputs, runs)

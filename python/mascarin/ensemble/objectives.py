@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from mascarin._io.limits import above, below
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ _STATISTICS: Final[dict[str, Callable[[xr.DataArray, float], xr.DataArray]]] = {
     "max": lambda series, _: series.max("time"),
     "sd": lambda series, _: series.std("time"),
     # Each record represents the interval before it; the first is the state at the start.
-    "above": lambda series, limit: _hours(series, series > limit),
-    "below": lambda series, limit: _hours(series, series < limit),
+    "above": lambda series, limit: _hours(series, above(series, limit)),
+    "below": lambda series, limit: _hours(series, below(series, limit)),
 }
 
 

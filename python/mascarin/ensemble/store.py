@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import atomic, display, locks
+from mascarin._io import atomic, display, identity, locks
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.energy import ensemble_warnings
@@ -120,6 +120,9 @@ class Store:
             The folder holds something else, or another ensemble; or pyarrow is not installed.
         """
         cls.require_usable(path)
+        for name in (MANIFEST, RESULTS):
+            identity.require_no_input(path / name)
+        identity.require_no_inputs_in(path / "pieces")
         atomic.remove_drafts(path)
         if (path / MANIFEST).exists():
             store = cls(path)

@@ -11,6 +11,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mascarin._io import identity
 from mascarin.genopt.algorithm import Built
 from mascarin.genopt.program import RUN_PREFIX, Result, RunFailed
 from mascarin.genopt.project import Project
@@ -309,6 +310,7 @@ class Evaluator:
         for entry in (*project.input, *project.log, *project.output):
             source = folder / entry.path.relative_to(project.folder)
             if entry.save is not None and source.exists():
+                identity.require_no_input(entry.save / f"{number}{entry.name}")
                 source.replace(entry.save / f"{number}{entry.name}")
         shutil.rmtree(folder, ignore_errors=True)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TextIO
 
 from mascarin import __version__
+from mascarin._io.identity import require_no_input
 from mascarin.errors import SolverError
 from mascarin.genopt.numbers import double_text
 from mascarin.genopt.project import Project
@@ -98,6 +99,7 @@ class Listings(Observer):
             (MAIN_NAME, "Main Iterations", ["Main Iteration"]),
             (ALL_NAME, "All Iterations", ["Main Iteration", "Sub Iteration"]),
         ):
+            require_no_input(folder / name)
             file = (folder / name).open("w", encoding="utf-8", errors="surrogateescape")
             lines = [
                 *_HEADER,

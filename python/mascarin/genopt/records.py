@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from mascarin._io import atomic
+from mascarin._io import atomic, identity
 from mascarin.errors import InputError
 from mascarin.genopt.project import Project
 
@@ -126,6 +126,7 @@ class Log:
         digests : mapping of str to str
             From `fingerprint`.
         """
+        identity.require_no_input(self.path)
         if self.path.exists():
             self.path.replace(self.path.with_suffix(".previous.jsonl"))
         self._file = self.path.open("w", encoding="utf-8")

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mascarin import __version__
+from mascarin._io import identity
 from mascarin._io.locks import FolderLock, writing
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
@@ -384,6 +385,7 @@ def _clean(project: Project, *, saved: bool) -> None:
     """Remove the files of an earlier run."""
     for folder in project.folder.glob(f"{RUN_PREFIX}*"):
         if folder.is_dir():
+            identity.require_no_inputs_in(folder)
             shutil.rmtree(folder, ignore_errors=True)
     for entry in (*project.input, *project.log, *project.output):
         if entry.save is None:
@@ -392,6 +394,7 @@ def _clean(project: Project, *, saved: bool) -> None:
         if saved:
             for old in entry.save.iterdir():
                 if re.fullmatch(rf"\d+{re.escape(entry.name)}", old.name):
+                    identity.require_no_input(old)
                     old.unlink()
 
 
@@ -427,7 +430,9 @@ def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: 
     for title, texts in (("Warning messages:", outcome.warnings), ("Info messages:", outcome.notes)):
         if texts:
             lines += ["", title, *(f"{i}: {t}" for i, t in enumerate(texts, start=1))]
-    with contextlib.suppress(OSError):
+    # A log that cannot be written must not hide the error that it would contain.
+    with contextlib.suppress(OSError, InputError):
+        identity.require_no_input(project.folder / LOG_NAME)
         (project.folder / LOG_NAME).write_text(
             "\n".join(lines) + "\n", encoding="utf-8", errors="surrogateescape"
         )

@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin._io import atomic, units
+from mascarin._io.limits import at_least, at_most
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart
 from mascarin.report.template import environment, frame
@@ -232,7 +233,7 @@ def _difference(one: Quantity, other: Quantity) -> dict[str, Any]:
     return {
         "ours": text.fixed(ours, sign=True),
         "theirs": f"{text.fixed(low, sign=True)} to {text.fixed(high, sign=True)}",
-        "inside": low <= ours <= high,
+        "inside": bool(at_least(ours, low) and at_most(ours, high)),
     }
 
 

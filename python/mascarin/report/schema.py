@@ -276,6 +276,8 @@ class PhaseChange(TypedDict, total=False):
     law_enthalpy: list[float]
     column: str
     """Series column with the liquid fraction over time."""
+    hysteresis: bool
+    """Whether the material freezes along another curve than it melts."""
     rows: list[list[str]]
     """Facts as rows of name and value."""
 

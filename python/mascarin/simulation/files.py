@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from mascarin._io import atomic
+from mascarin._io import atomic, identity
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 from mascarin.simulation.blocks import InMemory
 from mascarin.weather.timezones import parse_timezone
@@ -85,7 +86,9 @@ def drafted(path: Path, outputs: Sequence[Output], times: Times, ending: str) ->
     OSError
         The file cannot be written; the file that was there before is unchanged.
     """
-    with atomic.drafted(path) as part:
+    if ending == ".csv":
+        identity.require_no_input(Path(f"{path}{BESIDE}"), identity.RESULTS)
+    with atomic.drafted(path, identity.RESULTS) as part:
         if ending == ".nc":
             from mascarin.simulation.netcdf import NetcdfDraft  # h5py, which most runs do without
 
@@ -136,7 +139,7 @@ class _Csv:
             "tableSchema": {"columns": columns},
             "mascarin": dict(self._attributes),
         }
-        atomic.write(Path(f"{path}{BESIDE}"), json.dumps(described, indent=1, ensure_ascii=False) + "\n")
+        atomic.write(Path(f"{path}{BESIDE}"), json.dumps(described, indent=1, ensure_ascii=False) + "\n", identity.RESULTS)
 
 
 class _Parquet:
@@ -189,6 +192,9 @@ def read(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     ending = path.suffix.lower()
     if ending == ".parquet":
         _require_pyarrow(path)
+    require_regular(path, "results of a run", identity.RESULTS)
+    if ending == ".csv":
+        require_regular(Path(f"{path}{BESIDE}"), "a file beside results", identity.RESULTS)
     reader = {".csv": _read_csv, ".parquet": _read_parquet}.get(ending, _read_netcdf)
     try:
         records, times, attributes = reader(path)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
+from mascarin._io.limits import above, below
 from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
 from mascarin.study.comfort_step import require_rooms
@@ -245,7 +246,7 @@ def _plausible(study: Setup) -> None:
         if study.simulation.outputs[s].unit != "degC":
             continue
         measured = observation.measured[:, s]
-        outside = np.flatnonzero((measured < low) | (measured > high))
+        outside = np.flatnonzero(below(measured, low) | above(measured, high))
         if outside.size:
             value = measured[outside[0]]
             with study.places.blame("sensors", name, "column"):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import atomic
+from mascarin._io import atomic, identity
 from mascarin._io.locks import FolderLock
 from mascarin.errors import InputError
 from mascarin.report import is_report
@@ -34,6 +34,8 @@ REPORT: Final = "report.html"
 RUN: Final = "run.json"
 #: Files of the result folder itself.
 WRITTEN: Final = ("study.json", RUN, REPORT)
+#: Files that single steps write into the result folder.
+OF_STEPS: Final = ("sensitivity.json", "calibration.json", "validation.json", "series.csv")
 _REMOVED: Final = ", and the old report is removed"
 
 
@@ -50,7 +52,8 @@ class Workspace:
     Raises
     ------
     InputError
-        There is a file of that name, or another process writes to the folder.
+        There is a file of that name, an input is where results are written, or another process writes to the
+        folder.
     """
 
     def __init__(self, out: Path, inputs: Mapping[str, Any]) -> None:
@@ -58,6 +61,10 @@ class Workspace:
             raise InputError(f"{out}: found a file, expected a folder; choose another folder (-o)")
         self.out = out
         self.folder = out / _FOLDER
+        for name in (*WRITTEN, *OF_STEPS):
+            identity.require_no_input(out / name)
+        for place in (self.folder, out / "tables", out / "figures"):
+            identity.require_no_inputs_in(place)
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io import atomic
+from mascarin._io.identity import DESCRIPTION
 from mascarin.building.yaml_text import text_of
 from mascarin.errors import InputError
 from mascarin.study.description import StudyFile
@@ -76,7 +77,7 @@ def write_study(inputs: Inputs, path: Path) -> str:
     else:
         content = _moved(content, inputs.path.parent, path.parent)
     text = text_of(content)
-    atomic.write(path, text)
+    atomic.write(path, text, DESCRIPTION)
     return text
 
 

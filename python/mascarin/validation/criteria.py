@@ -22,6 +22,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema
 
+from mascarin._io.limits import at_most
 from mascarin.errors import InputError, did_you_mean
 from mascarin.validation.comparison import OVER_MEAN, PERCENT, Metrics
 
@@ -291,7 +292,7 @@ def _verdict(criterion: Criterion, sensor: str, period: str, found: Metrics) -> 
         value=value,
         limit=criterion.limit,
         unit=metric_unit(criterion.metric, found.unit),
-        passed=abs(value) <= criterion.limit,
+        passed=at_most(abs(value), criterion.limit),
     )
 
 

@@ -24,6 +24,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mascarin._io.limits import above, below
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -266,7 +267,7 @@ def _drivers(
         if not inside.size or not other.size:
             continue
         low, high = float(inside.min()), float(inside.max())
-        out = known & ((x < low) | (x > high))
+        out = known & (below(x, low) | above(x, high))
         total = np.bincount(day[known], minlength=count)
         outside[name] = np.bincount(day[out], minlength=count) / np.maximum(total, 1)
         ranges.append(

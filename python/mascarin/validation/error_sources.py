@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mascarin._io.limits import above, at_most
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -220,9 +221,9 @@ def explain_missed_aims(
             continue
         floor, unit = found.floor(aim.sensor), aim.unit.replace("degC", "K")
         white = (noise or {}).get(aim.sensor, 0.0)
-        if white > aim.limit:
+        if above(white, aim.limit):
             why = f"the white noise of the sensor, {white:.2g} {unit}, is above the aim: no model reaches it"
-        elif floor <= aim.limit:
+        elif at_most(floor, aim.limit):
             why = "the equations are sufficient, but the identification data do not determine these values"
         else:
             why = "no parameter values reach the aim: the cause is in the equations or in the weather data"

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from mascarin._io.limits import above, below
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Flags, Lines
 from mascarin.weather.channels import UNITS
@@ -85,12 +86,11 @@ def require_range(record: Record, name: str, limits: tuple[float, float], first:
     """
     kind = record.kinds[name]
     low, high = limits
-    slack = 1e-9 * (high - low)
     start, rows = record.grid.rows(first, last)
     data = record.columns[name]
     values = values_in(data, record.closing.get(name, np.nan), rows, kind)
     # Comparisons with NaN are False: missing values are refused by `require_values`.
-    outside = (values < low - slack) | (values > high + slack)
+    outside = below(values, low) | above(values, high)
     bad = np.flatnonzero(outside & _needed(record, name, start, len(values), first, last))
     if not len(bad):
         return

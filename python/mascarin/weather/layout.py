@@ -255,7 +255,11 @@ def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:
 
 
 def _cells(line: str, mark: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, skipinitialspace=True), [])]
+    try:
+        cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True), [])
+    except csv.Error:  # a field of more than 131,072 characters, which is no data
+        cells = line.split(mark)
+    return [cell.strip() for cell in cells]
 
 
 def _is_data(cells: Sequence[str]) -> bool:

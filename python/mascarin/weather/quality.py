@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
+from mascarin._io.limits import above, below
 from mascarin.weather.arrays import Array, Flags, Lines
 from mascarin.weather.switching import is_switched, switched_levels
 
@@ -172,7 +173,7 @@ def _missing(values: Array) -> list[tuple[Defect, int, int, str]]:
 def _out_of_range(values: Array, limits: tuple[float, float] | None) -> list[tuple[Defect, int, int, str]]:
     low, high = limits if limits is not None else _usual_range(values)
     with np.errstate(invalid="ignore"):
-        outside = (values < low) | (values > high)
+        outside = below(values, low) | above(values, high)
     found: list[tuple[Defect, int, int, str]] = []
     for first, last in runs(outside):
         part = values[first:last]

@@ -7,9 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mascarin import __version__
+from mascarin._io import atomic, identity
 from mascarin._io.locks import writing
 from mascarin.errors import InputError, MascarinError
-from mascarin.genopt.export.exchange import COMPILED, FAILURE, read_parameters, read_settings, result_lines
+from mascarin.genopt.export.exchange import (
+    COMPILED,
+    FAILURE,
+    RESULT_BEGINS,
+    read_parameters,
+    read_settings,
+    result_lines,
+)
 
 if TYPE_CHECKING:
     from mascarin.genopt.export.case import Case
@@ -48,10 +56,10 @@ def evaluate_files(
     if len({path.absolute() for path in (parameters, out, log)}) < 3:
         raise InputError(f"'{parameters}', '{out}' and '{log}' must be three different files")
     try:
-        with writing(out):
-            out.unlink(missing_ok=True)
+        with writing(out), identity.outputs(log):
+            _remove_result(out)
             lines, notes = _evaluated(parameters, study, allow_outside)
-            out.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+            atomic.write(out, "\n".join(lines) + "\n")
         _write_log(log, [*lines, *notes])
     except MascarinError as error:
         _write_log(log, _failure(str(error)))
@@ -60,6 +68,20 @@ def evaluate_files(
         _write_log(log, _failure(f"{type(error).__name__}: {error}"))
         raise
     return lines
+
+
+def _remove_result(out: Path) -> None:
+    """Remove the result of an earlier evaluation, so that none is there if this one fails."""
+    if not out.exists():
+        return
+    with out.open("rb") as file:
+        begins = file.read(len(RESULT_BEGINS))
+    if begins != RESULT_BEGINS and begins:
+        raise InputError(
+            f"--out: found {out}, which is no result of this command; expected one, or a new file: choose "
+            "another name"
+        )
+    out.unlink()
 
 
 def _evaluated(parameters: Path, study: Path | None, allow_outside: bool) -> tuple[list[str], list[str]]:
@@ -107,6 +129,6 @@ def _failure(text: str) -> list[str]:
 
 def _write_log(log: Path, lines: list[str]) -> None:
     # A log that cannot be written must not hide the error that it would contain.
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, InputError):
         text = "\n".join([f"mascarin {__version__} cost", *lines])
-        log.write_text(text + "\n", encoding="utf-8", newline="\n")
+        atomic.write(log, text + "\n")

@@ -23,6 +23,9 @@ COMPILED: Final = "compiled.npz"
 #: Mark in the log of an evaluation that failed.
 FAILURE: Final = "MASCARIN ERROR"
 
+#: Beginning of a file of results.
+RESULT_BEGINS: Final = b"cost="
+
 _FORMAT: Final = 1
 _PROJECT: Final = "project"
 
@@ -180,6 +183,6 @@ def result_lines(costs: Costs) -> list[str]:
         Lines.
     """
     return [
-        f"cost= {costs.total!r}",
+        f"{RESULT_BEGINS.decode()} {costs.total!r}",
         *(f"cost_{name}= {value!r}" for name, value in costs.parts.items()),
     ]

@@ -35,6 +35,7 @@ def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | 
                     for number, day in enumerate(entry.get("days", []))
                 ],
                 "law": bool(entry.get("law_temperature")),
+                "hysteresis": entry.get("hysteresis"),  # not known in files of earlier versions
                 "period": period_label(study, short[-1]) if short else "",
             }
         )

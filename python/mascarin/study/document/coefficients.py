@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -43,7 +46,9 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
         ``coefficients``: ``period``, ``unit`` and ``models``, model -> path of the law -> coefficient;
         nothing where no parameter belongs to a convection law.
     """
-    laws = {found[0]: _members(study.building, path) for path in paths if (found := _LAW.match(path))}
+    # The form of the model that is used may have parameters that the building as described does not have.
+    buildings = [*(run.simulation.building for run in models.values()), study.building]
+    laws = {found[0]: _members(buildings, path) for path in paths if (found := _LAW.match(path))}
     if not laws:
         return {}
     content = {"period": _PERIOD, "unit": "W/(m2 K)"}
@@ -51,9 +56,13 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
     return {"coefficients": {**content, "models": means}} if any(means.values()) else {}
 
 
-def _members(building: Building, path: str) -> list[str]:
+def _members(buildings: Iterable[Building], path: str) -> list[str]:
     """Laws that a parameter belongs to: one, or those that a tied parameter stands for."""
-    members = building.parameter(path).members or (path,)
+    members: Sequence[str] = (path,)
+    for building in buildings:
+        with contextlib.suppress(InputError):  # no such parameter
+            members = building.parameter(path).members or members
+            break
     return list(dict.fromkeys(found[0] for member in members if (found := _LAW.match(member))))
 
 

@@ -37,6 +37,7 @@ def _melting(study: Setup, run: ModelRun, building: Building, layer: MeltingLaye
     return {
         "label": f"{layer.surface}: {layer.layer}",
         "column": f"state/{layer.liquid_fraction}",
+        "hysteresis": layer.of(building).hysteresis is not None,
         "temperature": rounded(temperature[::every]),
         "enthalpy": rounded(enthalpy[::every]),
         "days": [

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.limits import TOLERANCE, at_least, at_most
 from mascarin.errors import InputError
 from mascarin.verification.bestest.catalogue import Case
 from mascarin.verification.bestest.reference import Range, ranges
@@ -73,7 +74,7 @@ class Quantity:
         """Whether it is between the smallest and largest result of the programs; None without them."""
         if self.range is None:
             return None
-        return self.range.low <= self.value <= self.range.high
+        return bool(at_least(self.value, self.range.low) and at_most(self.value, self.range.high))
 
     def to_dict(self) -> dict[str, object]:
         """Return plain values for JSON."""
@@ -184,7 +185,9 @@ def bins(temperatures: Array) -> Array:
     ndarray, shape (149,)
         Number of hours with ``n <= T < n + 1``.
     """
-    place = np.clip(np.floor(temperatures), COLDEST_BIN, HOTTEST_BIN).astype(np.int64) - COLDEST_BIN
+    place = (
+        np.clip(np.floor(temperatures + TOLERANCE), COLDEST_BIN, HOTTEST_BIN).astype(np.int64) - COLDEST_BIN
+    )
     return np.bincount(place, minlength=HOTTEST_BIN - COLDEST_BIN + 1).astype(np.float64)
 
 

@@ -12,6 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 
 PROGRAMS: Final = ("BSIMAC", "CSE", "DeST", "EnergyPlus", "ESP-r", "TRNSYS")
@@ -92,7 +93,7 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
         The file cannot be read, or a row cannot be used; its line is named.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = require_regular(path, "a CSV file").read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise InputError(f"--ranges: {path}: cannot be read ({reason}); expected a CSV file") from error

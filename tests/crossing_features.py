@@ -1,0 +1,241 @@
+"""Features of a building for the crossing tests: each is a small building that has it.
+
+A section of the description, or a kind of output, that no building here has, fails
+`test_crossing.test_every_section_and_output_kind_belongs_to_a_feature`: add a feature, or add it to one.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+
+from mascarin.building import Building
+
+Json = dict[str, Any]
+
+START, END = "2001-07-02", "2001-07-03"
+ZONE = "UTC-05:00"
+#: The parameters that entrances vary; every building has them.
+VARIED: Final = ("zones.room.volume", "surfaces.south.outside.absorptance")
+
+_BASE: Final[Json] = {
+    "name": "room",
+    "site": {"latitude": 27.97, "longitude": -82.53, "altitude": 6, "timezone": ZONE},
+    "materials": {"board": {"conductivity": 0.2, "density": 800, "specific_heat": 1000}},
+    "constructions": {"wall": {"layers": [{"material": "board", "thickness": 0.05}]}},
+    "zones": {"room": {"volume": {"value": 30, "range": [25, 35]}, "infiltration": 0.5}},
+    "surfaces": {
+        "south": {
+            "construction": "wall",
+            "area": 12,
+            "tilt": 90,
+            "azimuth": 180,
+            "outside": {
+                "outdoors": True, "convection": 15, "emissivity": 0.9,
+                "absorptance": {"value": 0.5, "range": [0.3, 0.7]},
+            },
+            "inside": {"zone": "room", "convection": 3, "emissivity": 0.9, "absorptance": 0.5},
+        },
+    },
+}  # fmt: skip
+
+
+def _side(zone: str) -> Json:
+    return {"zone": zone, "convection": 3, "emissivity": 0.9, "absorptance": 0.5}
+
+
+def _out() -> Json:
+    return {"outdoors": True, "convection": 15, "emissivity": 0.9, "absorptance": 0.5}
+
+
+def _second_room(tree: Json) -> None:
+    """A hall behind the room."""
+    tree["zones"]["hall"] = {"volume": 40, "infiltration": 0.3}
+    tree["surfaces"] |= {
+        "between": {"construction": "wall", "area": 9, "tilt": 90, "azimuth": 0, "outside": _side("hall"),
+                    "inside": _side("room")},
+        "north": {"construction": "wall", "area": 12, "tilt": 90, "azimuth": 0, "outside": _out(),
+                  "inside": _side("hall")},
+    }  # fmt: skip
+
+
+def _window(tree: Json, wall: str = "south") -> None:
+    tree["glazings"] = {"clear": {"kind": "simple", "u_value": 2.7, "solar_heat_gain": 0.6}}
+    inside = {"convection": 3}
+    tree["windows"] = {"pane": {"surface": wall, "glazing": "clear", "area": 2,
+                                "outside": {"convection": 3 if wall == "between" else 15}, "inside": inside}}  # fmt: skip
+
+
+def _ceiling(tree: Json, material: Json) -> None:
+    """A roof with a layer that melts."""
+    tree["materials"]["pcm"] = material
+    layers = [{"material": "board", "thickness": 0.02}, {"material": "pcm", "thickness": 0.01}]
+    tree["constructions"]["roof"] = {"layers": layers}
+    tree["surfaces"]["roof"] = {"construction": "roof", "area": 10, "tilt": 0, "outside": _out(),
+                                "inside": _side("room")}  # fmt: skip
+
+
+_WAX: Final[Json] = {
+    "kind": "pcm", "conductivity": 0.2, "density": 900, "specific_heat": 2000, "latent_heat": 150000,
+    "melting_temperature": 29, "law": {"kind": "tanh", "width": 1.0},
+}  # fmt: skip
+
+
+def _products(tree: Json) -> None:
+    _ceiling(tree, {"product": "RT28HC"})
+
+
+def _curves(tree: Json) -> None:
+    law = {"kind": "table", "temperatures": [20, 26, 29, 33], "enthalpies": [0, 15000, 140000, 150000]}
+    _ceiling(tree, {"kind": "pcm", "conductivity": 0.2, "density": 900, "specific_heat": 2000, "law": law})
+
+
+def _hysteresis(tree: Json) -> None:
+    _ceiling(tree, _WAX | {"hysteresis": {"model": "curve_switch", "freezing_temperature": 27}})
+
+
+def _humidity(tree: Json) -> None:
+    _loads(tree)
+    tree["humidity"] = {
+        "materials": {"board": "gypsum"},
+        "zones": {
+            "room": {
+                "gains": {"people": {"power": 60}},
+                "drying": {"relative_humidity": 0.6},
+                "humidifying": {"relative_humidity": 0.4, "capacity": 50},
+            }
+        },
+    }
+
+
+def _vents(tree: Json) -> None:
+    _second_room(tree)
+    tree["vents"] = {
+        "casement": {"zone": "room", "surface": "south", "area": 0.1, "height": 0.8, "elevation": 1.5,
+                     "pressure": "low_rise"},
+        "grille": {"between": ["room", "hall"], "area": 0.05, "elevation": 1},
+        "cowl": {"zone": "hall", "azimuth": 0, "area": 0.05, "elevation": 3, "pressure": "low_rise"},
+    }  # fmt: skip
+
+
+def _controls(tree: Json) -> None:
+    _vents(tree)
+    tree["controls"] = {"warmth": {"zone": "room", "indoor": {"open": 27, "close": 25}}}
+    tree["vents"]["casement"]["control"] = "warmth"
+
+
+def _openings(tree: Json) -> None:
+    tree["openings"] = {"slit": {"zone": "room", "area": 0.02, "height": 0.5}}
+
+
+def _blinds(tree: Json) -> None:
+    _window(tree)
+    tree["schedules"] = {"noon": {"kind": "fraction", "days": {"all": [
+        {"at": "00:00", "value": 0}, {"at": "11:00", "value": 1}, {"at": "15:00", "value": 0}]}}}  # fmt: skip
+    blind = {"position": "outside", "transmittance": 0.1, "reflectance": 0.6, "resistance": 0.1}
+    tree["windows"]["pane"]["blind"] = blind | {"schedule": "noon"}
+
+
+def _loads(tree: Json) -> None:
+    tree["zones"]["room"] |= {"heating": {"setpoint": 20}, "cooling": {"setpoint": 25, "capacity": 1500}}
+
+
+def _bridges(tree: Json) -> None:
+    tree["zones"]["room"]["thermal_bridges"] = {"edge": {"psi": 0.1, "length": 12}}
+
+
+def _interior_windows(tree: Json) -> None:
+    _second_room(tree)
+    _window(tree, "between")
+    tree["windows"]["outer"] = tree["windows"]["pane"] | {"surface": "south", "outside": {"convection": 15}}
+
+
+def _measured_columns(tree: Json) -> None:
+    tree["zones"]["room"]["gains"] = {"heater": {"column": "P_heater"}}
+    tree["surfaces"]["south"]["outside"]["irradiance"] = "G_south"
+    tree["surfaces"]["back"] = {"construction": "wall", "area": 9, "tilt": 90, "azimuth": 0,
+                                "outside": {"measured": "T_back", "convection": 8},
+                                "inside": _side("room")}  # fmt: skip
+
+
+def _mechanical_air(tree: Json) -> None:
+    _second_room(tree)
+    tree["ventilation_units"] = {
+        "unit": {"supply": {"room": 0.01}, "exhaust": {"hall": 0.01}, "recovery": 0.7}
+    }
+    tree["air_paths"] = {
+        "overflow": {"between": ["room", "hall"], "flow": 0.01, "one_way": True},
+        "door": {"between": ["room", "hall"], "door": {"width": 0.9, "height": 2}},
+    }
+
+
+def _shades(tree: Json) -> None:
+    del (
+        tree["surfaces"]["south"]["area"],
+        tree["surfaces"]["south"]["tilt"],
+        tree["surfaces"]["south"]["azimuth"],
+    )
+    tree["surfaces"]["south"]["vertices"] = [[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]]
+    tree["shades"] = {"overhang": {"vertices": [[0, 0, 3.1], [4, 0, 3.1], [4, -1, 3.1], [0, -1, 3.1]]}}
+
+
+def _sensors_and_ties(tree: Json) -> None:
+    tree["sensors"] = {"core": {"surface": "south", "depth": 0.02}}
+    tree["ties"] = {"materials.*.density": "factor"}
+
+
+def _plain(tree: Json) -> None:
+    """A room without anything."""
+
+
+#: Every feature: what it changes in a room.
+FEATURES: Final[dict[str, Callable[[Json], None]]] = {
+    "nothing": _plain,
+    "products": _products,
+    "own curves": _curves,
+    "hysteresis": _hysteresis,
+    "humidity": _humidity,
+    "vents": _vents,
+    "controls": _controls,
+    "openings": _openings,
+    "blinds": _blinds,
+    "loads": _loads,
+    "thermal bridges": _bridges,
+    "interior windows": _interior_windows,
+    "measured columns": _measured_columns,
+    "mechanical air": _mechanical_air,
+    "shades": _shades,
+    "sensors and ties": _sensors_and_ties,
+}
+
+
+def description(feature: str) -> Json:
+    """The room with a feature, as a file would hold it."""
+    tree = copy.deepcopy(_BASE)
+    FEATURES[feature](tree)
+    return tree
+
+
+def building(feature: str) -> Building:
+    """The room with a feature."""
+    return Building.from_dict(description(feature))
+
+
+def measured() -> pd.DataFrame:
+    """Measured columns of three days, local stamps: boundaries of a building, and a thermometer."""
+    index = pd.date_range("2001-07-01", periods=24 * 4, freq="1h", name="time")
+    hours = np.arange(len(index))
+    wave = np.sin((hours - 9.0) * np.pi / 12.0)
+    return pd.DataFrame(
+        {
+            "T_back": (26.0 + 3.0 * wave).round(2),
+            "P_heater": np.where(hours % 24 < 6, 300.0, 0.0),
+            "G_south": np.maximum(200.0 * wave, 0.0).round(1),
+            "air": (27.0 + 4.0 * wave + 0.1 * np.sin(hours * 7.0)).round(3),
+        },
+        index=index,
+    )
