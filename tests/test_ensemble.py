@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -353,8 +354,8 @@ def test_failing_members_are_kept_with_their_reason(setting: Setting, tmp_path: 
     ensemble = Simulation.ensemble
 
     def failing(self: Simulation, vectors: Any, **options: Any) -> Any:
-        records, closure, _ = ensemble(self, vectors, **options)
-        return records, closure, [Failure(2, "step 4: the wall did not converge")]
+        run = ensemble(self, vectors, **options)
+        return replace(run, failures=[Failure(2, "step 4: the wall did not converge")])
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Simulation, "ensemble", failing)

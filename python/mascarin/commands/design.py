@@ -80,11 +80,14 @@ def _print_plan(inputs: DesignInputs, as_json: bool) -> int:
 
 def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     """Print the ranking; the exit code."""
-    from mascarin.simulation.energy import ensemble_warnings
+    from mascarin.simulation.judgement import ensemble_warnings
 
     found = results.summary()
-    warnings = ensemble_warnings(results.sampled["closure"].to_numpy())
-    warnings += ensemble_warnings(results.nominal["closure"].to_numpy())
+    warnings = [
+        line
+        for table in (results.sampled, results.nominal)
+        for line in ensemble_warnings(table["closure"].to_numpy(), table["outside"].to_numpy())
+    ]
     for line in warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:

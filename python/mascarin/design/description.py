@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 #: Keys that name files.
 FILE_KEYS: Final = ("building", "epw", "tmy")
 #: Names of columns in the tables of results.
-TAKEN: Final = frozenset({"design", "climate", "sample", "rank", "closure", "failure", "tied", "tied_before"})
+TAKEN: Final = frozenset(
+    {"design", "climate", "sample", "rank", "closure", "outside", "failure", "tied", "tied_before"}
+)
 #: Designs of one grid; the tables and the page are made of all of them.
 MOST_DESIGNS: Final = 100_000
 

@@ -196,7 +196,7 @@ class Runs:
         table: pd.DataFrame,
         only: Sequence[str] | None,
     ) -> pd.DataFrame:
-        worst = np.zeros(len(table))
+        worst, outside = np.zeros(len(table)), np.full(len(table), -np.inf)
         failures: list[str | None] = [None] * len(table)
         for mode in modes(self.inputs.file.objectives, only):
             building = site.building.replace(dict(mode.changes)) if mode.changes else site.building
@@ -212,9 +212,9 @@ class Runs:
             for key in [key for key in kept if key.startswith("bin ")]:
                 table[key] = kept[key]
             if kept:
-                worst = np.fmax(worst, kept["closure"])
+                worst, outside = np.fmax(worst, kept["closure"]), np.fmax(outside, kept["outside"])
                 failures = [a or b for a, b in zip(failures, kept["failure"], strict=True)]
-        table["closure"], table["failure"] = worst, failures
+        table["closure"], table["outside"], table["failure"] = worst, outside, failures
         return table
 
     def _kept(
@@ -255,6 +255,7 @@ class Runs:
         found: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
         return found | {
             "closure": table["closure"].to_numpy(),
+            "outside": table["outside"].to_numpy(),
             "failure": list(table["failure"].where(table["failure"].notna(), None)),
         }
 

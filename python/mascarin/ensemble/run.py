@@ -31,7 +31,7 @@ from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.energy import ensemble_warnings
+from mascarin.simulation.judgement import OUTSIDE, ensemble_warnings
 from mascarin.simulation.options import RunOptions, described, require_precision
 from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
@@ -98,9 +98,9 @@ def sweep(
     xarray.Dataset
         Each output over (member, time), or each objective over (member); the samples as ``samples`` over
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
-        ``closure``, the relative energy-balance residual [-]. NaN for a member that failed, with its reason
-        in the attribute ``failures``; the attribute ``warnings`` says whether the energy balance of a member
-        does not close, and in single precision ``single_precision`` how far each output or objective of some
+        ``closure``, the relative energy-balance residual [-]; ``outside``, how far temperatures are beyond
+        their causes [K], zero or less in a sound member. NaN for a member that failed, with its reason in the
+        attribute ``failures``; the attribute ``warnings`` says which members are not sound, and in single precision ``single_precision`` how far each output or objective of some
         members is from double precision. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
@@ -129,7 +129,7 @@ def sweep(
     _require_room(inputs, found)
     order = found.by_structure()
     with reporting(progress, "members") as report:
-        whole, closure, failures = _gathered(
+        whole, closure, outside, failures = _gathered(
             order,
             _chunks(
                 inputs,
@@ -143,10 +143,13 @@ def sweep(
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
     return (
         _dataset(inputs, found, whole)
-        .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
+        .assign(
+            closure=xr.DataArray(closure, dims="member", attrs=CLOSURE),
+            outside=xr.DataArray(outside, dims="member", attrs=OUTSIDE),
+        )
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
-            warnings=ensemble_warnings(closure, precision=precision),
+            warnings=ensemble_warnings(closure, outside, precision=precision),
             **({} if precision == "double" else {"single_precision": _said(inputs, found, closure)}),
         )
     )
@@ -299,7 +302,7 @@ def _prepared(
         precision=precision,
         identity="",
     )
-    clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}
+    clash = set(inputs.objectives) & {"member", "closure", "outside", "failure", "samples"}
     if clash:
         raise InputError(f"objectives: '{clash.pop()}' is a variable of every result; choose another name")
     structure = _first_structure(members)
@@ -356,10 +359,10 @@ def _chunks(
     return elsewhere(inputs, members, gaps, workers, report)
 
 
-def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
+def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, Any, dict[int, str]]:
     """Results of all members in one array; chunks have them in another order."""
     whole: Any = None
-    closure = np.full(len(order), np.nan)
+    closure, outside = np.full((2, len(order)), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
         members = order[chunk.first : chunk.first + len(chunk.closure)]
@@ -367,9 +370,9 @@ def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, 
             whole = np.full((len(order), *chunk.kept.shape[1:]), np.nan)
         if whole is not None and chunk.kept.size:
             whole[members] = chunk.kept
-        closure[members] = chunk.closure
+        closure[members], outside[members] = chunk.closure, chunk.outside
         failures |= {order[member]: reason for member, reason in chunk.failures.items()}
-    return whole, closure, failures
+    return whole, closure, outside, failures
 
 
 def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Dataset:

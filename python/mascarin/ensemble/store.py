@@ -19,7 +19,7 @@ import numpy as np
 from mascarin._io import atomic, display, identity, locks
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
-from mascarin.simulation.energy import ensemble_warnings
+from mascarin.simulation.judgement import OUTSIDE, ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.weather.timezones import parse_timezone
@@ -271,8 +271,10 @@ class Store:
         return whole.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
-        """One line where the energy balance of a member does not close, else nothing."""
-        return ensemble_warnings(self.to_dataframe()["closure"].to_numpy(), precision=self.precision)
+        """What is not sound in the members: a line for each kind, or nothing."""
+        table = self.to_dataframe()
+        judged = (table[name].to_numpy() for name in ("closure", "outside"))
+        return ensemble_warnings(*judged, precision=self.precision)
 
     def single_precision(self) -> list[str]:
         """How far some members are from double precision, and how many were run in it; nothing in double."""
@@ -324,7 +326,8 @@ class Store:
         for path in self.manifest["paths"]:
             column = table.column(f"sample: {path}").to_pandas().to_numpy()
             data[f"sample: {path}"] = ("member", column, attributes(path, units.get(path, "")))
-        data["closure"] = ("member", table.column("closure").to_numpy(), CLOSURE)
+        closure, outside = (table.column(name).to_numpy() for name in ("closure", "outside"))
+        data |= {"closure": ("member", closure, CLOSURE), "outside": ("member", outside, OUTSIDE)}
         reasons = zip(members, table.column("failure").to_pylist(), strict=True)
         coords: dict[str, Any] = {"member": members}
         if len(dims) > 1:
@@ -332,7 +335,7 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
-            "warnings": ensemble_warnings(data["closure"][1], first, self.precision),
+            "warnings": ensemble_warnings(closure, outside, first, self.precision),
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
             **({"single_precision": said} if (said := self.single_precision()) else {}),
@@ -357,7 +360,7 @@ class Store:
         """Numbers in a row."""
         kept = len(self.manifest["kept"])
         rows = 1 if self.manifest["objectives"] else len(self.manifest["time"])
-        return kept * rows + len(self.manifest["paths"]) + 3
+        return kept * rows + len(self.manifest["paths"]) + 4
 
     def _chunks(self) -> list[tuple[int, int]]:
         names = (_CHUNK.fullmatch(file.name) for file in (self.path / "pieces").glob("*.parquet"))
@@ -396,7 +399,7 @@ class Store:
         for k, name in enumerate(self.manifest["kept"]):
             column = np.ascontiguousarray(chunk.kept[..., k]) if chunk.kept.size else None
             columns[name] = self._column(column, count)
-        columns["closure"] = pa.array(chunk.closure)
+        columns |= {"closure": pa.array(chunk.closure), "outside": pa.array(chunk.outside)}
         columns["failure"] = pa.array([chunk.failures.get(member) for member in numbers], pa.string())
         return pa.table(columns)
 

@@ -106,6 +106,8 @@ class Chunk:
         Series, or objectives where there are some; NaN for a member that failed. [unit of each]
     closure : ndarray, shape (members,)
         Relative energy-balance residual. [-]
+    outside : ndarray, shape (members,)
+        How far temperatures are beyond their causes, see `Judgement`. [K]
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
     """
@@ -113,6 +115,7 @@ class Chunk:
     first: int
     kept: Array
     closure: Array
+    outside: Array
     failures: Mapping[int, str]
 
 
@@ -133,7 +136,7 @@ def run_chunk(
         Called with the number of members done.
     """
     values: Array | None = None
-    closure = np.full(members.count, np.nan)
+    closure, outside = np.full((2, members.count), np.nan)
     failures: dict[int, str] = {}
     done = 0
     for structure, rows in members.groups():
@@ -147,21 +150,19 @@ def run_chunk(
             vectors = _vectors(simulation, members, batch)
             before = done
             call = None if report is None else (lambda count, _, before=before: report(before + count))
-            records, closures, failed = simulation.ensemble(
-                vectors, precision=inputs.precision, progress=call
-            )
-            kept = _reduced(inputs, simulation, records)
+            run = simulation.ensemble(vectors, precision=inputs.precision, progress=call)
+            kept = _reduced(inputs, simulation, run.records)
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
-            values[batch], closure[batch] = kept, closures
-            failures |= {first + batch[failure.member]: failure.reason for failure in failed}
-            for failure in failed:
+            values[batch], closure[batch], outside[batch] = kept, run.residuals, run.outside
+            failures |= {first + batch[failure.member]: failure.reason for failure in run.failures}
+            for failure in run.failures:
                 values[batch[failure.member]] = np.nan
             done += len(batch)
     if values is None:
         width = len(inputs.objectives) if inputs.objectives else 0
         values = np.full((members.count, width), np.nan)
-    return Chunk(first, values, closure, dict(sorted(failures.items())))
+    return Chunk(first, values, closure, outside, dict(sorted(failures.items())))
 
 
 def attributes(name: str, unit: str) -> dict[str, str]:

@@ -20,7 +20,7 @@ from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.energy import ensemble_warnings
+from mascarin.simulation.judgement import ensemble_warnings
 from mascarin.simulation.options import described, require_precision
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
@@ -329,10 +329,9 @@ def run_samples(
         A run failed; the text names its parameters.
     """
     vectors = simulation.varied(paths, samples)
-    records, residuals, failures = simulation.ensemble(
-        vectors, record_from=start, record_every=every, precision=precision
-    )
-    for line in ensemble_warnings(residuals, first, precision):
+    run = simulation.ensemble(vectors, record_from=start, record_every=every, precision=precision)
+    records, _, failures = run
+    for line in ensemble_warnings(run.residuals, run.outside, first, precision):
         warnings.warn(f"sensitivity analysis: {line}", stacklevel=2)
     if failures:
         failed = failures[0]

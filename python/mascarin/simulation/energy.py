@@ -38,7 +38,7 @@ CLOSED_SINGLE: Final = 1e-4
 """The same in single precision: members that are above it have been run again in double precision. [-]"""
 
 
-def ensemble_warnings(residuals: Array, first: int = 0, precision: str = "double") -> list[str]:
+def balance_warnings(residuals: Array, first: int = 0, precision: str = "double") -> list[str]:
     """One line where the energy balance of a member of an ensemble does not close, else nothing.
 
     Parameters
@@ -57,7 +57,7 @@ def ensemble_warnings(residuals: Array, first: int = 0, precision: str = "double
 
     Examples
     --------
-    >>> ensemble_warnings(np.array([1e-12, np.nan, 2e-9]))[0][:56]
+    >>> balance_warnings(np.array([1e-12, np.nan, 2e-9]))[0][:56]
     'the energy balance of 1 of 3 members does not close: the'
     """
     closed = CLOSED_SINGLE if precision == "single" else CLOSED

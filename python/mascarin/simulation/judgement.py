@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 
 from mascarin.simulation.coarse import STEPS
+from mascarin.simulation.energy import balance_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -93,32 +94,41 @@ class Judgement:
         return asdict(self)
 
 
-def member_warnings(outside: Array, step_seconds: float, first: int = 0) -> list[str]:
-    """One line where members of an ensemble have temperatures without a cause, else nothing.
+OUTSIDE: Final = {"units": "K", "long_name": "temperatures beyond their causes"}
+"""Attributes of the variable ``outside``."""
+
+
+def ensemble_warnings(
+    residuals: Array, outside: Array, first: int = 0, precision: str = "double"
+) -> list[str]:
+    """What is not sound in the members of an ensemble: a line for each kind, or nothing.
 
     Parameters
     ----------
+    residuals : ndarray, shape (members,)
+        Relative energy-balance residual of each member; NaN for one that failed. [-]
     outside : ndarray, shape (members,)
         `Judgement.outside` of each member; NaN for one that failed. [K]
-    step_seconds : float
-        Time step. [s]
     first : int
         Number of the first member.
+    precision : str
+        Of the members: ``double`` or ``single``.
 
     Examples
     --------
-    >>> member_warnings(np.array([0.0, np.nan, 2.5]), 3600.0)[0][:53]
+    >>> ensemble_warnings(np.zeros(3), np.array([0.0, np.nan, 2.5]))[0][:53]
     '1 of 3 members: temperatures lie outside of everythin'
     """
+    lines = balance_warnings(residuals, first, precision)
     members = np.flatnonzero(outside > 0.0)
     if not members.size:
-        return []
+        return lines
     worst = int(np.nanargmax(outside))
     return [
+        *lines,
         f"{members.size} of {len(outside)} members: temperatures lie outside of everything that acts on the "
         f"building, by {outside[worst]:.2g} K more than the time-stepping scheme can overshoot (member "
-        f"{first + worst}): do not use their results. Take a step of {_shorter(step_seconds):g} min, or the "
-        "scheme backward-euler"
+        f"{first + worst}): do not use their results. Take a quarter of the step, or the scheme backward-euler",
     ]
 
 
