@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,8 @@ import pytest
 import mascarin as mc
 from mascarin import cli
 from mascarin.examples import box, box_climate
-from mascarin.simulation.compiled import CompiledRun
-from mascarin.simulation.judgement import Judgement, member_warnings
+from mascarin.simulation.compiled import CompiledRun, EnsembleRun
+from mascarin.simulation.judgement import Judgement, ensemble_warnings
 
 #: What the engine says of a run: step, place, temperature and bound.
 OUTLIER = (5, "surface roof (inside)", -41.3, -2.0)
@@ -33,9 +34,8 @@ def test_a_sound_run_says_nothing() -> None:
     run = mc.simulate(box(), box_climate(), step="1h")
     assert run.sound
     assert run.judgement == Judgement()
-    members = mc.Simulation(box(), box_climate(), step="1h").ensemble(
-        np.array([mc.Simulation(box(), box_climate(), step="1h").values] * 9)
-    )
+    simulation = mc.Simulation(box(), box_climate(), step="1h")
+    members = simulation.ensemble(np.tile(simulation.values, (9, 1)))
     assert members.outside.shape == (9,)
     assert (members.outside == members.outside[0]).all()
     assert members.outside[0] <= 0.0
@@ -63,17 +63,41 @@ def test_the_command_ends_with_exit_code_1(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     box().to_yaml("box.yaml")
-    code = cli.main(
-        ["run", "box.yaml", "--weather", "golden", "--start", "2001-01-01", "--end", "2001-01-03", *options]
-    )
+    period = ["--start", "2001-01-01", "--end", "2001-01-03"]
+    code = cli.main(["run", "box.yaml", "--weather", "golden", *period, *options])
     assert code == 1
     assert "surface roof (inside): -41.3 degC" in capsys.readouterr().err
 
 
 def test_members_are_counted() -> None:
-    assert member_warnings(np.array([0.0, -3.0, np.nan]), 900.0) == []
-    (line,) = member_warnings(np.array([0.0, 2.5, np.nan, 0.1]), 900.0, first=8)
+    closed = np.zeros(4)
+    assert ensemble_warnings(closed[:3], np.array([0.0, -3.0, np.nan])) == []
+    (line,) = ensemble_warnings(closed, np.array([0.0, 2.5, np.nan, 0.1]), first=8)
     assert line.startswith("2 of 4 members: ")
     assert "by 2.5 K more" in line
     assert "(member 9)" in line
-    assert "a step of 3 min" in line
+    assert "a quarter of the step" in line
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_an_ensemble_says_which_members_are_unsound(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, precision: Any
+) -> None:
+    ensemble = CompiledRun.ensemble
+
+    def judged(self: CompiledRun, vectors: Any, **options: Any) -> EnsembleRun:
+        run = ensemble(self, vectors, **options)
+        # By a parameter, as a member of any chunk.
+        hot = vectors[:, self.paths.index("surfaces.facade.outside.absorptance")] > 0.7
+        return replace(run, outside=np.where(hot, 4.5, run.outside))
+
+    monkeypatch.setattr(CompiledRun, "ensemble", judged)
+    samples = {"surfaces.facade.outside.absorptance": list(np.linspace(0.1, 0.9, 17))}
+    options: dict[str, Any] = {"step": "1h", "precision": precision, "outputs": ["room.air_temperature"]}
+    whole = mc.sweep(box(), box_climate(), samples, **options)
+    store = mc.sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
+    for lines in (whole.attrs["warnings"], store.warnings(), store.to_xarray().attrs["warnings"]):
+        assert len(lines) == 1, lines
+        assert lines[0].startswith("4 of 17 members: temperatures lie outside")
+    np.testing.assert_array_equal(store.to_dataframe()["outside"].to_numpy(), whole["outside"].to_numpy())
+    assert whole["outside"].attrs["units"] == "K"

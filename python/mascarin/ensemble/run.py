@@ -100,8 +100,9 @@ def sweep(
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
         ``closure``, the relative energy-balance residual [-]; ``outside``, how far temperatures are beyond
         their causes [K], zero or less in a sound member. NaN for a member that failed, with its reason in the
-        attribute ``failures``; the attribute ``warnings`` says which members are not sound, and in single precision ``single_precision`` how far each output or objective of some
-        members is from double precision. Coordinates ``time`` (UTC) and ``local_time``.
+        attribute ``failures``; the attribute ``warnings`` says which members are not sound, and in single
+        precision ``single_precision`` how far each output or objective of some members is from double
+        precision. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
     ------

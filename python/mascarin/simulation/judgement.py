@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: The step that is recommended, as a part of the step that was taken: the overshoot of a step of second order falls with its square. [-]
+#: The step that is recommended, as a part of the step that was taken. [-]
 _SHORTER: Final = 0.25
 
 
@@ -83,10 +83,10 @@ class Judgement:
             return []
         side, cause = ("below", "lowest") if self.temperature < self.bound else ("above", "highest")
         return [
-            f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} everything that acts on it (the "
-            f"{cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping scheme can "
-            f"overshoot: do not use these results. Take a step of {_shorter(step_seconds):g} min, or the scheme "
-            "backward-euler"
+            f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} everything that acts on it "
+            f"(the {cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping "
+            "scheme can overshoot: do not use these results. Take a step of "
+            f"{_shorter(step_seconds):g} min, or the scheme backward-euler"
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -128,7 +128,8 @@ def ensemble_warnings(
         *lines,
         f"{members.size} of {len(outside)} members: temperatures lie outside of everything that acts on the "
         f"building, by {outside[worst]:.2g} K more than the time-stepping scheme can overshoot (member "
-        f"{first + worst}): do not use their results. Take a quarter of the step, or the scheme backward-euler",
+        f"{first + worst}): do not use their results. Take a quarter of the step, or the scheme "
+        "backward-euler",
     ]
 
 

@@ -92,7 +92,7 @@ class Results(Mapping[str, "xr.DataArray"]):
 
     @property
     def sound(self) -> bool:
-        """Whether the energy balance closes and every temperature has a cause; `warnings` says what does not."""
+        """Whether the energy balance closes and every temperature has a cause; see `warnings`."""
         return self._finished.sound
 
     @property
