@@ -46,7 +46,7 @@ def test_a_sound_run_says_nothing() -> None:
 def test_an_unsound_run_says_where_when_and_what_to_do(tmp_path: Path, ending: str) -> None:
     run = mc.simulate(box(), box_climate(), step="1h")
     assert not run.sound
-    (line,) = [text for text in run.warnings if "acts on it" in text]
+    (line,) = [text for text in run.warnings if "all that acts on it" in text]
     assert line.startswith("surface roof (inside): -41.3 degC in step 5 from ")
     assert "the lowest is -2.0 degC), by 7.5 K more" in line
     assert "Take a step of 15 min" in line

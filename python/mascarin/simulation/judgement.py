@@ -83,7 +83,7 @@ class Judgement:
             return []
         side, cause = ("below", "lowest") if self.temperature < self.bound else ("above", "highest")
         return [
-            f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} everything that acts on it "
+            f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} all that acts on it "
             f"(the {cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping "
             "scheme can overshoot: do not use these results. Take a step of "
             f"{_shorter(step_seconds):g} min, or the scheme backward-euler"
