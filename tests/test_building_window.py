@@ -114,7 +114,11 @@ def test_steady_heat_through_a_window(climate: Climate) -> None:
         windows__pane__inside__convection=4.5,
     )
     names = ["room.air_temperature", "pane.outside_temperature", "pane.inside_temperature"]
-    frame = simulate(still, climate, start="2001-01-01", end="2001-01-02", outputs=names).frame().iloc[1:20]
+    frame = (
+        simulate(still, climate, start="2001-01-01", end="2001-01-02", outputs=names)
+        .to_dataframe()
+        .iloc[1:20]
+    )
     panes = 2 * 0.003048 + 1.0 / 5.208
     assert 1.0 / (1.0 / 17.8 + panes + 1.0 / 4.5) == pytest.approx(2.099, abs=1e-3)
     air, outer, inner = (frame[name].to_numpy() for name in names)
@@ -126,7 +130,7 @@ def test_transmitted_is_absorbed_or_lost(climate: Climate) -> None:
     names = ["room.transmitted_solar", "room.lost_solar", "pane.transmitted_solar", "pane.incident_solar"]
     run = simulate(box(), climate, start="2001-02-01", end="2001-02-03", outputs=names)
     assert run.energy.closure < 1e-12
-    sums = run.frame().iloc[1:].sum() * 900.0
+    sums = run.to_dataframe().iloc[1:].sum() * 900.0
     assert sums["pane.transmitted_solar"] == pytest.approx(sums["room.transmitted_solar"], rel=1e-12)
     # Incident sun through a double pane, winter noon and the rest: between the diffuse and the normal value.
     assert 0.59 < sums["pane.transmitted_solar"] / (4.0 * sums["pane.incident_solar"]) < 0.70
@@ -141,7 +145,7 @@ def test_given_shares(climate: Climate) -> None:
     shares = {"kind": "shares", "shares": {"south": 0.1, "rest": 0.7}, "lost": 0.2}
     names = ["room.transmitted_solar", "room.lost_solar"]
     run = simulate(box(zones__room__sun=shares), climate, start="2001-02-01", end="2001-02-02", outputs=names)
-    sums = run.frame().iloc[1:].sum() * 900.0
+    sums = run.to_dataframe().iloc[1:].sum() * 900.0
     assert sums["room.lost_solar"] == pytest.approx(0.2 * sums["room.transmitted_solar"], rel=1e-12)
     assert run.energy.into["transmitted"] == pytest.approx(0.8 * sums["room.transmitted_solar"], rel=1e-12)
     assert run.energy.closure < 1e-12
@@ -157,13 +161,13 @@ def test_filled_gaps_close_the_energy_balance(climate: Climate, gas: str) -> Non
 def test_a_frame_takes_its_fraction_of_the_area(climate: Climate) -> None:
     names = ["pane.transmitted_solar"]
     period = {"start": "2001-02-01", "end": "2001-02-02", "outputs": names}
-    bare = simulate(box(), climate, **period).frame().sum()  # type: ignore[arg-type]
+    bare = simulate(box(), climate, **period).to_dataframe().sum()  # type: ignore[arg-type]
     framed = simulate(
         box(windows__pane__frame={"fraction": 0.25, "u_value": 2.0}),
         climate,
         **period,  # type: ignore[arg-type]
     )
-    assert framed.frame().sum()[names[0]] == pytest.approx(0.75 * bare[names[0]], rel=1e-12)
+    assert framed.to_dataframe().sum()[names[0]] == pytest.approx(0.75 * bare[names[0]], rel=1e-12)
     assert framed.energy.closure < 1e-12
 
 
@@ -221,7 +225,7 @@ def drawn(absorptance: float = 1.0, sun: str = "geometry", **sections: Any) -> B
 def sums(building: Building, climate: Climate, *names: str) -> tuple[Any, list[float]]:
     run = simulate(building, climate, start="2001-02-01", end="2001-02-03", outputs=list(names))
     assert run.energy.closure < 1e-12
-    frame = run.frame().iloc[1:].sum() * 900.0
+    frame = run.to_dataframe().iloc[1:].sum() * 900.0
     return run, [float(frame[name]) for name in names]
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import mascarin as mc
 from mascarin import cli
+from mascarin.ensemble import sweep_into
 from mascarin.examples import box, box_climate
 from mascarin.simulation.compiled import CompiledRun, EnsembleRun
 from mascarin.simulation.judgement import Judgement, ensemble_warnings
@@ -64,7 +65,7 @@ def test_the_command_ends_with_exit_code_1(
     monkeypatch.chdir(tmp_path)
     box().to_yaml("box.yaml")
     period = ["--start", "2001-01-01", "--end", "2001-01-03"]
-    code = cli.main(["run", "box.yaml", "--weather", "golden", *period, *options])
+    code = cli.main(["run", "box.yaml", "--weather", "shipped:golden", *period, *options])
     assert code == 1
     assert "surface roof (inside): -41.3 degC" in capsys.readouterr().err
 
@@ -95,7 +96,7 @@ def test_an_ensemble_says_which_members_are_unsound(
     samples = {"surfaces.facade.outside.absorptance": list(np.linspace(0.1, 0.9, 17))}
     options: dict[str, Any] = {"step": "1h", "precision": precision, "outputs": ["room.air_temperature"]}
     whole = mc.sweep(box(), box_climate(), samples, **options)
-    store = mc.sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
+    store = sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
     for lines in (whole.attrs["warnings"], store.warnings(), store.to_xarray().attrs["warnings"]):
         assert len(lines) == 1, lines
         assert lines[0].startswith("4 of 17 members: temperatures lie outside")

@@ -219,13 +219,6 @@ def test_results_are_described_in_a_few_lines(run: Results) -> None:
     assert "deep.temperature" in page
 
 
-def test_old_names_work_and_are_not_listed(run: Results) -> None:
-    assert run.frame().equals(run.to_dataframe())
-    assert run.dataset().identical(run.to_xarray())
-    assert not {"frame", "dataset"} & set(dir(run))
-    assert {"to_dataframe", "to_xarray", "plot", "keys"} <= set(dir(run))
-
-
 def test_plot_has_axes_for_each_unit(run: Results) -> None:
     figure = run.plot()
     assert [axis.get_ylabel() for axis in figure.axes] == ["[°C]", "[W/m²]"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -92,6 +93,17 @@ class Judgement:
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
         return asdict(self)
+
+    @classmethod
+    def from_json(cls, text: str | None) -> Self | None:
+        """Make one from what a file holds of `to_dict`; None where it holds nothing.
+
+        Parameters
+        ----------
+        text : str or None
+            JSON.
+        """
+        return None if text is None else cls(**json.loads(text))
 
 
 OUTSIDE: Final = {"units": "K", "long_name": "temperatures beyond their causes"}

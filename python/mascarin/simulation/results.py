@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 Default = TypeVar("Default")
 
-#: Names that are kept for old programs.
-_DEPRECATED: Final = frozenset({"frame", "dataset"})
 #: Series that the figure in a notebook shows.
 _DRAWN: Final = 8
 
@@ -163,9 +161,6 @@ class Results(Mapping[str, "xr.DataArray"]):
         )
 
     __hash__ = None  # type: ignore[assignment]
-
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if name not in _DEPRECATED]
 
     def every(self, interval: str | float) -> Results:
         """The same series at another spacing, from the start of the run.
@@ -384,7 +379,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             provenance=Provenance.from_dict(json.loads(attributes["provenance"])),
             warnings=tuple(json.loads(attributes["warnings"])),
             vapour=VapourLedger.from_json(attributes.get("vapour")),
-            judgement=_judgement(attributes.get("judgement")),
+            judgement=Judgement.from_json(attributes.get("judgement")),
         )
 
     def plot(
@@ -486,14 +481,6 @@ class Results(Mapping[str, "xr.DataArray"]):
         residual = self.energy.relative_residual
         return labels.rows(list(self), self.index, self.provenance, residual, self.warnings)
 
-    def frame(self) -> pd.DataFrame:
-        """Deprecated name of `to_dataframe`."""
-        return self.to_dataframe()
-
-    def dataset(self) -> xr.Dataset:
-        """Deprecated name of `to_xarray`."""
-        return self.to_xarray()
-
     def _position(self, name: str) -> int:
         for position, output in enumerate(self.outputs):
             if name == output.name or name in output.aliases:
@@ -506,7 +493,3 @@ def _output(fields: Mapping[str, Any]) -> Output:
     from mascarin.building import Output  # pydantic, which an evaluation for GenOpt does without
 
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})
-
-
-def _judgement(text: str | None) -> Judgement | None:
-    return None if text is None else Judgement(**json.loads(text))
