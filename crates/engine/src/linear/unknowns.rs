@@ -87,6 +87,20 @@ impl<S: Real> Unknowns<S> {
         self.air.copy_from_slice(&other.air);
     }
 
+    /// Copies the lanes of others where the mask is true.
+    pub(crate) fn take(&mut self, mask: S::Mask, other: &Self) {
+        let kinds = [
+            (&mut self.cells[..], &other.cells[..]),
+            (&mut *self.surfaces, &other.surfaces),
+            (&mut *self.air, &other.air),
+        ];
+        for (mine, theirs) in kinds {
+            for (mine, &theirs) in mine.iter_mut().zip(theirs) {
+                *mine = S::select(mask, theirs, *mine);
+            }
+        }
+    }
+
     /// Copies other temperatures; of cells only some.
     #[inline(always)]
     pub(crate) fn copy_some(&mut self, cells: &[Range<usize>], other: &Temperatures<'_, S>) {

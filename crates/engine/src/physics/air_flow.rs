@@ -16,6 +16,8 @@ use crate::physics::constants::{GRAVITY, KELVIN};
 
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
 const ROUND_OFF: f64 = 0.01;
+/// Least mean of both temperatures [K]: colder than any air, so that the flow is finite about an iterate that is far off.
+const COLDEST: f64 = 150.0;
 
 /// A flow of heat capacity, constant or by schedule.
 #[derive(Debug, Clone)]
@@ -118,10 +120,12 @@ impl<S: Real> Opening<S> {
     #[inline(always)]
     fn rate(&self, open: S, wind: S, outdoor: S, d: S) -> (S, S) {
         let magnitude = d.smooth_abs(ROUND_OFF);
-        let inverse = S::one() / (outdoor - d.scale(0.5) + S::constant(KELVIN));
+        // T = T_outdoor - d/2.
+        let (mean, least) = (outdoor - d.scale(0.5) + S::constant(KELVIN), S::constant(COLDEST));
+        let inverse = S::one() / mean.max(least);
         let buoyancy = self.stack * magnitude * inverse;
-        // |d|/T with T = T_outdoor - d/2.
-        let rise = self.stack * (d / magnitude + magnitude * inverse.scale(0.5)) * inverse;
+        let by_mean = S::select(mean.lt(least), S::zero(), inverse.scale(0.5));
+        let rise = self.stack * (d / magnitude + magnitude * by_mean) * inverse;
         // Without height and without wind the root would have an infinite slope.
         let speed = (self.wind * wind * wind + buoyancy).max(S::constant(1e-30)).sqrt();
         let gain = self.conductance * open;
@@ -224,6 +228,30 @@ mod tests {
         assert!((heat / -3.245_23 - 1.0).abs() < 1e-5, "{heat}");
         let difference = (intake(&[0.5], 20.0 - 1e-4).0 - intake(&[0.5], 20.0 + 1e-4).0) / 2e-4;
         assert!((slope / difference - 1.0).abs() < 1e-7, "{slope} is not {difference}");
+    }
+
+    /// The heat through an opening rises with the temperature difference over all real numbers, as its slope says: airs from far below
+    /// 0 K to 1e5 degC.
+    #[test]
+    fn the_heat_of_an_opening_rises_everywhere() {
+        let opening = Opening {
+            conductance: 1200.0,
+            wind: 0.09,
+            stack: 7.06,
+            schedule: Schedule::new(None),
+            control: None,
+        };
+        let openings = [opening];
+        let heat = |air: f64| {
+            let line = Intake { ventilation: 0.0, openings: &openings, open: &[1.0] }.heat(4.0, -10.0, air);
+            (line.at(-10.0 - air), line.slope)
+        };
+        for k in -1000..1000 {
+            let air = 100.0 * f64::from(k) + 17.0;
+            let ((colder, _), (here, slope), (warmer, _)) = (heat(air - 1e-3), heat(air), heat(air + 1e-3));
+            assert!(here.is_finite() && colder > here && here > warmer, "{air}");
+            assert!(((colder - warmer) / 2e-3 / slope - 1.0).abs() < 1e-4, "{air}: {slope}");
+        }
     }
 
     /// 3600 J/K of air, 0.5 + 0.02 10 + 0.1 3 = 1 air change per hour and -10 K: -10 W; slope 1 + 0.02 10 W/K.

@@ -15,6 +15,7 @@ use crate::input::description::Gas;
 use crate::number::newton::falling_root;
 use crate::number::real::{Chunk, Mask, Real};
 use crate::physics::constants::{GAS_CONSTANT, GRAVITY, KELVIN, SIGMA};
+use crate::physics::longwave::COLDEST;
 
 /// Temperature differences across a gap are rounded off within this [K].
 const ROUND_OFF: f64 = 0.01;
@@ -201,10 +202,11 @@ impl<S: Real> GasGap<S> {
     }
 }
 
-/// Absolute mean temperature of a gap between surfaces at two temperatures [degC].
+/// Absolute mean temperature of a gap between surfaces at two temperatures [degC]; not below [`COLDEST`], so that properties stay positive
+/// about an iterate that is far off.
 #[inline(always)]
 fn mean_temperature<S: Real>(outer: S, inner: S) -> S {
-    (outer + inner).scale(0.5) + S::constant(KELVIN)
+    ((outer + inner).scale(0.5) + S::constant(KELVIN)).max(S::constant(COLDEST))
 }
 
 impl<S: Real> GapRegister<S> {
@@ -307,12 +309,15 @@ pub(crate) fn radiating_tangent<S: Real>(exchange: S, convection: S, outer: S, i
     }
 }
 
-/// Heat flow of the emission at a temperature [degC] across a gap [W/m2], and its slope [W/(m2 K)].
+/// Heat flow of the emission at a temperature [degC] across a gap [W/m2], and its slope [W/(m2 K)]; as that of
+/// [`Emission`](crate::physics::longwave::Emission), it rises everywhere.
 #[inline(always)]
 fn emission<S: Real>(exchange: S, temperature: S) -> (S, S) {
     let kelvin = temperature + S::constant(KELVIN);
-    let cube = (kelvin * kelvin * kelvin).scale(SIGMA) * exchange;
-    (cube * kelvin, cube.scale(4.0))
+    let touched = kelvin.max(S::constant(COLDEST));
+    let cube = (touched * touched * touched).scale(SIGMA) * exchange;
+    let slope = cube.scale(4.0);
+    (cube * touched + slope * (kelvin - touched), slope)
 }
 
 /// Exchange factor of two large grey plates, `1/(1/e1 + 1/e2 - 1)` [-].

@@ -77,8 +77,7 @@ pub fn ensemble(
 
 /// Runs members in single precision, sixteen in a pack, to screen many of them: results differ from those of [`ensemble`] by rounding,
 /// and energy balances close within it only. Members whose iteration fails, or whose energy balance does not close, run again alone in
-/// double precision; so do all members of a pack where the ideal loads of one are not found, and all on machines without registers for
-/// lanes.
+/// double precision; so do all members on machines without registers for lanes.
 ///
 /// # Errors
 /// As those of [`ensemble`].

@@ -1,4 +1,7 @@
 //! The warm-up: the first period repeated until the state at its end is that at its start.
+//!
+//! A lane that has converged keeps what it passes on: its state, and what its guesses are made from. Other lanes repeat the period, and
+//! it with them, to no effect.
 
 use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
@@ -7,6 +10,7 @@ use crate::run::action::Action;
 use crate::run::options::Options;
 use crate::run::periodic_start::PeriodicStart;
 use crate::step::control::RunControl;
+use crate::step::history::History;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
@@ -14,7 +18,7 @@ use crate::weather::conditions::Weather;
 /// Least change of a temperature between two repetitions that is asked for [K]: in single precision, smaller ones are rounding.
 const LEAST: ByPrecision = ByPrecision { double: 0.0, single: 2e-3 };
 
-/// Repeats the first period until every lane has converged; such a lane keeps its state. Gives the number of repetitions
+/// Repeats the first period until every lane has converged. Gives the number of repetitions
 /// and the largest change in the last one [K].
 pub(super) fn warm_up<'a, S: Real>(
     stepper: &mut Stepper<'a, S>,
@@ -29,6 +33,8 @@ pub(super) fn warm_up<'a, S: Real>(
     let mut active = S::Mask::splat(true);
     let mut change_left = S::zero();
     let mut known: Option<PeriodicStart<S>> = None;
+    // What the guesses of the lanes that have converged are made from, as their last repetition left it.
+    let mut history: Option<History<S>> = None;
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
         let mut unused = Ledger::new();
@@ -42,8 +48,16 @@ pub(super) fn warm_up<'a, S: Real>(
         let reached = active;
         change_left = S::select(active, change, change_left);
         active = active & !stepper.failed() & S::constant(tolerance).lt(change);
+        if S::LANES > 1 {
+            let now = stepper.history();
+            match &mut history {
+                Some(history) => history.take(reached, &now),
+                None => history = Some(now),
+            }
+        }
         if !active.any() {
             state.take(reached, &next);
+            history.iter().for_each(|history| stepper.set_history(history));
             return Ok((cycle, change_left));
         }
         let start = if let Some(known) = &mut known {
@@ -59,6 +73,7 @@ pub(super) fn warm_up<'a, S: Real>(
     // Lanes that have converged do not depend on the others: these are run again alone.
     if S::LANES > 1 && (!(active | stepper.failed())).any() {
         stepper.give_up(active);
+        history.iter().for_each(|history| stepper.set_history(history));
         return Ok((warmup.max_cycles, change_left));
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);

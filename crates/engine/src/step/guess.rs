@@ -40,6 +40,13 @@ impl<S: Real> Guess<S> {
         self.previous.get_or_insert_with(zero).copy_some(&model.parts.nonlinear_cells, &state.view());
     }
 
+    /// Copies the lanes of another one where the mask is true.
+    pub(crate) fn take(&mut self, mask: S::Mask, other: &Self) {
+        if let (Some(mine), Some(theirs)) = (&mut self.previous, &other.previous) {
+            mine.take(mask, theirs);
+        }
+    }
+
     /// What comes next starts from another state than the one that was reached, but goes on from it as it would have from there.
     pub(crate) fn move_by(&mut self, reached: &State<S>, start: &State<S>) {
         let Some(previous) = &mut self.previous else { return };

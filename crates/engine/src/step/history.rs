@@ -26,6 +26,14 @@ impl<S: Real> Stepper<'_, S> {
     }
 }
 
+impl<S: Real> History<S> {
+    /// Copies the lanes of another one where the mask is true.
+    pub(crate) fn take(&mut self, mask: S::Mask, other: &Self) {
+        self.guess.take(mask, &other.guess);
+        self.loads.take(mask, &other.loads);
+    }
+}
+
 impl History<f64> {
     /// Writes all its numbers.
     pub(crate) fn write(&self, numbers: &mut Vec<f64>) {

@@ -8,6 +8,7 @@ mod emission;
 mod exchange;
 mod sky;
 
+pub(crate) use emission::COLDEST;
 pub use emission::{Emission, black_temperature};
 pub(crate) use exchange::direct_exchange_areas;
 pub use exchange::{exchange_areas, self_weight};

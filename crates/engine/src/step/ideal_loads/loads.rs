@@ -13,6 +13,7 @@ use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::responses::Response;
 use crate::step::ideal_loads::rises::{Change, Rises};
 use crate::step::scheme::Tableau;
+use crate::step::state::blend;
 
 /// What the guess of the next step is made from.
 #[derive(Debug, Clone)]
@@ -22,6 +23,19 @@ pub(crate) struct LoadHistory<S> {
     earlier: Vec<S>,
     slopes: Vec<S>,
     rises: Vec<S>,
+}
+
+impl<S: Real> LoadHistory<S> {
+    /// Copies the lanes of another one where the mask is true.
+    pub(crate) fn take(&mut self, mask: S::Mask, other: &Self) {
+        if let (Some(mine), Some(theirs)) = (&mut self.first, &other.first) {
+            mine.take(mask, theirs);
+        }
+        blend(mask, &mut self.outdoor, &other.outdoor);
+        blend(mask, &mut self.earlier, &other.earlier);
+        blend(mask, &mut self.slopes, &other.slopes);
+        blend(mask, &mut self.rises, &other.rises);
+    }
 }
 
 impl LoadHistory<f64> {

@@ -70,7 +70,8 @@ impl<S: Real> Stepper<'_, S> {
         let mut further = self.further_sweeps();
         for number in 0..self.most_sweeps() {
             self.solver.check_stop()?;
-            if self.exhausted() {
+            // Sweeps are bounded anyway; lanes together may take more iterations than one alone.
+            if S::LANES == 1 && self.exhausted() {
                 break;
             }
             let whole = number >= SINGLE_SWEEPS;
@@ -80,7 +81,7 @@ impl<S: Real> Stepper<'_, S> {
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
             let found = self.ideal_loads.correct(air, load, (number, active, further > 0));
             let moving = active & !(found & still) & !self.solver.failed;
-            if moving.any() {
+            if moving.any() && !(number + 1 == self.most_sweeps() && self.fail_some(moving)) {
                 active = moving;
             } else if further > 0 {
                 further -= 1;
@@ -93,6 +94,18 @@ impl<S: Real> Stepper<'_, S> {
             }
         }
         Err(self.loads_not_found(active, part.step))
+    }
+
+    /// Marks lanes whose loads are not found as failed: they are run again alone. False where no other is left.
+    #[cold]
+    #[inline(never)]
+    fn fail_some(&mut self, lanes: S::Mask) -> bool {
+        let others = !(lanes | self.solver.failed);
+        if S::LANES == 1 || !others.any() {
+            return false;
+        }
+        self.give_up(lanes);
+        true
     }
 
     /// Sweeps before a step counts as unsolved.
