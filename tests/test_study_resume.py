@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import is_dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -104,5 +105,9 @@ def test_results_are_kept_with_all_bits(tmp_path: Path) -> None:
 def test_only_dataclasses_of_this_package_are_read() -> None:
     with pytest.raises(ValueError, match="os"):
         kept._class("os:system")
-    with pytest.raises(TypeError, match="seconds_of"):
-        kept._class("mascarin._io.durations:seconds_of")
+    for where in ("_io.durations:seconds_of", "errors:InputError", "study.findings:Gone", "nowhere:X"):
+        with pytest.raises(TypeError, match=where):
+            kept._class(f"mascarin.{where}")
+    for module, names in kept.CLASSES.items():
+        for name in names:
+            assert is_dataclass(kept._class(f"{module}:{name}"))

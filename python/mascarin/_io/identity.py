@@ -128,7 +128,7 @@ def require_no_input(path: Path, kind: str = "") -> None:
     ...     remember(file)
     ...     require_no_input(file)
     Traceback (most recent call last):
-    mascarin.errors.InputError: -o: found ...logger.csv, which is an input (--weather); expected another file ...
+    mascarin.errors.InputError: -o: found ...logger.csv, which is an input (--weather); expected ...
     """
     found, register = _identity(path), _registers[-1]
     if found is None or found not in register.inputs:

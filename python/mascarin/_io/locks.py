@@ -69,6 +69,8 @@ def _acquired(file: Path, held: str, other: str) -> filelock.BaseFileLock:
     """Lock a file, soon or not at all."""
     import filelock  # some commands write nothing
 
+    if file.is_symlink():  # it would be emptied
+        raise InputError(f"{file}: found a link, expected no such file; remove it")
     lock = filelock.FileLock(file, timeout=_PATIENCE)
     try:
         lock.acquire(poll_interval=0.02)

@@ -19,6 +19,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin._io import own_files
 from mascarin.calibration.cost import Cost
 from mascarin.errors import InputError
 
@@ -244,6 +245,10 @@ class Evaluator:
     def _open(self, path: Path) -> None:
         """Read the record, remove an incomplete last line, and open the file to append."""
         whole = 0
+        if path.is_symlink() or (path.exists() and not path.is_file()):
+            raise InputError(
+                f"{path}: found no regular file, expected a record or nothing; name another file"
+            )
         if path.exists():
             whole = self._read(path)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -295,7 +300,7 @@ class Evaluator:
             if "r" in entry:
                 residuals = _unpacked(entry["r"], problem.measured.shape)
             fits = x.shape == (len(problem.parameters),) and costs.shape == (len(problem.sensors),)
-        except (KeyError, TypeError, ValueError):
+        except (KeyError, TypeError, ValueError, OverflowError):
             fits = False
         if not fits:
             msg = f"{path}:{number}: not an evaluation of this problem; remove the line or name another file"
@@ -307,7 +312,7 @@ class Evaluator:
         try:
             x = np.array(entry["x"], dtype=np.float64)
             self._slopes[x.tobytes()] = _unpacked(entry["j"], (*shape, len(self.cost.problem.parameters)))
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             msg = f"{path}:{number}: not slopes of this problem; remove the line or name another file"
             raise InputError(msg) from error
 
@@ -323,8 +328,8 @@ def _unpacked(text: str, shape: tuple[int, ...]) -> Floats:
 
 def _parsed(path: Path, number: int, line: bytes) -> dict[str, Any]:
     try:
-        entry = json.loads(line)
-    except ValueError as error:
+        entry = own_files.json_of(line)
+    except own_files.DamagedError as error:
         msg = f"{path}:{number}: not a line of JSON ({error}); remove the line or name another file"
         raise InputError(msg) from error
     if not isinstance(entry, dict):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin._io import identity
+from mascarin._io import identity, own_files
 from mascarin._io.locks import writing_into
 from mascarin.design.choices import Choice, Choices
 from mascarin.design.inputs import DesignInputs
@@ -56,7 +56,7 @@ def run_design(
     from mascarin.design.page import write_page
 
     out = Path(out)
-    identity.require_no_inputs_in(out / FOLDER)
+    identity.require_no_inputs_in(own_files.require_folder(out, FOLDER))
     for name in FILES:
         identity.require_no_input(out / name)
     with writing_into(out), reporting(progress, "members") as report:

@@ -7,16 +7,20 @@ bytes do not depend on interruptions or on the size of the chunks.
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import re
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import atomic, display, identity, locks
+from mascarin._io import atomic, display, identity, memory, own_files
+from mascarin.ensemble.folder import foreign, require_parquet
+from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.judgement import OUTSIDE, ensemble_warnings
@@ -73,14 +77,9 @@ class Store:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
-        place = self.path / MANIFEST
-        try:
-            self.manifest: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise InputError(
-                f"{place}: found no readable manifest ({error}); expected the folder of an ensemble, as "
-                "sweep_into() or 'mascarin sweep --out' makes it"
-            ) from None
+        self.manifest: dict[str, Any] = read(self.path / MANIFEST)
+        #: Names of pieces, and whether they are as they were written.
+        self._whole: dict[str, bool] = {}
 
     @staticmethod
     def require_usable(path: Path) -> None:
@@ -96,11 +95,11 @@ class Store:
         InputError
             The folder is not empty and holds no ensemble; or pyarrow is not installed.
         """
-        _require_parquet()
+        require_parquet()
         if (path / MANIFEST).exists() or not path.exists():
             return
         # What is left where the first file could not be written: the lock, drafts, an empty folder.
-        if not path.is_dir() or any(_foreign(file) for file in path.iterdir()):
+        if not path.is_dir() or any(foreign(file) for file in path.iterdir()):
             raise InputError(f"{path}: found a folder that is not empty and no ensemble; choose another")
 
     @classmethod
@@ -132,10 +131,47 @@ class Store:
                     f"{path}: found an ensemble that differs in {', '.join(other)}; expected the same one, "
                     "to continue it. Choose another folder, or remove this one"
                 )
+            store._restore(manifest)
             return store
         (path / "pieces").mkdir(exist_ok=True)
         atomic.write(path / MANIFEST, json.dumps({**manifest, "complete": False}, indent=1) + "\n")
         return cls(path)
+
+    def _restore(self, manifest: Mapping[str, Any]) -> None:
+        """Take the entries as they are known, and forget what was damaged: it is run again."""
+        own = {key: self.manifest[key] for key in ("complete", "single_precision") if key in self.manifest}
+        self.manifest = {**json.loads(json.dumps(manifest)), **own}
+        if self.complete and not self._has_results():
+            self.manifest["complete"] = False
+        (self.path / "pieces").mkdir(exist_ok=True)
+        for file in (self.path / "pieces").glob("*.parquet"):
+            if not self._is_whole(file):
+                own_files.remove(file)
+
+    def _has_results(self) -> bool:
+        """Whether the finished file has a row for each member, and its columns."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        try:
+            found = pq.read_metadata(self.path / RESULTS)
+            names = {*found.schema.to_arrow_schema().names}
+        except (OSError, ValueError, pa.ArrowException):
+            return False
+        return (
+            found.num_rows == self.count and {"member", "closure", "failure", *self.manifest["kept"]} <= names
+        )
+
+    def _is_whole(self, file: Path) -> bool:
+        """Whether a piece is as it was written; each is read once."""
+        if file.name not in self._whole:
+            try:
+                own_files.read(file, file.name)
+            except (OSError, own_files.DamagedError):
+                self._whole[file.name] = False
+            else:
+                self._whole[file.name] = True
+        return self._whole[file.name]
 
     def __repr__(self) -> str:
         return display.text(f"Store '{self.path}'", self._rows())
@@ -203,8 +239,10 @@ class Store:
 
         last = chunk.first + len(chunk.closure)
         target = self.path / "pieces" / f"{chunk.first:012d}-{last:012d}.parquet"
-        with atomic.drafted(target) as draft:
-            pq.write_table(self._table(chunk, members), draft)
+        content = io.BytesIO()
+        pq.write_table(self._table(chunk, members), content)
+        own_files.write(target, target.name, content.getvalue())
+        self._whole[target.name] = True
 
     def finish(self, single_precision: Sequence[Difference] = ()) -> None:
         """Join the chunks to one file and mark the store as complete.
@@ -233,7 +271,7 @@ class Store:
         held: list[pa.Table] = []
         writer: pq.ParquetWriter | None = None
         for table in self._ordered():
-            writer = writer or pq.ParquetWriter(target, table.schema)
+            writer = writer or pq.ParquetWriter(target, table.schema, write_page_checksum=True)
             held.append(table)
             joined = pa.concat_tables(held)
             whole = len(joined) // rows * rows
@@ -260,15 +298,14 @@ class Store:
             No member has been run.
         """
         import pandas as pd
-        import pyarrow.parquet as pq
 
         series = {*self.manifest["outputs"]} if not self.manifest["objectives"] else set()
-        found = []
-        for file in self._files():
-            names = [name for name in pq.read_schema(file).names if name not in series]
-            found.append(pq.read_table(file, columns=names).to_pandas())
-        whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
-        return whole.sort_values("member").set_index("member")
+        with self._blamed():
+            found = [table.to_pandas(ignore_metadata=True) for table in self._tables(without=series)]
+            whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
+            if not {"closure", "failure"} <= {*whole.columns}:
+                raise KeyError("closure")
+            return whole.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
         """What is not sound in the members: a line for each kind, or nothing."""
@@ -301,15 +338,18 @@ class Store:
         InputError
             Some of them have not been run yet.
         """
+        until = self.count if last is None else last
+        with self._blamed():
+            return self._dataset(first, until)
+
+    def _dataset(self, first: int, until: int) -> xr.Dataset:
+        """Members from `first` to before `until`."""
         import pandas as pd
         import pyarrow as pa
-        import pyarrow.parquet as pq
         import xarray as xr
 
-        until = self.count if last is None else last
         wanted = [("member", ">=", first), ("member", "<", until)]
-        table = pa.concat_tables([pq.read_table(file, filters=wanted) for file in self._files()])
-        table = table.sort_by("member")
+        table = pa.concat_tables(self._tables(filters=wanted)).sort_by("member")
         members = table.column("member").to_numpy()
         if not np.array_equal(members, np.arange(first, until)):
             raise InputError(
@@ -363,26 +403,69 @@ class Store:
         return kept * rows + len(self.manifest["paths"]) + 4
 
     def _chunks(self) -> list[tuple[int, int]]:
-        names = (_CHUNK.fullmatch(file.name) for file in (self.path / "pieces").glob("*.parquet"))
-        return [(int(name[1]), int(name[2])) for name in names if name]
-
-    def _files(self) -> list[Path]:
-        if self.complete:
-            return [self.path / RESULTS]
-        found = sorted((self.path / "pieces").glob("*.parquet"))
-        if not found:
-            raise InputError(f"{self.path}: no member has been run yet")
+        found = []
+        for file in (self.path / "pieces").glob("*.parquet"):
+            name = _CHUNK.fullmatch(file.name)
+            if name and int(name[1]) < int(name[2]) <= self.count and self._is_whole(file):
+                found.append((int(name[1]), int(name[2])))
         return found
+
+    def _tables(self, filters: Any = None, without: Collection[str] = ()) -> list[pa.Table]:
+        """Tables of the finished file, or of all pieces.
+
+        Raises
+        ------
+        InputError
+            No member has been run.
+        """
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        pieces = [] if self.complete else [self._piece(*one) for one in sorted(self._chunks())]
+        sources: list[Any] = (
+            [self.path / RESULTS] if self.complete else [pa.BufferReader(one) for one in pieces]
+        )
+        if not sources:
+            raise InputError(f"{self.path}: no member has been run yet")
+        tables = []
+        for source in sources:
+            with pq.ParquetFile(source, page_checksum_verification=True) as file:
+                names = [name for name in file.schema_arrow.names if name not in without]
+                memory.require(
+                    8 * file.metadata.num_rows * len(names), f"{self.path}: the results", "read fewer members"
+                )
+                table = file.read(columns=names)
+            tables.append(table if filters is None else table.filter(pq.filters_to_expression(filters)))
+        return tables
+
+    def _piece(self, first: int, last: int) -> bytes:
+        """Content of a piece."""
+        file = self.path / "pieces" / f"{first:012d}-{last:012d}.parquet"
+        return own_files.read(file, file.name)
+
+    @contextlib.contextmanager
+    def _blamed(self) -> Iterator[None]:
+        """What a damaged file raises, as an error with its remedy."""
+        import pyarrow as pa
+
+        try:
+            yield
+        except (OSError, LookupError, ValueError, TypeError, AttributeError, pa.ArrowException) as error:
+            raise InputError(
+                f"{self.path}: found results that cannot be read ({str(error)[:200]}); expected those of the "
+                "manifest. Remove the folder, and run it again"
+            ) from None
 
     def _ordered(self) -> Iterator[pa.Table]:
         """Tables of the chunks in the order of the members, each member once."""
+        import pyarrow as pa
         import pyarrow.parquet as pq
 
         at = 0
         for first, last in sorted(self._chunks()):
             if last <= at:
                 continue
-            table = pq.read_table(self.path / "pieces" / f"{first:012d}-{last:012d}.parquet")
+            table = pq.read_table(pa.BufferReader(self._piece(first, last)))
             yield table.slice(max(at - first, 0))
             at = last
 
@@ -416,19 +499,3 @@ class Store:
 def _matrix(column: Any) -> Any:
     rows = column.type.list_size
     return column.flatten().to_numpy(zero_copy_only=False).reshape(-1, rows)
-
-
-def _require_parquet() -> None:
-    try:
-        import pyarrow.parquet  # noqa: F401
-    except ImportError:
-        raise InputError(
-            "a store needs pyarrow, which is not installed: pip install 'mascarin[parquet]'"
-        ) from None
-
-
-def _foreign(file: Path) -> bool:
-    """Whether a file is none that the beginning of an ensemble leaves."""
-    if file.name == locks.NAME or file.suffix == atomic.PART:
-        return False
-    return not (file.name == "pieces" and file.is_dir() and not any(file.iterdir()))

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from mascarin._io import atomic, identity
+from mascarin._io import atomic, identity, memory, own_files
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 from mascarin.simulation.blocks import InMemory
@@ -177,7 +177,7 @@ class _Parquet:
         schema = pa.schema(
             fields, metadata={**(table.schema.metadata or {}), _KEY: json.dumps(dict(attributes)).encode()}
         )
-        pq.write_table(table.cast(schema), self._part)
+        pq.write_table(table.cast(schema), self._part, write_page_checksum=True)
 
     def close(self) -> None:
         """Nothing is open."""
@@ -202,24 +202,42 @@ def read(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     reader = {".csv": _read_csv, ".parquet": _read_parquet}.get(ending, _read_netcdf)
     try:
         records, times, attributes = reader(path)
+        _require_regular_times(times)
         return records, times.tz_convert(parse_timezone(attributes["timezone"])), attributes
-    except (OSError, KeyError, ValueError, TypeError) as error:
+    except (OSError, LookupError, ValueError, TypeError, AttributeError, OverflowError) as error:
         raise InputError(
             f"{path}: found no results of a run ({error}); expected a file that Results.write or "
             "`mascarin run -o FILE` wrote"
         ) from None
 
 
+def _require_regular_times(times: pd.DatetimeIndex) -> None:
+    """Refuse times that no run has.
+
+    Raises
+    ------
+    ValueError
+        There is none, one is missing, or their distances differ.
+    """
+    import numpy as np
+
+    if not len(times) or times.hasnans or len(np.unique(np.diff(times.asi8))) > 1:
+        raise ValueError("its times are not at equal distances")
+
+
 def _read_netcdf(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     import numpy as np
     import pandas as pd
-    import xarray as xr
 
-    with xr.open_dataset(path, engine="h5netcdf") as data:
-        data.load()
-    times = pd.DatetimeIndex(data["time"].to_numpy()).tz_localize("UTC")
-    names = _units(data.attrs)
-    return np.stack([data[name].to_numpy() for name in names], axis=-1), times, dict(data.attrs)
+    from mascarin.simulation import netcdf_reading  # h5py
+
+    series, moments, attributes = netcdf_reading.read(path)
+    times = pd.DatetimeIndex(moments.view("datetime64[ns]")).tz_localize("UTC")
+    names = list(_units(attributes))
+    records = np.empty((len(times), len(names)))
+    for k, name in enumerate(names):
+        records[:, k] = series[name]
+    return records, times, attributes
 
 
 def _read_csv(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
@@ -228,7 +246,7 @@ def _read_csv(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     beside = Path(f"{path}{BESIDE}")
     if not beside.is_file():
         raise KeyError(f"there is no '{beside.name}' beside it, with units and provenance")
-    attributes = json.loads(beside.read_text(encoding="utf-8"))["mascarin"]
+    attributes = own_files.read_json(beside)["mascarin"]
     # As text: not every version of pandas reads numbers to the last bit, numpy does.
     table = pd.read_csv(path, index_col="time", dtype=str)
     return _named(table, attributes), pd.to_datetime(table.index, utc=True, format="ISO8601"), attributes
@@ -239,11 +257,15 @@ def _read_parquet(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     import pyarrow.parquet as pq
 
     try:
-        table = pq.read_table(path)
-    except pa.ArrowInvalid as error:
+        shape = pq.read_metadata(path)
+        numbers = shape.num_rows * shape.num_columns
+        memory.require(8 * numbers, f"{path}: the series", "use a part of the file")
+        table = pq.read_table(path, page_checksum_verification=True)
+    except pa.ArrowException as error:
         raise ValueError(str(error).splitlines()[0]) from None
-    attributes = json.loads((table.schema.metadata or {})[_KEY])
-    frame = table.to_pandas()
+    attributes = own_files.json_of((table.schema.metadata or {})[_KEY])
+    # What the file says for pandas is not needed.
+    frame = table.replace_schema_metadata(None).to_pandas().set_index("time")
     return _named(frame, attributes), frame.index.tz_convert("UTC"), attributes
 
 
@@ -257,4 +279,4 @@ def _named(table: pd.DataFrame, attributes: Mapping[str, Any]) -> Array:
 
 def _units(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Unit of each output, in their order."""
-    return {output["name"]: output["unit"] for output in json.loads(attributes["outputs"])}
+    return {output["name"]: output["unit"] for output in own_files.json_of(attributes["outputs"])}

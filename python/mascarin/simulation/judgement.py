@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
+from mascarin._io.own_files import json_of
 from mascarin.simulation.coarse import STEPS
 from mascarin.simulation.energy import balance_warnings
 
@@ -103,7 +103,11 @@ class Judgement:
         text : str or None
             JSON.
         """
-        return None if text is None else cls(**json.loads(text))
+        if text is None:
+            return None
+        values = json_of(text)
+        outside, temperature, bound = (float(values[key]) for key in ("outside", "temperature", "bound"))
+        return cls(outside, str(values["place"]), str(values["when"]), temperature, bound)
 
 
 OUTSIDE: Final = {"units": "K", "long_name": "temperatures beyond their causes"}

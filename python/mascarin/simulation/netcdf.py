@@ -1,7 +1,8 @@
 """Series of a run in a NetCDF file that is written in blocks of rows, while the run goes on.
 
 The file is made with a place for every series, and HDF5 tells where each begins. Rows are put there without
-HDF5, which would have to hold thousands of series open. The attributes, which need the whole run, come last.
+HDF5, which would have to hold thousands of series open. The attributes, which need the whole run, come last;
+after them, where HDF5 reads nothing, the hash of the file.
 xarray would write the same file from all records in memory, and takes some milliseconds for each series.
 """
 
@@ -16,6 +17,7 @@ import h5py
 import numpy as np
 
 from mascarin import __version__
+from mascarin.simulation.netcdf_reading import seal
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -117,6 +119,7 @@ class NetcdfDraft:
                     file.attrs.create(name, np.array([value]))
             made_by = f"version=2,mascarin={__version__},hdf5={h5py.version.hdf5_version}"
             file.attrs["_NCProperties"] = np.bytes_(made_by)
+        seal(self._path)
 
 
 class _Stamps:

@@ -7,8 +7,24 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 from mascarin import __version__
+from mascarin._io import own_files
 
 _KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256"}
+_TYPES: Final[dict[str, type | tuple[type, ...]]] = {
+    "mascarin_version": str,
+    "building": str,
+    "building_sha256": str,
+    "climate": dict,
+    "measurements": (dict, type(None)),
+    "step_seconds": (int, float),
+    "scheme": str,
+    "start": str,
+    "changed": dict,
+    "newton_iterations": int,
+    "nested_stages": int,
+    "halved_steps": int,
+    "reversals": int,
+}
 
 
 @dataclass(frozen=True)
@@ -86,6 +102,14 @@ class Provenance:
         ----------
         values : mapping
             The values.
+
+        Raises
+        ------
+        DamagedError
+            A value is missing, or of another type.
         """
+        own_files.require(
+            values, _TYPES, further=("nested_stages", "halved_steps", "reversals", "measurements")
+        )
         names = {_KEYS.get(name, name): name for name in cls.__dataclass_fields__}
         return cls(**{names[key]: value for key, value in values.items() if key in names})

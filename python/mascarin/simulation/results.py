@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 
 from mascarin._io import display
 from mascarin._io.durations import seconds_of
+from mascarin._io.own_files import json_of, require
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
@@ -371,16 +371,22 @@ class Results(Mapping[str, "xr.DataArray"]):
             There is no such file, or it was not written by a run.
         """
         records, index, attributes = files.read(Path(path))
-        return cls(
-            outputs=[_output(fields) for fields in json.loads(attributes["outputs"])],
-            times=Times.of(index),
-            records=records,
-            energy=EnergyLedger.from_dict(json.loads(attributes["energy"])),
-            provenance=Provenance.from_dict(json.loads(attributes["provenance"])),
-            warnings=tuple(json.loads(attributes["warnings"])),
-            vapour=VapourLedger.from_json(attributes.get("vapour")),
-            judgement=Judgement.from_json(attributes.get("judgement")),
-        )
+        try:
+            return cls(
+                outputs=[_output(fields) for fields in json_of(attributes["outputs"])],
+                times=Times.of(index),
+                records=records,
+                energy=EnergyLedger.from_dict(json_of(attributes["energy"])),
+                provenance=Provenance.from_dict(json_of(attributes["provenance"])),
+                warnings=tuple(map(str, json_of(attributes["warnings"]))),
+                vapour=VapourLedger.from_json(attributes.get("vapour")),
+                judgement=Judgement.from_json(attributes.get("judgement")),
+            )
+        except (LookupError, ValueError, TypeError, AttributeError, RecursionError) as error:
+            raise InputError(
+                f"{path}: found a damaged description of a run ({error}); expected what was written. Run it "
+                "again"
+            ) from None
 
     def plot(
         self, names: Sequence[str] | str | None = None, ax: Axes | Sequence[Axes] | None = None
@@ -492,4 +498,5 @@ class Results(Mapping[str, "xr.DataArray"]):
 def _output(fields: Mapping[str, Any]) -> Output:
     from mascarin.building import Output  # pydantic, which an evaluation for GenOpt does without
 
+    require(fields, {"name": str, "unit": str, "kind": str, "aliases": list})
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})

@@ -1,25 +1,22 @@
 """Results of a step kept in the folder of the study as plain arrays and texts, so that it is not repeated.
 
-Dataclasses of this package are kept field by field. What was known before (a calibration problem with its
+Dataclasses of `CLASSES` are kept field by field. What was known before (a calibration problem with its
 model) is kept as a reference. Nothing that is read can run code: there are only arrays, texts and names of
-dataclasses.
+this list. A file that is damaged, of another version, or whose classes have changed is computed again.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-import io
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
-from zipfile import BadZipFile
 
 import numpy as np
 
-from mascarin._io import atomic
+from mascarin._io import own_files
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -35,7 +32,28 @@ _T = TypeVar("_T")
 
 #: Results are dropped when the study is done.
 NAME: Final = "kept"
-_PACKAGE: Final = "mascarin."
+#: Dataclasses that are kept: modules and their classes. A name of a file is looked up here, never imported.
+CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
+    "mascarin.calibration.discrepancy": ("Discrepancy",),
+    "mascarin.calibration.evaluations": ("Trace",),
+    "mascarin.calibration.joint": ("Joint",),
+    "mascarin.calibration.problem": ("FitParameter",),
+    "mascarin.calibration.result": ("Calibration", "Minimum"),
+    "mascarin.calibration.uncertainty": ("Uncertainty",),
+    "mascarin.sensitivity.factors": ("Factor",),
+    "mascarin.sensitivity.result": ("Sensitivity",),
+    "mascarin.sensitivity.salib.collection": ("MorrisSensitivity",),
+    "mascarin.sensitivity.spectral.designs": ("Design",),
+    "mascarin.sensitivity.spectral.result": ("SpectralSensitivity",),
+    "mascarin.simulation.energy": ("EnergyLedger",),
+    "mascarin.simulation.single_precision": ("Difference",),
+    "mascarin.study.error_model": ("Unknown", "Unknowns"),
+    "mascarin.study.findings": ("PredictionIntervals",),
+    "mascarin.validation.causes": ("Cause", "Diagnosis"),
+    "mascarin.validation.days": ("DayChoice", "DriverRange"),
+    "mascarin.validation.error_sources": ("Correction", "ErrorSources"),
+    "mascarin.validation.residuals": ("DailyCycle", "DriverCorrelation", "ResidualAnalysis"),
+}
 #: Runs of which the series are kept together.
 _RUNS: Final = 16
 
@@ -58,23 +76,20 @@ def kept(
     """
     if workspace is None:
         return make()
-    path = workspace.path(f"{NAME}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.npz")
-    if path.exists():
-        try:
-            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
-                arrays = {name: stored[name] for name in stored.files}
-            tree = json.loads(bytes(arrays.pop("tree")).decode())
-            found: _T = _decoded(tree, arrays, known)
-        except (ValueError, OSError, KeyError, TypeError, AttributeError, EOFError, BadZipFile):
-            path.unlink()  # of another version, or incomplete
-        else:
-            return found
+    name = f"{NAME}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}"
+    # The ending is that of former versions, whose files are replaced.
+    path = workspace.path(f"{name}.npz")
+    try:
+        notes, arrays = own_files.unpacked(own_files.read(path, name))
+        found: _T = _decoded(notes, arrays, known)
+    except (OSError, *_UNUSABLE):
+        pass  # there is none, of another version, or damaged: computed again
+    else:
+        return found
     made = make()
-    arrays = {}
-    text = json.dumps(_encoded(made, arrays, known))
-    buffer = io.BytesIO()
-    np.savez(buffer, tree=np.frombuffer(text.encode(), dtype=np.uint8), **arrays)
-    atomic.write(path, buffer.getvalue())
+    plain: dict[str, Any] = {}
+    tree = _encoded(made, plain, known)
+    own_files.write(path, name, own_files.packed(tree, plain))
     return made
 
 
@@ -90,9 +105,11 @@ def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence
     write : callable
         Writes them.
     """
-    names = kept(workspace, ("files", key), lambda: [str(path) for path in write()])
-    paths = [Path(name) for name in names]
-    return paths if all(path.is_file() for path in paths) else list(write())
+    out = workspace.out
+    names = kept(workspace, ("files", key), lambda: [path.relative_to(out).as_posix() for path in write()])
+    paths = [own_files.inside(out, name) for name in names]
+    known = [path for path in paths if path is not None and path.is_file()]
+    return known if len(known) == len(paths) else list(write())
 
 
 def kept_series(
@@ -144,6 +161,8 @@ def _encoded(value: Any, arrays: dict[str, Any], known: Sequence[object]) -> Any
         return _encoded(np.asarray(value), arrays, known) | {"scalar": True}
     if is_dataclass(value) and not isinstance(value, type):
         kind = type(value)
+        if kind.__qualname__ not in CLASSES.get(kind.__module__, ()):
+            raise TypeError(f"cannot keep {kind.__qualname__}: it is not in CLASSES")
         own = {f.name: _encoded(getattr(value, f.name), arrays, known) for f in fields(value) if f.init}
         return {"class": f"{kind.__module__}:{kind.__qualname__}", "fields": own}
     if isinstance(value, Mapping):
@@ -157,34 +176,37 @@ def _encoded(value: Any, arrays: dict[str, Any], known: Sequence[object]) -> Any
     raise TypeError(f"cannot keep {type(value).__name__}")
 
 
+#: What decoding raises where a file holds another structure than that which is written now.
+_UNUSABLE: Final = (ValueError, LookupError, TypeError, AttributeError)
+
+
 def _decoded(tree: Any, arrays: Mapping[str, Any], known: Sequence[object]) -> Any:
     """What `_encoded` made plain."""
     match tree:
-        case {"known": k}:
+        case {"known": int(k)} if 0 <= k < len(known):
             return known[k]
-        case {"array": name, "scalar": True}:
+        case {"array": str(name), "scalar": True}:
             return arrays[name][()]
-        case {"array": name}:
+        case {"array": str(name)}:
             return arrays[name]
-        case {"class": where, "fields": own}:
+        case {"class": str(where), "fields": dict(own)}:
             return _class(where)(**{name: _decoded(one, arrays, known) for name, one in own.items()})
-        case {"mapping": pairs}:
+        case {"mapping": list(pairs)}:
             return {_decoded(k, arrays, known): _decoded(v, arrays, known) for k, v in pairs}
-        case {"tuple": items}:
+        case {"tuple": list(items)}:
             return tuple(_decoded(one, arrays, known) for one in items)
-        case {"list": items}:
+        case {"list": list(items)}:
             return [_decoded(one, arrays, known) for one in items]
-        case {"value": value}:
+        case {"value": None | str() | bool() | int() | float() as value}:
             return value
-    raise ValueError(f"found {tree!r}")
+    raise ValueError("it holds something else than what is kept")
 
 
 def _class(where: str) -> Any:
-    """A dataclass of this package by its name."""
+    """A dataclass of the list."""
     module, _, name = where.partition(":")
-    if not module.startswith(_PACKAGE):
-        raise ValueError(f"found {where}")
-    kind = getattr(importlib.import_module(module), name)
-    if not (isinstance(kind, type) and is_dataclass(kind)):
-        raise TypeError(f"found {where}")
-    return kind
+    if not module.startswith("mascarin."):
+        raise ValueError(f"found {where}, which is not of this package")
+    if name not in CLASSES.get(module, ()):
+        raise TypeError(f"found {where}, which is none of the classes that are kept")
+    return getattr(importlib.import_module(module), name)

@@ -6,8 +6,8 @@ The manifest identifies the inputs of the intermediate results.
 from __future__ import annotations
 
 import hashlib
-import io
 import json
+import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import atomic, identity
+from mascarin._io import atomic, identity, own_files
 from mascarin._io.locks import FolderLock
 from mascarin.errors import InputError
 from mascarin.report import is_report
@@ -36,6 +36,12 @@ RUN: Final = "run.json"
 WRITTEN: Final = ("study.json", RUN, REPORT)
 #: Files that single steps write into the result folder.
 OF_STEPS: Final = ("sensitivity.json", "calibration.json", "validation.json", "series.csv")
+#: Names of results in the folder of a study.
+_RESULT: Final = re.compile(
+    r"(tables/[^/]+\.csv|figures/[^/]+\.(svg|pdf|png)|"
+    + "|".join(re.escape(name) for name in (*WRITTEN, *OF_STEPS))
+    + ")"
+)
 _REMOVED: Final = ", and the old report is removed"
 
 
@@ -52,8 +58,8 @@ class Workspace:
     Raises
     ------
     InputError
-        There is a file of that name, an input is where results are written, or another process writes to the
-        folder.
+        There is a file of that name, an input or a link is where results are written, or another process
+        writes to the folder.
     """
 
     def __init__(self, out: Path, inputs: Mapping[str, Any]) -> None:
@@ -63,8 +69,8 @@ class Workspace:
         self.folder = out / _FOLDER
         for name in (*WRITTEN, *OF_STEPS):
             identity.require_no_input(out / name)
-        for place in (self.folder, out / "tables", out / "figures"):
-            identity.require_no_inputs_in(place)
+        for name in (_FOLDER, "tables", "figures"):
+            identity.require_no_inputs_in(own_files.require_folder(out, name))
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
@@ -104,8 +110,7 @@ class Workspace:
         files : iterable of Path
             Results below the folder.
         """
-        results = self.path("results.json")
-        before = json.loads(results.read_text(encoding="utf-8")) if results.exists() else {}
+        before = self._recorded()
         written = sorted(file.relative_to(self.out).as_posix() for file in files)
         kept = {
             name: entry
@@ -113,30 +118,47 @@ class Workspace:
             if name != command and entry["inputs"] == self._inputs
         }
         kept[command] = {"inputs": self._inputs, "files": written}
-        wanted = {name for entry in kept.values() for name in entry["files"]}
-        for name in {name for entry in before.values() for name in entry["files"]} - wanted:
-            (self.out / name).unlink(missing_ok=True)
-        atomic.write(results, json.dumps(kept, indent=1))
+        named = {name for entry in kept.values() for name in entry["files"]}
+        for name in {name for entry in before.values() for name in entry["files"]} - named:
+            self._remove(name)
+        atomic.write(self.path("results.json"), json.dumps(kept, indent=1))
+
+    def _recorded(self) -> dict[str, dict[str, Any]]:
+        """Files of each command; nothing where the record is damaged."""
+        try:
+            found = own_files.read_json(self.path("results.json"))
+            for entry in found.values():
+                own_files.require(entry if isinstance(entry, dict) else {}, {"inputs": str, "files": list})
+        except (OSError, own_files.DamagedError):
+            return {}
+        return found
+
+    def _remove(self, name: object) -> None:
+        """Remove a result of this folder; a name that is none of a result is left alone.
+
+        The record may come from someone else, with the folder.
+        """
+        file = own_files.inside(self.out, name)
+        if file is not None and _RESULT.fullmatch(str(name)) and file.is_file() and not file.is_symlink():
+            identity.require_no_input(file)
+            file.unlink()
 
     def _remove_old_report(self) -> bool:
         """Remove a report that is not known to be one of these inputs; return whether there was one.
 
         This is done before anything is computed: an interrupted study leaves no report of other inputs.
         """
-        report, results = self.out / REPORT, self.path("results.json")
-        if not (report.is_file() and is_report(report)):
+        report = self.out / REPORT
+        if report.is_symlink() or not (report.is_file() and is_report(report)):
             return False
-        try:
-            current = json.loads(results.read_text(encoding="utf-8"))["study"]["inputs"] == self._inputs
-        except (OSError, ValueError, TypeError, KeyError):
-            current = False
+        current = self._recorded().get("study", {}).get("inputs") == self._inputs
         if not current:
             report.unlink()
         return not current
 
     def _clear(self, names: str) -> None:
         for file in self.folder.glob(names):
-            file.unlink()
+            own_files.remove(file)
 
     def path(self, name: str) -> Path:
         """File of an intermediate result."""
@@ -144,22 +166,22 @@ class Workspace:
 
     def keep(self, name: str, first: int, values: Array) -> None:
         """Save outputs of consecutive runs under the number of the first."""
-        buffer = io.BytesIO()
-        np.save(buffer, values, allow_pickle=False)
-        atomic.write(self.path(f"{name}-{first:09d}.npy"), buffer.getvalue())
+        file = f"{name}-{first:09d}.npy"
+        own_files.write(self.path(file), file, own_files.packed(None, {"values": values}))
 
     def kept(self, name: str) -> Iterator[tuple[int, Array]]:
         """Outputs saved so far, by number of their first run; unreadable files are removed."""
         for file in sorted(self.folder.glob(f"{name}-*.npy")):
             try:
-                yield int(file.stem.rsplit("-", 1)[1]), np.load(file, allow_pickle=False)
-            except (ValueError, OSError):
-                file.unlink()
+                _, arrays = own_files.unpacked(own_files.read(file, file.name))
+                yield int(file.stem.rsplit("-", 1)[1]), arrays["values"]
+            except (ValueError, LookupError, OSError):
+                own_files.remove(file)
 
     def drop(self, name: str) -> None:
         """Remove outputs that are no longer needed."""
         for file in (*self.folder.glob(f"{name}-*.npy"), *self.folder.glob(f"{name}-*.npz")):
-            file.unlink()
+            own_files.remove(file)
 
 
 def _changed(manifest: Path, inputs: Mapping[str, Any]) -> list[str]:
@@ -167,7 +189,7 @@ def _changed(manifest: Path, inputs: Mapping[str, Any]) -> list[str]:
     if not manifest.exists():
         return []
     try:
-        before = json.loads(manifest.read_text(encoding="utf-8"))
-        return [key for key in sorted({*before, *inputs}) if before.get(key) != inputs.get(key)]
-    except (ValueError, TypeError, AttributeError):
+        before = own_files.read_json(manifest)
+    except (own_files.DamagedError, OSError):
         return ["manifest"]
+    return [key for key in sorted({*before, *inputs}) if before.get(key) != inputs.get(key)]

@@ -1,16 +1,15 @@
 """What reading and checking a weather file or a measured table gave, kept in the cache folder of the user.
 
 A file of the cache is named by a hash of everything that its content depends on: the weather file, the
-version of Mascarin, and the code that made it. It holds JSON and plain numbers, after a hash of both: a file
-that is cut, damaged or of another program is read as if it were not there, and written again. The folder may
-be deleted at any time. With ``MASCARIN_CACHE=off`` nothing is read from it or written to it.
+version of Mascarin, and the code that made it. It is an own file (`_io.own_files`): one that is cut, damaged
+or of another program is read as if it were not there, and written again. The folder may be deleted at any
+time. With ``MASCARIN_CACHE=off`` nothing is read from it or written to it.
 """
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,10 +17,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
-import numpy as np
-
 from mascarin import __version__
-from mascarin._io import atomic
+from mascarin._io import own_files
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array
 from mascarin.weather.data import cache_folder
@@ -33,9 +30,7 @@ VARIABLE: Final = "MASCARIN_CACHE"
 MOST: Final = 64
 #: Numbers of a file; larger tables are read anew each time.
 LARGEST: Final = 2**21
-_MAGIC: Final = b"mascarin weather 1\n"
-_HASH: Final = 32
-_WORD: Final = 8
+_KIND: Final = "weather"
 
 
 @dataclass(frozen=True)
@@ -85,7 +80,7 @@ def kept(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], K
     with contextlib.suppress(OSError, InputError):
         file = _file(key, code)
         file.parent.mkdir(parents=True, exist_ok=True)
-        atomic.write(file, _packed(made))
+        own_files.write(file, _KIND, own_files.packed(made.notes, made.columns))
         _remove_oldest(file.parent)
     return made
 
@@ -96,33 +91,18 @@ def _file(key: Sequence[object], code: Sequence[ModuleType]) -> Path:
     return cache_folder() / FOLDER / f"{name[:40]}.bin"
 
 
-def _packed(made: Kept) -> bytes:
-    head = json.dumps({"notes": made.notes, "columns": list(made.columns)}).encode()
-    numbers = b"".join(np.asarray(one, dtype="<f8").tobytes() for one in made.columns.values())
-    content = len(head).to_bytes(_WORD, "little") + head + numbers
-    return _MAGIC + hashlib.sha256(content).digest() + content
-
-
 def _read(file: Path) -> Kept | None:
     """The content of a file; None where there is none, or another one than was written."""
     try:
-        whole = file.read_bytes()
-    except FileNotFoundError:
+        notes, columns = own_files.unpacked(own_files.read(file, _KIND))
+    except (FileNotFoundError, own_files.DamagedError):
         return None
-    start = len(_MAGIC) + _HASH
-    content = whole[start:]
-    if not whole.startswith(_MAGIC) or hashlib.sha256(content).digest() != whole[len(_MAGIC) : start]:
+    if not isinstance(notes, dict) or len({column.shape for column in columns.values()}) > 1:
         return None
-    first = _WORD + int.from_bytes(content[:_WORD], "little")
-    head = json.loads(content[_WORD:first])
-    names = head["columns"]
-    # A copy: arrays on bytes cannot be written, as those that are read from a weather file can.
-    numbers = np.frombuffer(content, dtype="<f8", offset=first).astype(np.float64)
-    rows = numbers.reshape(len(names), -1) if names else numbers
-    return Kept(head["notes"], dict(zip(names, rows, strict=True)))
+    return Kept(notes, columns)
 
 
 def _remove_oldest(folder: Path) -> None:
     files = sorted(folder.glob("*.bin"), key=lambda one: one.stat().st_mtime)
     for old in files[:-MOST]:
-        old.unlink(missing_ok=True)
+        own_files.remove(old)

@@ -1,0 +1,82 @@
+"""The manifest of an ensemble, read with its types: it may be damaged, or come from someone else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin._io import own_files
+from mascarin.errors import InputError
+
+_TYPES: Final[dict[str, type | tuple[type, ...]]] = {
+    "mascarin_version": str,
+    "building": str,
+    "identity": str,
+    "samples": str,
+    "members": int,
+    "paths": list,
+    "sample_units": dict,
+    "outputs": list,
+    "objectives": list,
+    "kept": dict,
+    "step_seconds": (int, float),
+    "scheme": str,
+    "precision": str,
+    "timezone": str,
+    "time": list,
+    "complete": bool,
+    "single_precision": dict,
+}
+#: Keys that former versions did not write, or that are written at the end.
+_FURTHER: Final = ("sample_units", "precision", "single_precision")
+_LISTS: Final = ("paths", "outputs", "objectives", "time")
+_DIFFERENCE: Final[dict[str, type | tuple[type, ...]]] = {
+    "unit": str, "rms": (int, float), "largest": (int, float), "members": int,
+}  # fmt: skip
+#: Most members that a manifest may claim.
+_MOST: Final = 2**40
+
+
+def read(place: Path) -> dict[str, Any]:
+    """Read a manifest.
+
+    Parameters
+    ----------
+    place : Path
+        The file.
+
+    Returns
+    -------
+    dict
+        Its entries.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is damaged.
+    """
+    try:
+        found = own_files.read_json(place)
+        _check(found)
+    except (OSError, own_files.DamagedError) as error:
+        raise InputError(
+            f"{place}: found no readable manifest ({error}); expected the folder of an ensemble, as "
+            "sweep_into() or 'mascarin sweep --out' makes it. If it was one, remove it and run it again"
+        ) from None
+    return found
+
+
+def _check(found: dict[str, Any]) -> None:
+    own_files.require(found, _TYPES, further=_FURTHER)
+    if not 1 <= found["members"] <= _MOST:
+        raise own_files.DamagedError(f"members: found {found['members']}")
+    for key in _LISTS:
+        if not all(isinstance(one, str) for one in found[key]):
+            raise own_files.DamagedError(f"{key}: found something else than texts")
+    for key in ("kept", "sample_units"):
+        if not all(isinstance(one, str) for one in found.get(key, {}).values()):
+            raise own_files.DamagedError(f"{key}: found something else than texts")
+    for values in found.get("single_precision", {}).values():
+        own_files.require(values if isinstance(values, dict) else {}, _DIFFERENCE)
+        if set(values) != set(_DIFFERENCE):
+            raise own_files.DamagedError("single_precision: found other keys")
