@@ -11,8 +11,8 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
-from mascarin._io.memory import uncollected
 from mascarin._io.identity import DESCRIPTION
+from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited

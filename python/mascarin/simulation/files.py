@@ -139,7 +139,11 @@ class _Csv:
             "tableSchema": {"columns": columns},
             "mascarin": dict(self._attributes),
         }
-        atomic.write(Path(f"{path}{BESIDE}"), json.dumps(described, indent=1, ensure_ascii=False) + "\n", identity.RESULTS)
+        atomic.write(
+            Path(f"{path}{BESIDE}"),
+            json.dumps(described, indent=1, ensure_ascii=False) + "\n",
+            identity.RESULTS,
+        )
 
 
 class _Parquet:
