@@ -89,7 +89,7 @@ def test_an_ensemble_says_which_members_are_unsound(
     def judged(self: CompiledRun, vectors: Any, **options: Any) -> EnsembleRun:
         run = ensemble(self, vectors, **options)
         # By a parameter, as a member of any chunk.
-        hot = vectors[:, self.paths.index("surfaces.facade.outside.absorptance")] > 0.7
+        hot = vectors[:, self.paths.index("surfaces.facade.outside.absorptance")] > 0.72
         return replace(run, outside=np.where(hot, 4.5, run.outside))
 
     monkeypatch.setattr(CompiledRun, "ensemble", judged)
