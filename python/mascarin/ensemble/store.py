@@ -43,6 +43,8 @@ RESULTS: Final = "members.parquet"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
+#: Columns by which members are judged.
+JUDGED: Final = ("closure", "outside")
 #: Entries of a manifest that must be equal to continue an ensemble.
 _SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept", "precision")
 
@@ -158,9 +160,8 @@ class Store:
             names = {*found.schema.to_arrow_schema().names}
         except (OSError, ValueError, pa.ArrowException):
             return False
-        return (
-            found.num_rows == self.count and {"member", "closure", "failure", *self.manifest["kept"]} <= names
-        )
+        columns = {"member", *JUDGED, "failure", *self.manifest["kept"]}
+        return found.num_rows == self.count and columns <= names
 
     def _is_whole(self, file: Path) -> bool:
         """Whether a piece is as it was written; each is read once."""
@@ -303,14 +304,14 @@ class Store:
         with self._blamed():
             found = [table.to_pandas(ignore_metadata=True) for table in self._tables(without=series)]
             whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
-            if not {"closure", "failure"} <= {*whole.columns}:
+            if not {*JUDGED, "failure"} <= {*whole.columns}:
                 raise KeyError("closure")
             return whole.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
         """What is not sound in the members: a line for each kind, or nothing."""
         table = self.to_dataframe()
-        judged = (table[name].to_numpy() for name in ("closure", "outside"))
+        judged = (table[name].to_numpy() for name in JUDGED)
         return ensemble_warnings(*judged, precision=self.precision)
 
     def single_precision(self) -> list[str]:
@@ -366,7 +367,7 @@ class Store:
         for path in self.manifest["paths"]:
             column = table.column(f"sample: {path}").to_pandas().to_numpy()
             data[f"sample: {path}"] = ("member", column, attributes(path, units.get(path, "")))
-        closure, outside = (table.column(name).to_numpy() for name in ("closure", "outside"))
+        closure, outside = (table.column(name).to_numpy() for name in JUDGED)
         data |= {"closure": ("member", closure, CLOSURE), "outside": ("member", outside, OUTSIDE)}
         reasons = zip(members, table.column("failure").to_pylist(), strict=True)
         coords: dict[str, Any] = {"member": members}

@@ -383,10 +383,8 @@ class Results(Mapping[str, "xr.DataArray"]):
                 judgement=Judgement.from_json(attributes.get("judgement")),
             )
         except (LookupError, ValueError, TypeError, AttributeError, RecursionError) as error:
-            raise InputError(
-                f"{path}: found a damaged description of a run ({error}); expected what was written. Run it "
-                "again"
-            ) from None
+            text = f"found a damaged description of a run ({error}); expected what was written. Run it again"
+            raise InputError(f"{path}: {text}") from None
 
     def plot(
         self, names: Sequence[str] | str | None = None, ax: Axes | Sequence[Axes] | None = None
