@@ -55,7 +55,7 @@ def test_members_from_a_table(call: list[str], capsys: pytest.CaptureFixture[str
     Path("members.csv").write_text(f"{FILM}\n2.0\n3.0\n", encoding="utf-8")
     words = ["--samples", "members.csv", "--output", "room.air_temperature", "--step", "1h"]
     assert cli.main([*call, *words]) == 0
-    assert Store(Path("swept")).dataset()["room.air_temperature"].shape == (2, 25)
+    assert Store(Path("swept")).to_xarray()["room.air_temperature"].shape == (2, 25)
 
 
 def test_members_from_parquet_are_those_of_the_csv_file(call: list[str]) -> None:

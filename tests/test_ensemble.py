@@ -344,8 +344,6 @@ def test_a_store_is_described_in_a_few_lines(setting: Setting, tmp_path: Path) -
     assert "members     2 of 2 run" in repr(store)
     assert len(repr(store).splitlines()) <= 15
     assert "<table" in store._repr_html_()
-    assert "table" not in dir(store)
-    assert store.table().equals(store.to_dataframe())
     copied = pickle.loads(pickle.dumps(store))  # noqa: S301 (own data)
     assert copied.to_dataframe().equals(store.to_dataframe())
 

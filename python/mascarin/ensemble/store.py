@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from mascarin.ensemble.members import Members
     from mascarin.ensemble.work import Chunk
 
-#: Names that are kept for old programs.
-_DEPRECATED: Final = frozenset({"table", "dataset"})
 MANIFEST: Final = "manifest.json"
 RESULTS: Final = "members.parquet"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
@@ -180,9 +178,6 @@ class Store:
     def _repr_html_(self) -> str:
         tables = {"Members": self.to_dataframe()} if self.done else {}
         return display.page(f"Store '{self.path}'", self._rows(), tables=tables)
-
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if name not in _DEPRECATED]
 
     def _rows(self) -> list[tuple[str, str]]:
         manifest = self.manifest
@@ -382,20 +377,6 @@ class Store:
             **({"single_precision": said} if (said := self.single_precision()) else {}),
         }
         return xr.Dataset(data, coords=coords, attrs=facts)
-
-    def table(self) -> pd.DataFrame:
-        """Deprecated name of `to_dataframe`."""
-        return self.to_dataframe()
-
-    def dataset(self, first: int = 0, last: int | None = None) -> xr.Dataset:
-        """Deprecated name of `to_xarray`.
-
-        Parameters
-        ----------
-        first, last : int
-            First member, and the one after the last. Default: all.
-        """
-        return self.to_xarray(first, last)
 
     def _width(self) -> int:
         """Numbers in a row."""
