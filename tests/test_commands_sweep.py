@@ -30,7 +30,7 @@ def test_drawn_members_and_their_objectives(call: list[str], capsys: pytest.Capt
     assert found["closure"] < 1e-10
     row = found["objectives"]["max:room.air_temperature"]
     assert row["min"] < row["mean"] < row["max"]
-    table = Store(Path("swept")).table()
+    table = Store(Path("swept")).to_dataframe()
     assert len(table) == 12
     assert table["max:room.air_temperature"].max() == row["max"]
     assert cli.main([*call, *words]) == 0
