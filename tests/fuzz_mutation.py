@@ -46,7 +46,7 @@ def mutated_yaml(text: str, draw: random.Random) -> bytes:
         return mutated(text.encode(), draw)
     tree = YAML(typ="safe", pure=True).load(text)
     # Numbers of another size often make a description that can be run; other values are mostly refused.
-    way = draw.choice((_mutate, _scale))
+    way = draw.choice((mutate, _scale))
     for _ in range(draw.choice((1, 1, 2, 3))):
         way(tree, draw)
     written = json.dumps(tree)  # JSON is YAML
@@ -63,7 +63,8 @@ def _places(tree: Any) -> list[tuple[Any, Any]]:
     return found
 
 
-def _mutate(tree: Any, draw: random.Random) -> None:
+def mutate(tree: Any, draw: random.Random) -> None:
+    """One value of a tree replaced, removed, moved or repeated."""
     places = _places(tree)
     if not places:
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import shutil
 import time
 import traceback
 import warnings
@@ -13,11 +14,13 @@ from pathlib import Path
 import numpy as np
 
 import dsc_samples
+import fuzz_own_files
 import fuzz_runs
 from building_samples import EVERYTHING, ROOM
 from design_support import BUILDING as DESIGNED
 from design_support import STUDY as DESIGN
 from fuzz_mutation import mutated, mutated_yaml
+from fuzz_own_files import OwnReader
 from genopt_support import SWARM, write_project
 from idf_samples import IDF
 from mascarin.building import check, load
@@ -73,7 +76,7 @@ class Counts:
         return f"| {name} | " + " | ".join(map(str, found)) + " |"
 
 
-def attempt(reader: Reader, folder: Path, n: int, seed: int) -> tuple[str, str]:
+def attempt(reader: Reader | OwnReader, folder: Path, n: int, seed: int) -> tuple[str, str]:
     """Read one mutated file; it depends on the seed and n only.
 
     Returns
@@ -84,14 +87,19 @@ def attempt(reader: Reader, folder: Path, n: int, seed: int) -> tuple[str, str]:
         The traceback of a defect.
     """
     draw = random.Random(f"{reader.name} {seed} {n}")
+    if isinstance(reader, OwnReader):
+        shutil.rmtree(folder)  # what it wrote before
     for name, content in reader.files.items():
         _put(folder / name, content)
     name = draw.choice(reader.mutated)
     content = reader.files[name]
-    _put(
-        folder / name,
-        mutated_yaml(content.decode(), draw) if name.endswith(".yaml") else mutated(content, draw),
-    )
+    if isinstance(reader, OwnReader):
+        changed = reader.changed(name, draw)
+    elif name.endswith(".yaml"):
+        changed = mutated_yaml(content.decode(), draw)
+    else:
+        changed = mutated(content, draw)
+    _put(folder / name, changed)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -105,7 +113,7 @@ def attempt(reader: Reader, folder: Path, n: int, seed: int) -> tuple[str, str]:
     return "read", ""
 
 
-def run(reader: Reader, folder: Path, count: int, seed: int) -> Counts:
+def run(reader: Reader | OwnReader, folder: Path, count: int, seed: int) -> Counts:
     """Read mutated files; the n-th input depends on the seed and n only."""
     counts = Counts()
     for n in range(count):
@@ -115,6 +123,7 @@ def run(reader: Reader, folder: Path, count: int, seed: int) -> Counts:
 
 
 def _put(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_bytes() != content:
         path.write_bytes(content)
 
@@ -184,7 +193,7 @@ def _hours() -> list:  # type: ignore[type-arg]
     return list(pd.date_range("1995-01-01", periods=8760, freq="1h"))
 
 
-def readers(folder: Path) -> list[Reader]:
+def readers(folder: Path) -> list[Reader | OwnReader]:
     """Every reader with its files; `folder` is used to write the samples of GenOpt and DSC."""
     folder.mkdir(parents=True, exist_ok=True)
     t = dsc_samples.temperatures()
@@ -227,4 +236,5 @@ def readers(folder: Path) -> list[Reader]:
             ("design.yaml",),
             lambda at: read_design(at / "design.yaml"),
         ),
+        *fuzz_own_files.readers(folder / "own"),
     ]

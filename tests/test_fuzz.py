@@ -11,6 +11,7 @@ import pytest
 
 import fuzz_buildings
 import fuzz_kills
+import fuzz_own_files
 import fuzz_processes
 import fuzz_readers
 import fuzz_states
@@ -18,6 +19,11 @@ from conftest import SEED
 
 #: Inputs of each reader: files of a year take longer to read.
 INPUTS = {"EPW": 12, "TMY3": 8, "study": 30, "IDF": 15, "design": 15}
+OWN = (
+    "own NetCDF", "own CSV", "own Parquet", "own store", "own store resumed", "own pieces",
+    "own pieces resumed", "own study", "own record", "own log", "own case", "own weather", "own settings",
+    "own report",
+)  # fmt: skip
 READERS = ("building", "room", "study", "EPW", "TMY3", "table", "DSC", "GenOpt")
 
 
@@ -33,6 +39,20 @@ def test_mutated_inputs_are_read_or_refused(name: str, tmp_path: Path) -> None:
         (tmp_path / file).write_bytes(content)
     reader.read(tmp_path)  # what is mutated can be read
     counts = fuzz_readers.run(reader, tmp_path, INPUTS.get(name, 60), seed())
+    assert counts.defects == []
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_mutated_own_files_are_read_refused_or_computed_again(name: str, tmp_path: Path) -> None:
+    known = {one.name: one for one in fuzz_own_files.readers(tmp_path / "samples")}
+    assert sorted(known) == sorted(OWN)
+    reader, place = known[name], tmp_path / "place"
+    for file, content in reader.files.items():
+        (place / file).parent.mkdir(parents=True, exist_ok=True)
+        (place / file).write_bytes(content)
+    if name not in ("own settings",):
+        reader.read(place)  # what is mutated can be read
+    counts = fuzz_readers.run(reader, place, 10 if name == "own NetCDF" else 25, seed())
     assert counts.defects == []
 
 

@@ -55,8 +55,8 @@ def test_arrays_come_back_with_all_bits() -> None:
     "entry",
     [
         ["a", "<f8", [10**11]], ["a", "<f8", [-1]], ["a", "<f8", [2, "x"]], ["a", "|O", [1]],
-        ["a", "<U999999999", [1]], ["a", "V8", [1]], ["a", "<f8", [True]], ["a", "<f8", [1] * 40], ["a", "<f8"],
-        [1, "<f8", [1]], "a", None, ["a", "f8,f8", [1]], ["a", "<f8", [2**40, 2**40]],
+        ["a", "<U999999999", [1]], ["a", "V8", [1]], ["a", "<f8", [True]], ["a", "<f8", [1] * 40],
+        ["a", "<f8"], [1, "<f8", [1]], "a", None, ["a", "f8,f8", [1]], ["a", "<f8", [2**40, 2**40]],
     ],
 )  # fmt: skip
 def test_a_claim_that_the_file_cannot_hold_takes_no_memory(entry: Any) -> None:
@@ -88,7 +88,8 @@ TREES: list[Any] = [
     {"known": 5}, {"known": -1}, {"array": "zz"}, {"array": 5}, {"class": "os:system", "fields": {}},
     {"class": "mascarin.nowhere:X", "fields": {}}, {"class": "mascarin.errors:InputError", "fields": {}},
     {"class": "mascarin.simulation.single_precision:Difference", "fields": {"x": {"value": 1}}},
-    {"class": 5, "fields": {}}, {"class": "mascarin.", "fields": {}}, {"class": "mascarin.a..b:c", "fields": {}},
+    {"class": 5, "fields": {}}, {"class": "mascarin.", "fields": {}},
+    {"class": "mascarin.a..b:c", "fields": {}},
     {"class": "mascarin.__main__:main", "fields": {}}, {"mapping": [[{"list": []}, {"value": 1}]]},
     {"mapping": 5}, {"mapping": [[1]]}, {"tuple": 5}, {"list": "abc"}, {"value": [1]}, [], None, 5,
     {"class": "mascarin.validation.days:DriverRange", "fields": []},

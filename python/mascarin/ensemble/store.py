@@ -250,7 +250,7 @@ class Store:
         """
         if self.complete:
             return
-        with atomic.drafted(self.path / RESULTS) as draft:
+        with self._blamed(), atomic.drafted(self.path / RESULTS) as draft:
             self._join(draft)
         if single_precision:
             self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
@@ -433,6 +433,8 @@ class Store:
         try:
             yield
         except (OSError, LookupError, ValueError, TypeError, AttributeError, pa.ArrowException) as error:
+            if isinstance(error, OSError) and error.errno is not None:
+                raise  # of the system, such as a full disk
             raise InputError(
                 f"{self.path}: found results that cannot be read ({str(error)[:200]}); expected those of the "
                 "manifest. Remove the folder, and run it again"

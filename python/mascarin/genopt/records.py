@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from mascarin._io import atomic, identity
+from mascarin._io import atomic, identity, own_files
 from mascarin.errors import InputError
 from mascarin.genopt.project import Project
 
@@ -156,7 +156,13 @@ class Log:
         data = self.path.read_bytes()
         # A line without an end was being written when the run was killed.
         whole = data[: data.rfind(b"\n") + 1]
-        lines = whole.decode("utf-8").splitlines()
+        try:
+            lines = whole.decode("utf-8").splitlines()
+        except UnicodeDecodeError as error:
+            msg = (
+                f"{self.path}: damaged, it is not text ({error.reason}); remove it or start without --resume"
+            )
+            raise InputError(msg) from error
         if not lines:
             self.begin(digests)
             return []
@@ -335,10 +341,11 @@ def _row(project: Project, r: Record) -> list[Any]:
 def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
     """Check that a log belongs to this project."""
     try:
-        head = json.loads(line)
+        head = own_files.json_of(line)
+        own_files.require(head if isinstance(head, dict) else {}, {"project": dict, "format": int})
         known = head["project"]
         version = head["format"]
-    except (ValueError, KeyError, TypeError) as error:
+    except own_files.DamagedError as error:
         msg = f"{path}:1: not a log of evaluations; remove it or start without --resume"
         raise InputError(msg) from error
     if version != FORMAT:
@@ -356,7 +363,8 @@ def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
 def _record(path: Path, number: int, line: str) -> Record:
     """A record from its line."""
     try:
-        d = json.loads(line)
+        d = own_files.json_of(line)
+        _check(d if isinstance(d, dict) else {})
         return Record(
             (d["step"], tuple(d["x"]), tuple(d["choices"])),
             None if d["costs"] is None else tuple(d["costs"]),
@@ -367,9 +375,30 @@ def _record(path: Path, number: int, line: str) -> Record:
             replayed=True,
             logged=True,
         )
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, OverflowError) as error:
         msg = f"{path}:{number}: broken line ({error}); remove it to continue from the others"
         raise InputError(msg) from error
+
+
+def _check(found: Mapping[str, Any]) -> None:
+    """Refuse a line whose values have other types.
+
+    Raises
+    ------
+    DamagedError
+        It is damaged.
+    """
+    own_files.require(
+        found,
+        {
+            "step": int, "x": list, "choices": list, "costs": (list, type(None)), "seconds": (int, float),
+            "attempts": int, "reason": str, "number": int,
+        },
+    )  # fmt: skip
+    for key, kinds in (("x", (int, float)), ("choices", (int,)), ("costs", (int, float))):
+        for value in found[key] or ():
+            if not isinstance(value, kinds) or isinstance(value, bool):
+                raise own_files.DamagedError(f"{key}: found {type(value).__name__}")
 
 
 def _digest(data: bytes) -> str:

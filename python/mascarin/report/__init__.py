@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io import atomic
+from mascarin.errors import InputError
 from mascarin.report.folder import read_folder
 from mascarin.report.html import page
 from mascarin.report.payload import check, tidy
@@ -81,7 +82,15 @@ def write_folder(out: Path) -> Path:
         ...
     mascarin.errors.InputError: ...study.json: No such file or directory; expected ...
     """
-    return write(out / "report.html", *read_folder(out))
+    from jinja2 import TemplateError
+
+    try:
+        return write(out / "report.html", *read_folder(out))
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, TemplateError) as error:
+        raise InputError(
+            f"{out / 'study.json'}: found results that cannot be shown ({type(error).__name__}: {error}); "
+            "expected those that the study wrote. Run the study again"
+        ) from error
 
 
 def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:

@@ -18,7 +18,7 @@ from typing import Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from mascarin._io import atomic
+from mascarin._io import atomic, own_files
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
@@ -167,10 +167,10 @@ def read_json(path: Path) -> dict[str, Any]:
         The file is missing, no JSON or no object.
     """
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = own_files.json_of(own_files.whole(path))
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}; expected a file written by 'mascarin study'") from error
-    except ValueError as error:
+    except own_files.DamagedError as error:
         raise InputError(f"{path}: not JSON ({error}); run the study again") from error
     if not isinstance(content, dict):
         raise InputError(f"{path}: holds a {type(content).__name__}; expected an object written by the study")

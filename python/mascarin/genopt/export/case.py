@@ -8,10 +8,7 @@ description again. It is used as long as no file that it was made from has chang
 from __future__ import annotations
 
 import hashlib
-import io
-import json
 import os
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -21,7 +18,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from mascarin import __version__
-from mascarin._io import atomic
+from mascarin._io import own_files
+from mascarin._io.regular import require_regular
 from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
@@ -35,7 +33,7 @@ if TYPE_CHECKING:
 
 _FORMAT: Final = 2
 _PACKAGE: Final = Path(__file__).resolve().parent.parent
-_ARRAYS: Final = ("forcing", "values", "positions", "place", "measured", "mask")
+_KIND: Final = "compiled case"
 
 
 @dataclass(frozen=True)
@@ -213,18 +211,15 @@ class Case:
             "step": self.step,
             "inputs": self.inputs,
         }
-        buffer = io.BytesIO()
-        np.savez(
-            buffer,
-            header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8),
-            forcing=self.run.forcing,
-            values=self.run.values,
-            positions=self.positions,
-            place=self.place,
-            measured=self.problem.measured,
-            mask=self.problem.mask,
-        )
-        atomic.write(path, buffer.getvalue())
+        arrays = {
+            "forcing": self.run.forcing,
+            "values": self.run.values,
+            "positions": self.positions,
+            "place": self.place,
+            "measured": self.problem.measured,
+            "mask": self.problem.mask,
+        }
+        own_files.write(path, _KIND, own_files.packed(header, arrays))
 
 
 def open_case(path: Path, study: str) -> Case | None:
@@ -238,15 +233,12 @@ def open_case(path: Path, study: str) -> Case | None:
         Absolute path of the file of the study.
     """
     try:
-        # From memory, because numpy leaves the file open when it is no archive.
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-            header = json.loads(file["header"].tobytes())
-            inputs = header["inputs"]
-            if header["format"] != _FORMAT or inputs != inputs_of(study, inputs["files"]):
-                return None
-            arrays = {name: file[name] for name in _ARRAYS}
+        header, arrays = own_files.unpacked(own_files.read(path, _KIND))
+        inputs = header["inputs"]
+        if header["format"] != _FORMAT or inputs != inputs_of(study, inputs["files"]):
+            return None
         return _case(header, arrays)
-    except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, InputError):
         # A file that cannot be read is made again.
         return None
 
@@ -307,8 +299,13 @@ def inputs_of(study: str, files: Sequence[str] | Mapping[str, Any]) -> dict[str,
         "program": _program_state(),
         "study": study,
         "data": os.environ.get("MASCARIN_DATA", ""),
-        "files": {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files},
+        "files": {name: _hash(name) for name in files},
     }
+
+
+def _hash(name: str) -> str:
+    """SHA-256 of an input; a name from a kept case may be that of a device."""
+    return hashlib.sha256(require_regular(Path(name)).read_bytes()).hexdigest()
 
 
 def _program_state() -> str:

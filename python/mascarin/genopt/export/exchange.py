@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from mascarin._io import atomic
-from mascarin._io.regular import require_regular
+from mascarin._io import atomic, own_files
+from mascarin._io.regular import is_file, require_regular
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def read_settings(folder: Path) -> Path:
 
     path = folder / SETTINGS
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = own_files.read_json(path)
         name = content["study"] if content["mascarin_coupling"] == _FORMAT else None
     except OSError as error:
         raise InputError(
@@ -159,7 +159,7 @@ def read_settings(folder: Path) -> Path:
             f"{path}: was not written by 'mascarin genopt'; write the project again with --force"
         )
     study = folder / name
-    if study.is_file():
+    if is_file(study):
         return study
     if name in STUDIES:
         return STUDIES[name]
