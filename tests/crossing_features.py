@@ -27,7 +27,12 @@ _BASE: Final[Json] = {
     "site": {"latitude": 27.97, "longitude": -82.53, "altitude": 6, "timezone": ZONE},
     "materials": {"board": {"conductivity": 0.2, "density": 800, "specific_heat": 1000}},
     "constructions": {"wall": {"layers": [{"material": "board", "thickness": 0.05}]}},
-    "zones": {"room": {"volume": {"value": 30, "range": [25, 35]}, "infiltration": 0.5}},
+    "zones": {
+        "room": {
+            "volume": {"value": 30, "range": [25, 35]}, "infiltration": 0.5,
+            "longwave": {"kind": "linearised", "reference": 25},
+        }
+    },
     "surfaces": {
         "south": {
             "construction": "wall",
@@ -36,6 +41,7 @@ _BASE: Final[Json] = {
             "azimuth": 180,
             "outside": {
                 "outdoors": True, "convection": 15, "emissivity": 0.9,
+                "longwave": {"kind": "linearised", "reference": 25},
                 "absorptance": {"value": 0.5, "range": [0.3, 0.7]},
             },
             "inside": {"zone": "room", "convection": 3, "emissivity": 0.9, "absorptance": 0.5},
@@ -49,12 +55,17 @@ def _side(zone: str) -> Json:
 
 
 def _out() -> Json:
-    return {"outdoors": True, "convection": 15, "emissivity": 0.9, "absorptance": 0.5}
+    linear = {"kind": "linearised", "reference": 25}
+    return {"outdoors": True, "convection": 15, "emissivity": 0.9, "absorptance": 0.5, "longwave": linear}
 
 
 def _second_room(tree: Json) -> None:
     """A hall behind the room."""
-    tree["zones"]["hall"] = {"volume": 40, "infiltration": 0.3}
+    tree["zones"]["hall"] = {
+        "volume": 40,
+        "infiltration": 0.3,
+        "longwave": {"kind": "linearised", "reference": 25},
+    }
     tree["surfaces"] |= {
         "between": {"construction": "wall", "area": 9, "tilt": 90, "azimuth": 0, "outside": _side("hall"),
                     "inside": _side("room")},
@@ -65,9 +76,9 @@ def _second_room(tree: Json) -> None:
 
 def _window(tree: Json, wall: str = "south") -> None:
     tree["glazings"] = {"clear": {"kind": "simple", "u_value": 2.7, "solar_heat_gain": 0.6}}
-    inside = {"convection": 3}
-    tree["windows"] = {"pane": {"surface": wall, "glazing": "clear", "area": 2,
-                                "outside": {"convection": 3 if wall == "between" else 15}, "inside": inside}}  # fmt: skip
+    outer = {"convection": 3 if wall == "between" else 15}
+    pane = {"surface": wall, "glazing": "clear", "area": 2, "outside": outer, "inside": {"convection": 3}}
+    tree["windows"] = {"pane": pane}
 
 
 def _ceiling(tree: Json, material: Json) -> None:
@@ -174,12 +185,11 @@ def _mechanical_air(tree: Json) -> None:
 
 
 def _shades(tree: Json) -> None:
-    del (
-        tree["surfaces"]["south"]["area"],
-        tree["surfaces"]["south"]["tilt"],
-        tree["surfaces"]["south"]["azimuth"],
-    )
-    tree["surfaces"]["south"]["vertices"] = [[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]]
+    wall = tree["surfaces"]["south"]
+    del wall["area"], wall["tilt"], wall["azimuth"]
+    wall["vertices"] = [[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]]
+    tree["surfaces"]["rest"] = {"construction": "wall", "area": 40, "tilt": 90, "azimuth": 0,
+                                "outside": {"adiabatic": True}, "inside": _side("room")}  # fmt: skip
     tree["shades"] = {"overhang": {"vertices": [[0, 0, 3.1], [4, 0, 3.1], [4, -1, 3.1], [0, -1, 3.1]]}}
 
 
@@ -226,12 +236,19 @@ def building(feature: str) -> Building:
 
 
 def measured() -> pd.DataFrame:
-    """Measured columns of three days, local stamps: boundaries of a building, and a thermometer."""
+    """Weather and measured columns of four days, local stamps: a logger's table."""
     index = pd.date_range("2001-07-01", periods=24 * 4, freq="1h", name="time")
     hours = np.arange(len(index))
     wave = np.sin((hours - 9.0) * np.pi / 12.0)
     return pd.DataFrame(
         {
+            "air_temperature": (27.0 + 5.0 * wave).round(2),
+            "dew_point": np.full(len(index), 18.0),
+            "cloud_cover": np.full(len(index), 3.0),
+            "wind_speed": (3.0 + 2.0 * np.sin(hours / 5.0)).round(2),
+            "wind_direction": (40.0 + 7.0 * hours) % 360.0,
+            "direct_normal": np.maximum(600.0 * np.sin((hours - 6.5) * np.pi / 12.0), 0.0).round(1),
+            "diffuse_horizontal": np.maximum(150.0 * np.sin((hours - 6.5) * np.pi / 12.0), 0.0).round(1),
             "T_back": (26.0 + 3.0 * wave).round(2),
             "P_heater": np.where(hours % 24 < 6, 300.0, 0.0),
             "G_south": np.maximum(200.0 * wave, 0.0).round(1),

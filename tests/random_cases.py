@@ -17,6 +17,8 @@ from random_weather import Weather, weather
 
 Array = npt.NDArray[np.float64]
 
+#: Sections whose numbers belong together.
+TOGETHER = ("glazings.", "materials.", "windows.")
 #: Trials for a member whose parameters can stand together.
 TRIALS = 8
 
@@ -77,8 +79,9 @@ class Case:
 def _possible(simulation: Simulation, values: dict[str, float]) -> Array | None:
     """A parameter vector, or None where the values cannot stand together."""
     try:
-        # Checked as descriptions are: sums of fractions, set points, curves that cross.
-        simulation.building.with_values(values)
+        # Checked as descriptions are where values belong together: optics of panes, curves of materials.
+        if any(path.startswith(TOGETHER) for path in values):
+            simulation.building.with_values(values)
         vector = simulation.vector(values)
         simulation._require_possible(vector[None, :])
     except InputError:

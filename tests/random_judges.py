@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -68,7 +69,13 @@ class Extremes:
     fractions_outside: int = 0
 
 
-def faults(case: Case, building: Building, outputs: list[Output], records: Array) -> list[Fault]:
+def faults(
+    case: Case,
+    building: Building,
+    outputs: list[Output],
+    records: Array,
+    changed: Mapping[str, float] | None = None,
+) -> list[Fault]:
     """Impossible values in the records of a run.
 
     Parameters
@@ -81,6 +88,8 @@ def faults(case: Case, building: Building, outputs: list[Output], records: Array
         What was recorded.
     records : ndarray, shape (rows, outputs)
         Values. [unit of each]
+    changed : mapping of str to float, optional
+        Parameters of a member that differ from those of the building. [unit of each]
     """
     found: list[Fault] = []
     for k, output in enumerate(outputs):
@@ -90,8 +99,9 @@ def faults(case: Case, building: Building, outputs: list[Output], records: Array
             found.append(Fault("not finite", f"{output.name} in row {row}: {values[row]}"))
             continue
         low, high = float(values.min()), float(values.max())
-        found += [Fault(kind, f"{output.name} in row {_row(values, at)}: {at:.6g} {output.unit} ({limit})")
-                  for kind, at, limit in _outside(case, building, output, low, high)]  # fmt: skip
+        for kind, at, limit in _outside(case, building, output, low, high, changed or {}):
+            where = f"{output.name} in row {_row(values, at)}"
+            found.append(Fault(kind, f"{where}: {at:.6g} {output.unit} ({limit})"))
     return found
 
 
@@ -100,7 +110,7 @@ def _row(values: Array, value: float) -> int:
 
 
 def _outside(
-    case: Case, building: Building, output: Output, low: float, high: float
+    case: Case, building: Building, output: Output, low: float, high: float, changed: Mapping[str, float]
 ) -> list[tuple[str, float, str]]:
     """Limits that the lowest or the highest value of an output is beyond: kind, value, limit."""
     found = []
@@ -114,38 +124,41 @@ def _outside(
         found.append((kind, low, "expected 0 or more"))
     if output.kind in FRACTIONS and high > 1.0 + ROUNDING:
         found.append((f"fraction above 1: {output.kind}", high, "expected 1 or less"))
-    most = capacity(building, output)
+    most = capacity(building, output, changed)
     if high > most * (1.0 + ROUNDING) + ROUNDING:
         found.append(("load above its capacity", high, f"expected {most:g} W or less"))
     if output.kind == "incident_solar":
-        bound = largest_irradiance(case, building, output)
+        bound = largest_irradiance(case, building, output, changed)
         if high > bound:
             found.append(("irradiance", high, f"expected {bound:.0f} W/m2 or less"))
     return found
 
 
-def capacity(building: Building, output: Output) -> float:
+def capacity(building: Building, output: Output, changed: Mapping[str, float]) -> float:
     """Largest load of an output [W]; infinite for all others."""
     if output.zone is None:
         return math.inf
     name = list(building.zones)[output.zone]
     part: Any = None
+    path = ""
     if output.kind in ("heating_load", "cooling_load"):
-        part = getattr(building.zones[name], output.kind.removesuffix("_load"))
+        which = output.kind.removesuffix("_load")
+        part, path = getattr(building.zones[name], which), f"zones.{name}.{which}.capacity"
     elif output.kind in ("latent_heating", "latent_cooling") and building.humidity is not None:
-        damp = building.humidity.zones[name]
-        part = damp.humidifying if output.kind == "latent_heating" else damp.drying
+        which = "humidifying" if output.kind == "latent_heating" else "drying"
+        part, path = getattr(building.humidity.zones[name], which), f"humidity.zones.{name}.{which}.capacity"
     given = getattr(part, "capacity", None)
-    return math.inf if given is None else float(given)
+    return math.inf if given is None else changed.get(path, float(given))
 
 
-def largest_irradiance(case: Case, building: Building, output: Output) -> float:
+def largest_irradiance(case: Case, building: Building, output: Output, changed: Mapping[str, float]) -> float:
     """Irradiance on a plane that no sun exceeds [W/m2], or that of its measured column."""
     at = output.surface or 0
     walls = list(building.surfaces.values())
     side = walls[at].outside if at < len(walls) else list(building.windows.values())[at - len(walls)].outside
     sun = case.weather.extraterrestrial
-    bound = OVER_EXTRATERRESTRIAL * sun * (1.0 + float(building.site.ground_reflectance))
+    reflected = changed.get("site.ground_reflectance", float(building.site.ground_reflectance))
+    bound = OVER_EXTRATERRESTRIAL * sun * (1.0 + reflected)
     column = side.irradiance
     return bound if column is None else max(bound, 1.0 + float(case.weather.measured[column].max()))
 
@@ -166,7 +179,7 @@ def extremes(building: Building, outputs: list[Output], records: Array) -> Extre
     loads = [
         float(records[:, k].max()) / most if most > 0.0 else 1.0
         for k, one in enumerate(outputs)
-        if math.isfinite(most := capacity(building, one))
+        if math.isfinite(most := capacity(building, one, {}))
     ]
     outside = (fractions < -ROUNDING) | (fractions > 1.0 + ROUNDING)
     return Extremes(

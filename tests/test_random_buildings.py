@@ -41,8 +41,8 @@ def test_nearly_all_descriptions_can_be_used() -> None:
 def test_every_key_of_a_description_is_drawn() -> None:
     missing = random_buildings.undrawn(drawn())
     assert missing == [], (
-        f"keys that no random building has: {missing}. Draw them in tests/random_buildings.py, or in the module "
-        "beside it that makes their part (random_shells, random_materials, random_air, random_schedules)"
+        f"keys that no random building has: {missing}. Draw them in tests/random_buildings.py, or in the "
+        "module beside it that makes their part (random_shells, random_materials, random_air, ...)"
     )
 
 

@@ -10,8 +10,21 @@ from cyclopts import Parameter
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
-from mascarin.commands.inputs import AsJson, Settings, Step, read_building, read_weather, seconds
+from mascarin.commands.inputs import (
+    AsJson,
+    Columns,
+    MeasuredTable,
+    Outside,
+    Settings,
+    Stamps,
+    Step,
+    Weather,
+    Zone,
+    read_building,
+    seconds,
+)
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, SolverError
 
 if TYPE_CHECKING:
@@ -25,7 +38,11 @@ def sweep(
     building: Path,
     /,
     *,
-    weather: Path,
+    weather: Weather,
+    measurements: MeasuredTable = None,
+    columns: Columns = None,
+    timezone: Zone = None,
+    stamps: Stamps = "start",
     out: Annotated[Path, Parameter(alias="-o")],
     samples: Path | None = None,
     draw: int | None = None,
@@ -40,6 +57,7 @@ def sweep(
     precision: Literal["double", "single"] = "double",
     workers: int | None = None,
     settings: Settings = None,
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with many parameter values.
@@ -51,8 +69,6 @@ def sweep(
     ----------
     building : Path
         Description of a building.
-    weather : Path
-        Weather file: EPW, or TMY3 as CSV.
     out : Path
         Folder for the results (Parquet) and their manifest: new, empty, or with the same ensemble.
     samples : Path
@@ -92,12 +108,17 @@ def sweep(
             "--objective max:room.air_temperature"
         )
     kept = {text: Statistic.read(text) for text in objectives or ()}
+    climate, measured = run_inputs(
+        described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
+        allow_outside=allow_outside,
+    )  # fmt: skip
     with Progress("members") as progress:
         store = sweep_into(
             out,
             described,
-            read_weather(weather),
+            climate,
             table,
+            measurements=measured,
             outputs=outputs or list(dict.fromkeys(statistic.output for statistic in kept.values())),
             objectives=kept,
             step=seconds(step),

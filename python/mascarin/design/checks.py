@@ -26,6 +26,25 @@ def require_zone(building: Building, zone: str) -> None:
         )
 
 
+def require_no_columns(building: Building) -> None:
+    """Refuse a building that is driven by measured columns: weather files have none.
+
+    Raises
+    ------
+    InputError
+        Naming the columns.
+    """
+    from mascarin.building.engine_input import measured_columns
+
+    columns = measured_columns(building)
+    if columns:
+        raise InputError(
+            f"found the measured columns {', '.join(columns)}, expected numbers and schedules: designs are "
+            "compared in weather files, which have no measurements of a building. Write a building that "
+            "extends this one, with numbers or schedules in their place"
+        )
+
+
 def is_dried(building: Building, zone: str) -> bool:
     """Whether a zone has ideal drying, whose latent heat is a load."""
     return building.humidity is not None and building.humidity.zones[zone].drying is not None

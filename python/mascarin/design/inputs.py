@@ -14,7 +14,7 @@ import pandas as pd
 from mascarin.building import Building, load, yaml_document
 from mascarin.building.ties import expanded, spread
 from mascarin.comfort import Surroundings
-from mascarin.design.checks import require_same_basis
+from mascarin.design.checks import require_no_columns, require_same_basis
 from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
 from mascarin.design.objectives import Comfort
@@ -142,6 +142,11 @@ def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInput
     for name in file.climates:
         with faults.kept():
             sites.append(_site(name, file, building, beside, places))
+    if not any(option.parts for choice in choices.all for option in choice.options):
+        # Parts that a design replaces may be those with columns.
+        for site in sites:
+            with places.noting(faults, "building"):
+                require_no_columns(site.building)
     _check_objectives(file, building, choices, uncertain, places, faults)
     with places.noting(faults, "reference"):
         building.replace(file.reference)
