@@ -83,13 +83,13 @@ def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     from mascarin.simulation.energy import ensemble_warnings
 
     found = results.summary()
-    warnings = ensemble_warnings(results.sampled["closure"].to_numpy())
-    warnings += ensemble_warnings(results.nominal["closure"].to_numpy())
-    for line in warnings:
+    tables = (results.sampled, results.nominal)
+    code = 1 if any(ensemble_warnings(table["closure"].to_numpy()) for table in tables) else 0
+    for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:
-        print_json({**found, "warnings": warnings, "folder": str(out)})
-        return 1 if warnings else 0
+        print_json({**found, "folder": str(out)})
+        return code
     for climate, rows in found["ranking"].items():
         print(f"{climate}: {found['ranked_by']}, {found['unit']}")
         table = [
@@ -100,4 +100,4 @@ def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     if found["failed"]:
         print(f"{found['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
     print(f"report: {out / 'report.html'}")
-    return 1 if warnings else 0
+    return code

@@ -31,8 +31,9 @@ from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.energy import ensemble_warnings
+from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.options import RunOptions, described, require_precision
+from mascarin.simulation.run_warnings import of_base, of_members
 from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
 
@@ -99,9 +100,10 @@ def sweep(
         Each output over (member, time), or each objective over (member); the samples as ``samples`` over
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
         ``closure``, the relative energy-balance residual [-]. NaN for a member that failed, with its reason
-        in the attribute ``failures``; the attribute ``warnings`` says whether the energy balance of a member
-        does not close, and in single precision ``single_precision`` how far each output or objective of some
-        members is from double precision. Coordinates ``time`` (UTC) and ``local_time``.
+        in the attribute ``failures``; the attribute ``warnings`` has what holds for members (an energy
+        balance that does not close, a step too long for the air of a zone) and the warnings of one more run
+        with the values of the building. In single precision ``single_precision`` says how far each output or
+        objective of some members is from double precision. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
     ------
@@ -129,7 +131,7 @@ def sweep(
     _require_room(inputs, found)
     order = found.by_structure()
     with reporting(progress, "members") as report:
-        whole, closure, failures = _gathered(
+        whole, closure, step_errors, failures = _gathered(
             order,
             _chunks(
                 inputs,
@@ -141,12 +143,16 @@ def sweep(
         )
     if len(failures) == found.count:
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
+    first = _first(inputs, found)
     return (
         _dataset(inputs, found, whole)
         .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
-            warnings=ensemble_warnings(closure, precision=precision),
+            warnings=[
+                *of_members(closure, step_errors, step_seconds=first.step_seconds, precision=precision),
+                *of_base(of_nominal(first)),
+            ],
             **({} if precision == "double" else {"single_precision": _said(inputs, found, closure)}),
         )
     )
@@ -241,7 +247,10 @@ def sweep_into(
         for chunk in _chunks(inputs, found, kept.gaps(), workers, count):
             kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
         if not kept.complete:
-            kept.finish([] if precision == "double" else _differences(inputs, found))
+            kept.finish(
+                [] if precision == "double" else _differences(inputs, found),
+                of_base(of_nominal(_first(inputs, found))),
+            )
     return kept
 
 
@@ -356,10 +365,10 @@ def _chunks(
     return elsewhere(inputs, members, gaps, workers, report)
 
 
-def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
+def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, Any, dict[int, str]]:
     """Results of all members in one array; chunks have them in another order."""
     whole: Any = None
-    closure = np.full(len(order), np.nan)
+    closure, step_errors = np.full((2, len(order)), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
         members = order[chunk.first : chunk.first + len(chunk.closure)]
@@ -367,9 +376,9 @@ def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, 
             whole = np.full((len(order), *chunk.kept.shape[1:]), np.nan)
         if whole is not None and chunk.kept.size:
             whole[members] = chunk.kept
-        closure[members] = chunk.closure
+        closure[members], step_errors[members] = chunk.closure, chunk.step_errors
         failures |= {order[member]: reason for member, reason in chunk.failures.items()}
-    return whole, closure, failures
+    return whole, closure, step_errors, failures
 
 
 def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Dataset:

@@ -21,6 +21,7 @@ from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.weather.timezones import parse_timezone
 
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 _DEPRECATED: Final = frozenset({"table", "dataset"})
 MANIFEST: Final = "manifest.json"
 RESULTS: Final = "members.parquet"
+#: Column with the error of an air by the time step. [K]
+_STEP_ERROR: Final = "time_step_error"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
@@ -203,13 +206,15 @@ class Store:
         with atomic.drafted(target) as draft:
             pq.write_table(self._table(chunk, members), draft)
 
-    def finish(self, single_precision: Sequence[Difference] = ()) -> None:
+    def finish(self, single_precision: Sequence[Difference] = (), warnings: Sequence[str] = ()) -> None:
         """Join the chunks to one file and mark the store as complete.
 
         Parameters
         ----------
         single_precision : sequence of Difference
             How far the results of some members are from double precision, for the manifest.
+        warnings : sequence of str
+            Warnings of a run with the values of the building, for the manifest.
         """
         if self.complete:
             return
@@ -217,6 +222,7 @@ class Store:
             self._join(draft)
         if single_precision:
             self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
+        self.manifest["warnings"] = list(warnings)
         self.manifest["complete"] = True
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
         shutil.rmtree(self.path / "pieces", ignore_errors=True)
@@ -260,6 +266,7 @@ class Store:
         import pyarrow.parquet as pq
 
         series = {*self.manifest["outputs"]} if not self.manifest["objectives"] else set()
+        series.add(_STEP_ERROR)
         found = []
         for file in self._files():
             names = [name for name in pq.read_schema(file).names if name not in series]
@@ -268,8 +275,29 @@ class Store:
         return whole.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
-        """One line where the energy balance of a member does not close, else nothing."""
-        return ensemble_warnings(self.to_dataframe()["closure"].to_numpy(), precision=self.precision)
+        """Warnings about members, and of a run with the values of the building; see `mascarin.sweep`."""
+        import pyarrow.parquet as pq
+
+        names, closure, errors = ["member", "closure", _STEP_ERROR], {}, {}
+        for file in self._files():
+            # Stores of earlier versions do not have the errors by the time step.
+            table = pq.read_table(file, columns=[n for n in names if n in pq.read_schema(file).names])
+            columns = {name: table.column(name).to_numpy() for name in table.column_names}
+            closure |= dict(zip(columns["member"], columns["closure"], strict=True))
+            errors |= dict(zip(columns["member"], columns.get(_STEP_ERROR, ()), strict=False))
+        members = sorted(closure)
+        return self._said(
+            np.array([closure[k] for k in members]), np.array([errors.get(k, np.nan) for k in members]), 0
+        )
+
+    def balances(self) -> bool:
+        """Whether the energy balance of every member closes."""
+        return not ensemble_warnings(self.to_dataframe()["closure"].to_numpy(), precision=self.precision)
+
+    def _said(self, closure: Any, step_errors: Any, first: int) -> list[str]:
+        step = float(self.manifest["step_seconds"])
+        of = of_members(closure, step_errors, step_seconds=step, first=first, precision=self.precision)
+        return [*of, *self.manifest.get("warnings", ())]
 
     def single_precision(self) -> list[str]:
         """How far some members are from double precision, and how many were run in it; nothing in double."""
@@ -329,7 +357,7 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
-            "warnings": ensemble_warnings(data["closure"][1], first, self.precision),
+            "warnings": self._said(data["closure"][1], _step_errors(table), first),
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
             **({"single_precision": said} if (said := self.single_precision()) else {}),
@@ -394,6 +422,7 @@ class Store:
             column = np.ascontiguousarray(chunk.kept[..., k]) if chunk.kept.size else None
             columns[name] = self._column(column, count)
         columns["closure"] = pa.array(chunk.closure)
+        columns[_STEP_ERROR] = pa.array(chunk.step_errors)
         columns["failure"] = pa.array([chunk.failures.get(member) for member in numbers], pa.string())
         return pa.table(columns)
 
@@ -405,6 +434,13 @@ class Store:
         flat = np.full(count * rows, np.nan) if values is None else values.reshape(-1)
         column = pa.array(flat)
         return column if self.manifest["objectives"] else pa.FixedSizeListArray.from_arrays(column, rows)
+
+
+def _step_errors(table: pa.Table) -> Any:
+    """Errors by the time step; a store of an earlier version does not have them."""
+    if _STEP_ERROR not in table.column_names:
+        return np.full(len(table), np.nan)
+    return table.column(_STEP_ERROR).to_numpy()
 
 
 def _matrix(column: Any) -> Any:

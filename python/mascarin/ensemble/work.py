@@ -12,6 +12,7 @@ import numpy as np
 from mascarin import _engine
 from mascarin.ensemble.members import variant
 from mascarin.errors import InputError, MascarinError
+from mascarin.simulation.coarse import member_errors
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.simulation import Simulation
 
@@ -108,12 +109,15 @@ class Chunk:
         Relative energy-balance residual. [-]
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
+    step_errors : ndarray, shape (members,)
+        Error of an air by the time step, as of `mascarin.simulation.coarse`; NaN where none was recorded. [K]
     """
 
     first: int
     kept: Array
     closure: Array
     failures: Mapping[int, str]
+    step_errors: Array
 
 
 def run_chunk(
@@ -133,7 +137,7 @@ def run_chunk(
         Called with the number of members done.
     """
     values: Array | None = None
-    closure = np.full(members.count, np.nan)
+    closure, step_errors = np.full((2, members.count), np.nan)
     failures: dict[int, str] = {}
     done = 0
     for structure, rows in members.groups():
@@ -154,6 +158,9 @@ def run_chunk(
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
             values[batch], closure[batch] = kept, closures
+            step_errors[batch] = member_errors(
+                simulation.building, simulation.outputs, records, simulation.scheme
+            )
             failures |= {first + batch[failure.member]: failure.reason for failure in failed}
             for failure in failed:
                 values[batch[failure.member]] = np.nan
@@ -161,7 +168,7 @@ def run_chunk(
     if values is None:
         width = len(inputs.objectives) if inputs.objectives else 0
         values = np.full((members.count, width), np.nan)
-    return Chunk(first, values, closure, dict(sorted(failures.items())))
+    return Chunk(first, values, closure, dict(sorted(failures.items())), step_errors)
 
 
 def attributes(name: str, unit: str) -> dict[str, str]:
