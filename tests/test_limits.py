@@ -129,7 +129,8 @@ materials: {board: {conductivity: 0.2, density: 800, specific_heat: 1000}}
 constructions: {wall: {layers: [{material: board, thickness: 0.05}]}}
 zones: {room: {volume: 30, heating: {setpoint: 20.1}, cooling: {setpoint: 26.3}}}
 surfaces:
-  wall: {construction: wall, area: 60, tilt: 90, azimuth: 180, inside: {zone: room, convection: 3, emissivity: 0.9},
+  wall: {construction: wall, area: 60, tilt: 90, azimuth: 180,
+         inside: {zone: room, convection: 3, emissivity: 0.9},
          outside: {outdoors: true, convection: 15, absorptance: 0.6, emissivity: 0.9}}
 """
     outputs = ["room.air_temperature", "room.heating_load"]

@@ -62,7 +62,7 @@ def test_single_precision_is_near_and_says_how_near(
     checked = apart[members_to_check(20)]
     assert float(said[1]) == pytest.approx(np.sqrt(np.mean(checked**2)), rel=0.05)
     assert float(said[2]) == pytest.approx(checked.max(), rel=0.05)
-    assert single.attrs["warnings"] == []
+    assert all("cannot enclose" in line for line in single.attrs["warnings"])  # of the building alone
     if LANES:
         assert checked.max() > 0.0
         assert (single["closure"] > 1e-9).all()
@@ -101,7 +101,7 @@ def test_a_store_keeps_the_difference(building: Building, climate: Climate, tmp_
     assert again.precision == "single"
     assert again.single_precision() == [line, *in_double]
     assert line in repr(again)
-    assert again.warnings() == []
+    assert all("cannot enclose" in line for line in again.warnings())
     assert again.to_xarray().attrs["single_precision"] == [line, *in_double]
     whole = sweep(building, climate, samples, precision="single", **given)
     np.testing.assert_array_equal(again.to_dataframe()["hottest"], whole["hottest"])

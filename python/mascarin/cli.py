@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import gc
+import io
 import os
 import signal
 import sys
@@ -22,6 +23,7 @@ from cyclopts import App, CycloptsError, Group
 
 from mascarin import __version__
 from mascarin._io import identity, memory
+from mascarin._io.terminal import printable
 from mascarin.errors import InputError, MascarinError, SolverError
 
 EXIT_OK: Final = 0
@@ -186,18 +188,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         # Imported modules stay in memory: collecting garbage among them often would free nothing.
         gc.set_threshold(100_000)
+        _fill_closed()
         # A shell starts background jobs with the signal ignored; a command must still be possible to stop.
         signal.signal(signal.SIGINT, _interrupt)
         signal.signal(signal.SIGTERM, _terminate)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
-    out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))
+    out, err = (
+        cast("TextIO", _Output(sys.stdout, "standard output")),
+        cast("TextIO", _Output(sys.stderr, None)),
+    )
     try:
         return _run(words, debug, out, err)
     finally:
         if arguments is None:
             # The process is about to end: looking for garbage among all modules would take half a second.
             gc.freeze()
+
+
+def _fill_closed() -> None:
+    """Give closed standard streams the null device: a file opened later would get their numbers, and text."""
+    for number in (0, 1, 2):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
 
 
 def _run(words: list[str], debug: bool, out: TextIO, err: TextIO) -> int:
@@ -291,23 +306,38 @@ def _usage_text(error: CycloptsError) -> str:
 
 
 class _Output:
-    """A stream that ignores a closed pipe (``| head``): the command goes on with the same exit code.
+    """A stream on which control characters are shown, and which ignores a closed pipe (``| head``).
+
+    The command goes on with the same exit code.
 
     Parameters
     ----------
-    stream : TextIO
-        Where the output goes.
+    stream : TextIO or None
+        Where the output goes; None: the process was started with the stream closed.
+    needed : str or None
+        Its name, where results go to it, so that it is an error when they cannot be written. Messages that
+        nobody can read do not stop a command.
     """
 
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
+    def __init__(self, stream: TextIO | None, needed: str | None) -> None:
+        self._closed = stream is None
+        self._stream: TextIO = stream if stream is not None else io.StringIO()
+        self._needed = needed
 
     def __getattr__(self, name: str) -> Any:
         """Other attributes are those of the stream."""
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write, or drop the text when the pipe is closed."""
+        """Write text as a terminal can show it, or drop it when the pipe is closed."""
+        self.unfiltered(printable(text))
+        return len(text)
+
+    def unfiltered(self, text: str) -> int:
+        """Write text with the control characters of Mascarin itself."""
+        if self._closed:
+            self._refuse_lost(text)
+            return len(text)
         try:
             return self._stream.write(text)
         except (
@@ -317,9 +347,10 @@ class _Output:
         except BrokenPipeError:
             self._discard()
             return len(text)
-        except OSError:
+        except OSError as error:
             self._discard()  # Python would try, and fail, again when it exits
-            raise
+            self._lost(error)
+            return len(text)
 
     def flush(self) -> None:
         """Flush, or drop the text when the pipe is closed."""
@@ -327,9 +358,21 @@ class _Output:
             self._stream.flush()
         except BrokenPipeError:
             self._discard()
-        except OSError:
+        except OSError as error:
             self._discard()
-            raise
+            self._lost(error)
+
+    def _lost(self, error: OSError) -> None:
+        """Results that cannot be written are an error."""
+        if self._needed is not None:
+            raise OSError(error.errno, error.strerror, self._needed) from None
+
+    def _refuse_lost(self, text: str) -> None:
+        if self._needed is not None and text.strip():
+            raise InputError(
+                f"{self._needed} is closed, and the result goes to it: expected a terminal, a pipe or a "
+                "file. Send it to a file (> result.txt), or to /dev/null if it is not needed"
+            )
 
     def _discard(self) -> None:
         # Python flushes the stream again when it exits, so its file descriptor is directed to the null

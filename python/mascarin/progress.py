@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Final, Self, TextIO
 
+from mascarin._io.terminal import printable
 from mascarin.errors import InputError
 
 Report = Callable[[int, int], object]
@@ -169,7 +170,7 @@ class Progress:
             if self._shown_at is not None and now - self._shown_at < every:
                 return
             self._shown_at = now
-            self._show(self._text(now, done, total, note))
+            self._show(printable(self._text(now, done, total, note)))
 
     def close(self) -> None:
         """Remove the line from the terminal."""
@@ -210,7 +211,8 @@ class Progress:
     def _write(self, text: str) -> None:
         # A terminal that was closed does not stop the work.
         with contextlib.suppress(OSError, ValueError):
-            self._stream.write(text)
+            write = getattr(self._stream, "unfiltered", self._stream.write)  # with its carriage returns
+            write(text)
             self._stream.flush()
 
 

@@ -109,7 +109,10 @@ def finite_number(name: str, value: Any, low: float, high: float, unit: str = ""
     InputError
         Something else.
     """
-    number = math.nan if isinstance(value, bool) or not isinstance(value, Real) else float(value)
+    try:
+        number = math.nan if isinstance(value, bool) or not isinstance(value, Real) else float(value)
+    except OverflowError:  # an integer of more digits than a float holds
+        number = math.inf
     if not low <= number <= high:  # not for NaN either
         shown = f" {unit}" if unit else ""
         raise InputError(f"{name}: found {value!r}, expected a number from {low:g} to {high:g}{shown}")

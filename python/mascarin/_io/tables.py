@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import csv
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TextIO
+
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,3 +51,33 @@ def read_csv(path: Path | TextIO, **options: Any) -> pd.DataFrame:
         options["float_precision"] = "round_trip"
     found: pd.DataFrame = pd.read_csv(path, **options)
     return found
+
+
+@contextlib.contextmanager
+def csv_refused(where: str) -> Iterator[None]:
+    """Refuse a text that the module `csv` cannot read, such as one with a field that never ends.
+
+    Parameters
+    ----------
+    where : str
+        The file, for the message.
+
+    Raises
+    ------
+    InputError
+        The text cannot be read.
+
+    Examples
+    --------
+    >>> with csv_refused("table.csv"):
+    ...     list(csv.reader(["x" * 200000]))
+    Traceback (most recent call last):
+    mascarin.errors.InputError: table.csv: found no table that can be read (field larger than field limit ...
+    """
+    try:
+        yield
+    except csv.Error as error:
+        raise InputError(
+            f"{where}: found no table that can be read ({error}); expected lines of short fields. Look for a "
+            "quotation mark that is not closed, or for another file under this name"
+        ) from None

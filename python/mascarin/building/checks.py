@@ -76,7 +76,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *humidity_lines(building),
         *_melting(building),
         *(f"shading: {words}" for words in [in_words(building)] if words),
-        *(f"warning: {text}" for text in warnings(building, mesh)),
+        *(f"warning: {text}" for text in warnings(building, mesh.warnings)),
         *(f"assumed: {text}" for text in assumptions(building)),
     ]
 

@@ -18,6 +18,8 @@ from mascarin.errors import InputError
 
 EXTENDS: Final = "extends"
 SET: Final = "set"
+DEEPEST: Final = 100
+"""Files that may extend each other in a row."""
 
 Read = Callable[[Path], tuple[dict[str, Any], dict[Place, int]]]
 """Plain values of one file, and the line of each key and value."""
@@ -80,6 +82,12 @@ def inherited(
     if base is None:
         return Inherited(plain, lines, (file,))
     chain = (*chain, file)
+    if len(chain) > DEEPEST:
+        raise InputError(
+            f"{_at(lines, (EXTENDS,))}: {EXTENDS}\n  found: more than {DEEPEST} files that extend each "
+            f"other, from {chain[0]} on\n  expected: at most {DEEPEST}\n  Put the values of some of them "
+            "into one file."
+        )
     path = _base(base, file, lines, chain)
     above = inherited(path, read, by_path=by_path, file_keys=file_keys, chain=chain)
     moved = _moved(above.plain, path.parent, file.parent, file_keys)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from mascarin.building.derived import drawn_areas, enclosure
 from mascarin.building.description import Description
 from mascarin.building.geometry import volume as enclosed_volume
 from mascarin.building.humidity_rules import humidity_warnings
 from mascarin.building.material import PhaseChangeMaterial, Resistance
-from mascarin.building.mesh import Mesh
 from mascarin.building.phase_change import TableLaw
 from mascarin.building.phase_change_rules import unordered_slopes
 from mascarin.building.phases import phase
@@ -22,9 +21,9 @@ from mascarin.materials.library import curves, product
 _DIFFUSIVITIES = (1e-8, 2e-4)
 
 
-def warnings(building: Description, mesh: Mesh) -> Iterator[str]:
-    """Warnings: the mesh, areas and volumes that do not fit together."""
-    yield from mesh.warnings
+def warnings(building: Description, mesh: Iterable[str]) -> Iterator[str]:
+    """Warnings: those about the mesh, and areas and volumes that do not fit together."""
+    yield from mesh
     yield from _implausible_materials(building)
     yield from _implausible_melting(building)
     yield from _implausible_volumes(building)

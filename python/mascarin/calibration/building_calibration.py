@@ -22,6 +22,7 @@ from mascarin.calibration.stated_errors import depth_paths, require_supported, w
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.progress import ProgressOption
+from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
 from mascarin.validation.observation import observe
@@ -187,7 +188,13 @@ def calibrate(
     )
     if errors:
         found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
-    return replace(found, nominal_building=chosen, times=observation.times)
+    said = of_nominal(simulation, simulation.vector(found.values))
+    return replace(
+        found,
+        nominal_building=chosen,
+        times=observation.times,
+        warnings=(*found.warnings, *(f"the run at the estimates: {line}" for line in said)),
+    )
 
 
 def _beginning(

@@ -80,19 +80,17 @@ def _print_plan(inputs: DesignInputs, as_json: bool) -> int:
 
 def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     """Print the ranking; the exit code."""
-    from mascarin.simulation.judgement import ensemble_warnings
+    from mascarin.simulation.judgement import JUDGED, ensemble_warnings
 
     found = results.summary()
-    warnings = [
-        line
-        for table in (results.sampled, results.nominal)
-        for line in ensemble_warnings(table["closure"].to_numpy(), table["outside"].to_numpy())
-    ]
-    for line in warnings:
+    tables = (results.sampled, results.nominal)
+    unsound = (ensemble_warnings(*(table[name].to_numpy() for name in JUDGED)) for table in tables)
+    code = 1 if any(unsound) else 0
+    for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:
-        print_json({**found, "warnings": warnings, "folder": str(out)})
-        return 1 if warnings else 0
+        print_json({**found, "folder": str(out)})
+        return code
     for climate, rows in found["ranking"].items():
         print(f"{climate}: {found['ranked_by']}, {found['unit']}")
         table = [
@@ -103,4 +101,4 @@ def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     if found["failed"]:
         print(f"{found['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
     print(f"report: {out / 'report.html'}")
-    return 1 if warnings else 0
+    return code

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -150,7 +151,7 @@ def _serve(
 def _values(content: Mapping[str, Any]) -> Mapping[str, Any]:
     values = content.get("values", {})
     if not isinstance(values, Mapping):
-        raise InputError(f"values: found {values!r}; expected numbers by path")
+        raise InputError(f"values: found {reprlib.repr(values)}; expected numbers by path")
     return values
 
 

@@ -44,7 +44,7 @@ def fmu(
 
     The unit contains the engine and the weather, and needs no Python. Programs such as Modelica tools and
     FMPy run it step by step and exchange values with it. Without inputs its outputs are those of
-    'mascarin run', to the bit.
+    'mascarin run', to the bit. Its first 30 days are run once for the warnings of a run.
 
     Parameters
     ----------
@@ -85,6 +85,7 @@ def fmu(
         Version of the Functional Mock-up Interface.
     """
     from mascarin.fmu import export
+    from mascarin.simulation.nominal import of_short_run
     from mascarin.simulation.simulation import Simulation
 
     described = read_building(building, settings)
@@ -104,6 +105,8 @@ def fmu(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,
             scheme=scheme, outputs=_given(described, outputs),
         )  # fmt: skip
+        for line in of_short_run(simulation):
+            print(f"warning: {line}", file=sys.stderr)
         export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
     size = out.stat().st_size / 2**20
     print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)

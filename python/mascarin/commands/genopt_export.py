@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -50,10 +51,17 @@ def genopt(
     force : bool
         Write into a folder that is not empty.
     """
+    from mascarin.examples import locate
     from mascarin.genopt.export.writing import Options, write_project
+    from mascarin.simulation.nominal import of_nominal
+    from mascarin.study import Study
 
     options = Options(algorithm, starts, evaluations, seed, reductions, program, force, allow_outside)
     print(write_project(study, out, options))
+    opened = Study.from_yaml(locate(study), allow_outside=allow_outside)
+    # Each evaluation is a process of its own, which says nothing: what holds for the runs is said here.
+    for line in of_nominal(opened.short()):
+        print(f"warning: {line}", file=sys.stderr)
     return 0
 
 

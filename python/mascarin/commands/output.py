@@ -7,6 +7,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from mascarin._io.terminal import printable
+
 
 def print_json(result: Any) -> None:
     """Print a result as JSON; NaN and infinity become null, as JSON has no such numbers."""
@@ -60,5 +62,5 @@ def _is_number(cell: str | float) -> bool:
 
 
 def number(cell: str | float) -> str:
-    """Format a cell: text as it is, numbers with six significant digits."""
-    return cell if isinstance(cell, str) else f"{cell:.6g}"
+    """Format a cell: text as a terminal shows it, numbers with six significant digits."""
+    return printable(cell) if isinstance(cell, str) else f"{cell:.6g}"

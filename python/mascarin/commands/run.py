@@ -182,7 +182,7 @@ def _simulated(simulation: Simulation) -> Results:
     """Run once, with warnings about results, and progress of a long run, on standard error."""
     with _progress() as progress:
         results = simulation.run(progress=progress)
-    _print_lines(results.warnings)
+    _print_lines(_new(results.warnings, simulation))
     return results
 
 
@@ -190,9 +190,14 @@ def _stored(simulation: Simulation, out: Path) -> Finished:
     """Run once, and write the series while the run goes on; messages as `_simulated`."""
     with _progress() as progress:
         found = simulation.run_into(out, progress=progress).finished
-    _print_lines(found.warnings)
+    _print_lines(_new(found.warnings, simulation))
     print(f"wrote {out}", file=sys.stderr)
     return found
+
+
+def _new(warnings: Sequence[str], simulation: Simulation) -> list[str]:
+    """Warnings without those about the building, which were printed before the run."""
+    return [line for line in warnings if line not in simulation.building_warnings]
 
 
 def _print_lines(warnings: Sequence[str]) -> None:

@@ -46,10 +46,13 @@ def study(
     figures : bool
         Write the figures as files, too; the report does not need them.
     """
+    from mascarin.study.document.comparison import run_warnings
+
     opened = _open(file, allow_outside)
     results = opened.run(out, figures=figures, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
+    _print_warnings(run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants}))
     _print_summary(opened, results, out)
     return _exit_code([verdict.to_dict() for verdict in results.criteria["fitted"]])
 
@@ -80,6 +83,7 @@ def sensitivity(
     from mascarin.study import steps
 
     content = steps.sensitivity(_open(file, allow_outside), out, method=method)
+    _print_warnings(content["warnings"])
     if as_json:
         print_json(content)
         return
@@ -117,6 +121,7 @@ def calibrate(
     from mascarin.study import steps
 
     content = steps.calibration(_open(file, allow_outside), out)
+    _print_warnings(content["warnings"])
     if as_json:
         print_json(content)
     else:
@@ -160,6 +165,7 @@ def validate(
     from mascarin.study import steps
 
     content = steps.validation(_open(file, allow_outside), out)
+    _print_warnings(content["warnings"])
     if as_json:
         print_json(content)
     else:
@@ -185,6 +191,12 @@ def _open(file: str, allow_outside: bool) -> Study:
     if lines:
         print("\n".join(lines), file=sys.stderr)
     return opened
+
+
+def _print_warnings(lines: Sequence[str]) -> None:
+    """Warnings of the runs, on standard error."""
+    for line in lines:
+        print(f"warning: {line}", file=sys.stderr)
 
 
 def _print_scores(content: Mapping[str, Any]) -> None:

@@ -183,7 +183,7 @@ def _print(store: Store, as_json: bool) -> int:
     }
     for line in result["warnings"]:
         print(f"warning: {line}", file=sys.stderr)
-    code = 1 if result["warnings"] else 0
+    code = 0 if store.sound() else 1
     if as_json:
         print_json(result)
         return code

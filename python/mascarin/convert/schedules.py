@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from mascarin._io.regular import require_regular
+from mascarin._io.tables import csv_refused
 from mascarin.convert.field_checks import finite
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
@@ -353,7 +354,10 @@ def _column(work: Work, item: Item) -> list[float]:
     mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[
         item.word("column_separator") or "comma"
     ]
-    with require_regular(path).open(encoding="utf-8-sig", errors="replace", newline="") as lines:
+    with (
+        csv_refused(str(path)),
+        require_regular(path).open(encoding="utf-8-sig", errors="replace", newline="") as lines,
+    ):
         rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
     place = int(item.needed("column_number")) - 1
     rows = [row for row in rows[int(item.number("rows_to_skip_at_top") or 0) :] if row]

@@ -274,6 +274,11 @@ def _epjson(kit: Any, path: Path) -> Any:
         document: Any = kit.load_epjson(path)
     except json.JSONDecodeError as error:
         raise InputError(f"{path}:{error.lineno}: found no JSON: {error.msg}; expected epJSON") from None
+    except RecursionError:
+        raise InputError(
+            f"{path}: found values that are nested too deeply; expected classes of objects with "
+            "their fields. Is this a model of EnergyPlus?"
+        ) from None
     except (UnicodeDecodeError, AttributeError, TypeError) as error:
         raise InputError(f"{path}: found no epJSON ({error}); expected classes of objects") from None
     return document

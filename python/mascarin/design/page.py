@@ -142,6 +142,7 @@ def _verdict(results: DesignResults) -> list[str]:
     firsts = {results.best[one.order[0]] for climate, one in results.rankings.items() if climate != ALL}
     if len(firsts) > 1:
         said.append("No single design is first in all climates; the table below gives the first of each.")
+    said += [f"Warning: {line}." for line in results.warnings]
     return said
 
 

@@ -52,6 +52,8 @@ class DesignResults:
         By climate, and over `ALL`; designs are places in `best`.
     reference : mapping of str to mapping of str to float
         Objectives of the reference, by climate.
+    warnings : tuple of str
+        Warnings about the runs, with their climate; see `mascarin.sweep`.
     """
 
     inputs: DesignInputs
@@ -61,6 +63,7 @@ class DesignResults:
     sampled: pd.DataFrame
     rankings: Mapping[str, Ranking]
     reference: Mapping[str, Mapping[str, float]]
+    warnings: tuple[str, ...] = ()
 
     @property
     def ranked_by(self) -> str:
@@ -166,6 +169,7 @@ class DesignResults:
                 }
                 for k in ranking.order
             ]
+        found["warnings"] = list(self.warnings)
         found["reference"] = {climate: dict(values) for climate, values in self.reference.items()}
         return found
 

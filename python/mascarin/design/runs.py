@@ -83,6 +83,7 @@ class Runs:
     expected: int = 0
     done: int = 0
     used: set[str] = field(default_factory=set)
+    warnings: dict[str, None] = field(default_factory=dict)
 
     def values(
         self,
@@ -251,6 +252,7 @@ class Runs:
         )
         self.done = before + count
         self.report(self.done, max(self.expected, self.done))
+        self.warnings |= dict.fromkeys(f"{site.name}: {line}" for line in store.warnings())
         table = store.to_dataframe()
         found: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
         return found | {

@@ -77,6 +77,7 @@ def run_design(
             sampled=sampled,
             rankings=rank_all(sampled, name, len(best), least=least, negligible=inputs.file.negligible),
             reference=_reference(inputs, runs),
+            warnings=tuple(runs.warnings),
         )
         results.write(out)
         write_page(results, out / "report.html")

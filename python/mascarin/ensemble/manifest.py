@@ -26,10 +26,11 @@ _TYPES: Final[dict[str, type | tuple[type, ...]]] = {
     "time": list,
     "complete": bool,
     "single_precision": dict,
+    "warnings": list,
 }
 #: Keys that former versions did not write, or that are written at the end.
-_FURTHER: Final = ("sample_units", "precision", "single_precision")
-_LISTS: Final = ("paths", "outputs", "objectives", "time")
+_FURTHER: Final = ("sample_units", "precision", "single_precision", "warnings")
+_LISTS: Final = ("paths", "outputs", "objectives", "time", "warnings")
 _DIFFERENCE: Final[dict[str, type | tuple[type, ...]]] = {
     "unit": str, "rms": (int, float), "largest": (int, float), "members": int,
 }  # fmt: skip
@@ -71,7 +72,7 @@ def _check(found: dict[str, Any]) -> None:
     if not 1 <= found["members"] <= _MOST:
         raise own_files.DamagedError(f"members: found {found['members']}")
     for key in _LISTS:
-        if not all(isinstance(one, str) for one in found[key]):
+        if not all(isinstance(one, str) for one in found.get(key, [])):
             raise own_files.DamagedError(f"{key}: found something else than texts")
     for key in ("kept", "sample_units"):
         if not all(isinstance(one, str) for one in found.get(key, {}).values()):

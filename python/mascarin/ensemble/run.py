@@ -31,8 +31,10 @@ from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.judgement import OUTSIDE, ensemble_warnings
+from mascarin.simulation.judgement import OUTSIDE
+from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.options import RunOptions, described, require_precision
+from mascarin.simulation.run_warnings import of_base, of_members
 from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
 
@@ -100,9 +102,11 @@ def sweep(
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
         ``closure``, the relative energy-balance residual [-]; ``outside``, how far temperatures are beyond
         their causes [K], zero or less in a sound member. NaN for a member that failed, with its reason in the
-        attribute ``failures``; the attribute ``warnings`` says which members are not sound, and in single
-        precision ``single_precision`` how far each output or objective of some members is from double
-        precision. Coordinates ``time`` (UTC) and ``local_time``.
+        attribute ``failures``; the attribute ``warnings`` has what holds for members (an energy balance that
+        does not close, temperatures without a cause, a step too long for the air of a zone) and the warnings
+        of one more run with the values of the building. In single precision ``single_precision`` says how far
+        each output or objective of some members is from double precision. Coordinates ``time`` (UTC) and
+        ``local_time``.
 
     Raises
     ------
@@ -130,7 +134,7 @@ def sweep(
     _require_room(inputs, found)
     order = found.by_structure()
     with reporting(progress, "members") as report:
-        whole, closure, outside, failures = _gathered(
+        whole, judged, failures = _gathered(
             order,
             _chunks(
                 inputs,
@@ -142,16 +146,20 @@ def sweep(
         )
     if len(failures) == found.count:
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
+    first = _first(inputs, found)
     return (
         _dataset(inputs, found, whole)
         .assign(
-            closure=xr.DataArray(closure, dims="member", attrs=CLOSURE),
-            outside=xr.DataArray(outside, dims="member", attrs=OUTSIDE),
+            closure=xr.DataArray(judged[0], dims="member", attrs=CLOSURE),
+            outside=xr.DataArray(judged[1], dims="member", attrs=OUTSIDE),
         )
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
-            warnings=ensemble_warnings(closure, outside, precision=precision),
-            **({} if precision == "double" else {"single_precision": _said(inputs, found, closure)}),
+            warnings=[
+                *of_members(*judged, step_seconds=first.step_seconds, precision=precision),
+                *of_base(of_nominal(first)),
+            ],
+            **({} if precision == "double" else {"single_precision": _said(inputs, found, judged[0])}),
         )
     )
 
@@ -245,7 +253,10 @@ def sweep_into(
         for chunk in _chunks(inputs, found, kept.gaps(), workers, count):
             kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
         if not kept.complete:
-            kept.finish([] if precision == "double" else _differences(inputs, found))
+            kept.finish(
+                [] if precision == "double" else _differences(inputs, found),
+                of_base(of_nominal(_first(inputs, found))),
+            )
     return kept
 
 
@@ -360,10 +371,10 @@ def _chunks(
     return elsewhere(inputs, members, gaps, workers, report)
 
 
-def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, Any, dict[int, str]]:
-    """Results of all members in one array; chunks have them in another order."""
+def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
+    """Results of all members, and by what they are judged; chunks have them in another order."""
     whole: Any = None
-    closure, outside = np.full((2, len(order)), np.nan)
+    judged = np.full((3, len(order)), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
         members = order[chunk.first : chunk.first + len(chunk.closure)]
@@ -371,9 +382,9 @@ def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, 
             whole = np.full((len(order), *chunk.kept.shape[1:]), np.nan)
         if whole is not None and chunk.kept.size:
             whole[members] = chunk.kept
-        closure[members], outside[members] = chunk.closure, chunk.outside
+        judged[:, members] = chunk.closure, chunk.outside, chunk.step_errors
         failures |= {order[member]: reason for member, reason in chunk.failures.items()}
-    return whole, closure, outside, failures
+    return whole, judged, failures
 
 
 def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Dataset:

@@ -23,8 +23,9 @@ from mascarin.ensemble.folder import foreign, require_parquet
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
-from mascarin.simulation.judgement import OUTSIDE, ensemble_warnings
+from mascarin.simulation.judgement import JUDGED, OUTSIDE, ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.weather.timezones import parse_timezone
 
@@ -38,11 +39,13 @@ if TYPE_CHECKING:
 
 MANIFEST: Final = "manifest.json"
 RESULTS: Final = "members.parquet"
+#: Column with the error of an air by the time step. [K]
+_STEP_ERROR: Final = "time_step_error"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
 #: Columns by which members are judged.
-JUDGED: Final = ("closure", "outside")
+_JUDGED: Final = (*JUDGED, _STEP_ERROR)
 #: Entries of a manifest that must be equal to continue an ensemble.
 _SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept", "precision")
 
@@ -158,7 +161,7 @@ class Store:
             names = {*found.schema.to_arrow_schema().names}
         except (OSError, ValueError, pa.ArrowException):
             return False
-        columns = {"member", *JUDGED, "failure", *self.manifest["kept"]}
+        columns = {"member", *_JUDGED, "failure", *self.manifest["kept"]}
         return found.num_rows == self.count and columns <= names
 
     def _is_whole(self, file: Path) -> bool:
@@ -240,13 +243,15 @@ class Store:
         own_files.write(target, target.name, content.getvalue())
         self._whole[target.name] = True
 
-    def finish(self, single_precision: Sequence[Difference] = ()) -> None:
+    def finish(self, single_precision: Sequence[Difference] = (), warnings: Sequence[str] = ()) -> None:
         """Join the chunks to one file and mark the store as complete.
 
         Parameters
         ----------
         single_precision : sequence of Difference
             How far the results of some members are from double precision, for the manifest.
+        warnings : sequence of str
+            Warnings of a run with the values of the building, for the manifest.
         """
         if self.complete:
             return
@@ -254,6 +259,7 @@ class Store:
             self._join(draft)
         if single_precision:
             self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
+        self.manifest["warnings"] = list(warnings)
         self.manifest["complete"] = True
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
         shutil.rmtree(self.path / "pieces", ignore_errors=True)
@@ -293,21 +299,33 @@ class Store:
         InputError
             No member has been run.
         """
+        return self._frame().drop(columns=_STEP_ERROR)
+
+    def _frame(self) -> pd.DataFrame:
         import pandas as pd
 
         series = {*self.manifest["outputs"]} if not self.manifest["objectives"] else set()
         with self._blamed():
             found = [table.to_pandas(ignore_metadata=True) for table in self._tables(without=series)]
             whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
-            if not {*JUDGED, "failure"} <= {*whole.columns}:
+            if not {*_JUDGED, "failure"} <= {*whole.columns}:
                 raise KeyError("closure")
             return whole.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
-        """What is not sound in the members: a line for each kind, or nothing."""
+        """Warnings about members, and of a run with the values of the building; see `mascarin.sweep`."""
+        table = self._frame()
+        return self._said([table[name].to_numpy() for name in _JUDGED], 0)
+
+    def sound(self) -> bool:
+        """Whether the energy balance of every member closes and every temperature has a cause."""
         table = self.to_dataframe()
-        judged = (table[name].to_numpy() for name in JUDGED)
-        return ensemble_warnings(*judged, precision=self.precision)
+        return not ensemble_warnings(*(table[name].to_numpy() for name in JUDGED), precision=self.precision)
+
+    def _said(self, judged: Sequence[Any], first: int) -> list[str]:
+        step = float(self.manifest["step_seconds"])
+        members = of_members(*judged, step_seconds=step, first=first, precision=self.precision)
+        return [*members, *self.manifest.get("warnings", ())]
 
     def single_precision(self) -> list[str]:
         """How far some members are from double precision, and how many were run in it; nothing in double."""
@@ -371,7 +389,7 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
-            "warnings": ensemble_warnings(closure, outside, first, self.precision),
+            "warnings": self._said([table.column(name).to_numpy() for name in _JUDGED], first),
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
             **({"single_precision": said} if (said := self.single_precision()) else {}),
@@ -466,7 +484,8 @@ class Store:
         for k, name in enumerate(self.manifest["kept"]):
             column = np.ascontiguousarray(chunk.kept[..., k]) if chunk.kept.size else None
             columns[name] = self._column(column, count)
-        columns |= {"closure": pa.array(chunk.closure), "outside": pa.array(chunk.outside)}
+        judged = (chunk.closure, chunk.outside, chunk.step_errors)
+        columns |= {name: pa.array(values) for name, values in zip(_JUDGED, judged, strict=True)}
         columns["failure"] = pa.array([chunk.failures.get(member) for member in numbers], pa.string())
         return pa.table(columns)
 
@@ -478,6 +497,7 @@ class Store:
         flat = np.full(count * rows, np.nan) if values is None else values.reshape(-1)
         column = pa.array(flat)
         return column if self.manifest["objectives"] else pa.FixedSizeListArray.from_arrays(column, rows)
+
 
 
 def _matrix(column: Any) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from mascarin import _engine
 from mascarin.ensemble.members import variant
 from mascarin.errors import InputError, MascarinError
+from mascarin.simulation.coarse import member_errors
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.simulation import Simulation
 
@@ -110,6 +111,8 @@ class Chunk:
         How far temperatures are beyond their causes, see `Judgement`. [K]
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
+    step_errors : ndarray, shape (members,)
+        Error of an air by the time step, as of `mascarin.simulation.coarse`; NaN where none was recorded. [K]
     """
 
     first: int
@@ -117,6 +120,7 @@ class Chunk:
     closure: Array
     outside: Array
     failures: Mapping[int, str]
+    step_errors: Array
 
 
 def run_chunk(
@@ -136,7 +140,7 @@ def run_chunk(
         Called with the number of members done.
     """
     values: Array | None = None
-    closure, outside = np.full((2, members.count), np.nan)
+    closure, outside, step_errors = np.full((3, members.count), np.nan)
     failures: dict[int, str] = {}
     done = 0
     for structure, rows in members.groups():
@@ -155,6 +159,9 @@ def run_chunk(
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
             values[batch], closure[batch], outside[batch] = kept, run.residuals, run.outside
+            step_errors[batch] = member_errors(
+                simulation.building, simulation.outputs, run.records, simulation.scheme
+            )
             failures |= {first + batch[failure.member]: failure.reason for failure in run.failures}
             for failure in run.failures:
                 values[batch[failure.member]] = np.nan
@@ -162,7 +169,7 @@ def run_chunk(
     if values is None:
         width = len(inputs.objectives) if inputs.objectives else 0
         values = np.full((members.count, width), np.nan)
-    return Chunk(first, values, closure, outside, dict(sorted(failures.items())))
+    return Chunk(first, values, closure, outside, dict(sorted(failures.items())), step_errors)
 
 
 def attributes(name: str, unit: str) -> dict[str, str]:

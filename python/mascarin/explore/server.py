@@ -106,8 +106,11 @@ class _Handler(BaseHTTPRequestHandler):
         """Give the page."""
         if not self._is_own_host():
             return
-        place = urlsplit(self.path)
-        if place.path != "/":
+        try:
+            place = urlsplit(self.path)
+        except ValueError:  # such as an open bracket, which would begin an address
+            place = None
+        if place is None or place.path != "/":
             self._say(HTTPStatus.NOT_FOUND, "there is nothing here")
         elif not self._knows(parse_qs(place.query).get("token", [""])[0]):
             self._say(
@@ -119,7 +122,7 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Answer a request of the page."""
         length = self.headers.get("Content-Length", "")
-        if not length.isdecimal() or int(length) > _MOST:
+        if not length.isdecimal() or len(length) > len(str(_MOST)) or int(length) > _MOST:
             self.close_connection = True
             self._say(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a request has at most {_MOST} bytes")
             return
@@ -135,13 +138,21 @@ class _Handler(BaseHTTPRequestHandler):
             return
         try:
             content = json.loads(body)
-            if not isinstance(content, dict):
-                raise InputError("request: expected an object")
-            self._json(HTTPStatus.OK, answer(content))
         except (ValueError, RecursionError):
             self._say(HTTPStatus.BAD_REQUEST, "the request is no JSON")
+            return
+        try:
+            if not isinstance(content, dict):
+                raise InputError("request: expected an object")
+            found = answer(content)
         except (MascarinError, OSError) as error:
             self._json(HTTPStatus.OK, {"refused": str(error)})  # an answer: browsers log failures
+        except Exception as error:  # whatever is wrong is said on the page, and the server goes on
+            text = f"a defect in Mascarin: {type(error).__name__}: {error}"
+            sys.stderr.write(f"error: {text}\n")
+            self._say(HTTPStatus.INTERNAL_SERVER_ERROR, text)
+        else:
+            self._json(HTTPStatus.OK, found)
 
     def _is_own_host(self) -> bool:
         """Whether the request names this server, and comes from its page if it says where it comes from."""

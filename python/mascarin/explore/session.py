@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import reprlib
 import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from mascarin.simulation.results import Results
     from mascarin.weather import Climate
 
+#: No number of a building is as large.
+_LARGEST: Final = 1e300
 #: Points of a curve; of longer runs every k-th step is shown.
 _POINTS: Final = 3000
 
@@ -196,8 +199,8 @@ class Session:
         for path, value in values.items():
             if path not in known:
                 raise InputError(f"{path}: found no slider of this parameter; expected one of the page")
-            if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-                raise InputError(f"{path}: found {value!r}; expected a number")
+            if not _is_number(value):
+                raise InputError(f"{path}: found {reprlib.repr(value)}; expected a number")
             one = known[path]
             if not one.lower <= value <= one.upper:
                 limits = f"{one.lower:g} to {one.upper:g} {units.shown(one.unit)}".rstrip()
@@ -227,11 +230,18 @@ class Session:
         return rows
 
 
-def _checked(band: Sequence[Any]) -> Band:
-    ends = list(band)
-    numbers = all(isinstance(end, int | float) and np.isfinite(end) for end in ends)
-    if len(ends) != 2 or not numbers or not ends[0] < ends[1]:
-        raise InputError(f"band: found {ends}; expected two temperatures, the lower one first, such as 20 26")
+def _is_number(value: object) -> bool:
+    """Whether a value of JSON is a number that a float can hold; integers of JSON have no end."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
+
+
+def _checked(band: object) -> Band:
+    ends = list(band) if isinstance(band, list | tuple) else []
+    if len(ends) != 2 or not all(map(_is_number, ends)) or not ends[0] < ends[1]:
+        raise InputError(
+            f"band: found {reprlib.repr(ends or band)}; expected two temperatures, the lower one first, such "
+            "as 20 26"
+        )
     return Band(float(ends[0]), float(ends[1]))
 
 

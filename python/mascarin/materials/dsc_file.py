@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.regular import require_regular
+from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
 from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
 
@@ -150,7 +151,8 @@ def _table(path: Path) -> tuple[list[str], list[list[str]], int]:
             "'temperature [degC],cp [J/(g K)]'"
         )
     separator = _separator(lines[head + 1])
-    rows = list(csv.reader(io.StringIO("\n".join(lines[head:])), delimiter=separator))
+    with csv_refused(str(path)):
+        rows = list(csv.reader(io.StringIO("\n".join(lines[head:])), delimiter=separator))
     return [name.strip().lstrip("#").strip() for name in rows[0]], rows[1:], numbered[head][0]
 
 

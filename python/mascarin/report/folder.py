@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
 from mascarin.report.series import Array, Column, Series, read_json
 from mascarin.report.text import plain_path
@@ -80,7 +81,8 @@ def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Se
         The table cannot be read.
     """
     try:
-        header, *rows = csv.reader(file)
+        with csv_refused(where):
+            header, *rows = csv.reader(file)
         times = [datetime.fromisoformat(row[0]).replace(tzinfo=None) for row in rows[:2]]
         values = np.array([[_number(cell) for cell in row[1:]] for row in rows], dtype=np.float64)
     except (ValueError, IndexError) as error:

@@ -117,7 +117,7 @@ def render(results: Results, notes: Notes) -> str:
     >>> "Energy balance" in page
     True
     """
-    warnings = [*notes.warnings, *results.warnings]
+    warnings = list(dict.fromkeys([*notes.warnings, *results.warnings]))
     sections = [
         {"id": key, "title": title, "content": content}
         for key, title, content in (

@@ -316,6 +316,8 @@ class Study(TypedDict, total=False):
     versions: dict[str, str]
     run_time: float
     """[s]"""
+    warnings: list[str]
+    """Warnings of the runs, with the models that have them."""
     sources: list[dict[str, str]]
     """Each with ``text`` and perhaps ``doi``."""
     sensor_info: dict[str, SensorInfo]

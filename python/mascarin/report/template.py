@@ -17,6 +17,7 @@ from typing import Any, Final, NamedTuple
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from mascarin._io.terminal import printable
 from mascarin.figures import colors
 from mascarin.report.numbering import Numbering
 from mascarin.report.text import significant, typeset
@@ -59,6 +60,7 @@ def environment(numbering: Numbering | None = None) -> Environment:
     made = Environment(
         loader=PackageLoader("mascarin", ""),
         autoescape=True,
+        finalize=lambda value: printable(value) if type(value) is str else value,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

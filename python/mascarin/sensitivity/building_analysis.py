@@ -21,7 +21,9 @@ from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.options import described, require_precision
+from mascarin.simulation.run_warnings import of_base
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
 
@@ -238,7 +240,8 @@ def sensitivity_analysis(
                 remarks = _single_precision(simulation, runs.paths, x, records, every)
             report(first + len(x), len(runs))
     found = taken.result(confidence=confidence)
-    return replace(found, times=simulation.index[::every], warnings=(*found.warnings, *remarks))
+    said = (*found.warnings, *remarks, *of_base(of_nominal(simulation)))
+    return replace(found, times=simulation.index[::every], warnings=said)
 
 
 def _single_precision(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io import memory
-from mascarin.simulation.coarse import Bends
+from mascarin.simulation import coarse
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -91,7 +91,9 @@ class Watch:
     building : Building
         The building.
     outputs : sequence of Output
-        What is recorded; behind it in a row is what `unmelted.watched` names.
+        What is recorded; behind it in a row is what `unmelted.watched` names, then `coarse.watched`.
+    scheme : str
+        Time-stepping scheme.
 
     Attributes
     ----------
@@ -101,15 +103,16 @@ class Watch:
         Of air temperatures.
     """
 
-    def __init__(self, building: Building, outputs: Sequence[Output]) -> None:
+    def __init__(self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2") -> None:
         # The package imports pydantic, which an evaluation for GenOpt does without.
-        from mascarin.building.unmelted import Extremes
+        from mascarin.building import unmelted
 
-        self._count = len(outputs)
-        self.melting = Extremes(building)
-        self.bends = Bends(building, outputs)
+        melting, airs = unmelted.watched(building), coarse.watched(building, outputs)
+        self._melting = slice(len(outputs), len(outputs) + len(melting))
+        self.melting = unmelted.Extremes(building)
+        self.bends = coarse.Bends(building, [*outputs, *melting, *airs], scheme)
 
     def add(self, rows: Array) -> None:
         """Watch the next rows, shape (n, outputs and watched outputs)."""
-        self.melting.add(rows[:, self._count :])
+        self.melting.add(rows[:, self._melting])
         self.bends.add(rows)

@@ -15,21 +15,79 @@ if TYPE_CHECKING:
 
 #: Error of the air temperature from which a step is called too long [K].
 LARGE: Final = 0.2
-#: Error over the second difference of a series [-]. Measured: rooms of concrete, wood, insulated and bare
-#: steel sheet under the sun of Denver, with steps of 5 min to 1 h against one of 75 s: 0.03 to 0.2, and 0.05
-#: to 0.11 where the error is above 0.03 K.
-SHARE: Final = 0.1
+#: Order of the difference of a series, and the error over this difference [-], by scheme. Measured: rooms of
+#: concrete, wood, insulated and bare steel sheet under the sun of Denver, with steps of 5 min to 1 h against
+#: one of 75 s: 0.03 to 0.2, and 0.05 to 0.11 where the error is above 0.03 K. Rooms of concrete, bare steel
+#: and foam in Tampa with all schemes at 15 min and 1 h: `linearly-implicit` as `sdirk2` to three digits, the
+#: schemes of first order 0.14 (smooth weather) to 0.54 of the first difference.
+SHARES: Final = {
+    "sdirk2": (2, 0.1),
+    "linearly-implicit": (2, 0.1),
+    "backward-euler": (1, 0.25),
+    "apparent-capacity": (1, 0.25),
+}
 #: Steps that divide an hour [min].
 STEPS: Final = (30, 20, 15, 12, 10, 6, 5, 4, 3, 2, 1)
 #: Records after the start that are left out: a given initial state adapts.
 START: Final = 3
 
 
+def watched(building: Building, outputs: Sequence[Output]) -> list[Output]:
+    """Air temperatures of zones without plant that are not among the outputs of a run."""
+    known = {output.name for output in outputs}
+    every = building.outputs()
+    places = _free(building, every).values()
+    return [every[column] for column in places if every[column].name not in known]
+
+
+def member_errors(
+    building: Building, outputs: Sequence[Output], records: npt.NDArray[np.float64], scheme: str = "sdirk2"
+) -> npt.NDArray[np.float64]:
+    """Largest error of an air by the time step in each member of an ensemble.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    outputs : sequence of Output
+        What is recorded.
+    records : ndarray, shape (members, rows, outputs)
+        The records, of every step. [unit of each output]
+    scheme : str
+        Time-stepping scheme.
+
+    Returns
+    -------
+    ndarray, shape (members,)
+        Root mean square as of `Bends`; NaN where no air of a zone without plant was recorded. [K]
+    """
+    columns = list(_free(building, outputs).values())
+    order, share = SHARES[scheme]
+    if not columns or records.shape[1] <= START + order:
+        return np.full(len(records), np.nan)
+    bends = np.diff(records[:, START:, columns], order, axis=1)
+    return np.asarray(share * np.sqrt(np.mean(bends**2, axis=1)).max(axis=1))
+
+
+def _free(building: Building, outputs: Sequence[Output]) -> dict[str, int]:
+    """Zones without heating and cooling whose air temperature is an output, with its place."""
+    zones = list(building.zones.items())
+    found = {}
+    for column, output in enumerate(outputs):
+        if output.kind != "air_temperature" or output.zone is None:
+            continue
+        name, zone = zones[output.zone]
+        if zone.heating is None and zone.cooling is None:
+            found[name] = column
+    return found
+
+
 class Bends:
     """How much the air temperatures of a run bend from step to step, from its records in blocks.
 
-    The scheme is of second order: its error is a share of the step squared times the second derivative, and
-    the second difference of a series is this product. Zones with heating or cooling are left out: their set
+    The error of a scheme of second order is a share of the step squared times the second derivative, and the
+    second difference of a series is this product; that of a scheme of first order is a share of the first
+    difference. Zones with heating or cooling are left out: their set
     points jump.
 
     Parameters
@@ -38,19 +96,15 @@ class Bends:
         The building.
     outputs : sequence of Output
         What is recorded.
+    scheme : str
+        Time-stepping scheme.
     """
 
-    def __init__(self, building: Building, outputs: Sequence[Output]) -> None:
-        zones = list(building.zones.items())
-        self._names: list[str] = []
-        self._columns: list[int] = []
-        for column, output in enumerate(outputs):
-            if output.kind != "air_temperature" or output.zone is None:
-                continue
-            name, zone = zones[output.zone]
-            if zone.heating is None and zone.cooling is None:
-                self._names.append(name)
-                self._columns.append(column)
+    def __init__(self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2") -> None:
+        self._order, self._share = SHARES[scheme]
+        found = _free(building, outputs)
+        self._names = list(found)
+        self._columns = list(found.values())
         self._skip = START
         self._before = np.empty((0, len(self._columns)))
         self._sum = np.zeros((1, len(self._columns)))
@@ -60,15 +114,15 @@ class Bends:
         """Add the next records, shape (n, outputs or more). [unit of each output]"""
         series = np.concatenate([self._before, rows[self._skip :, self._columns]])
         self._skip = max(self._skip - len(rows), 0)
-        bends = np.diff(series, 2, axis=0)
+        bends = np.diff(series, self._order, axis=0)
         # One after the other, so that the sum does not depend on the blocks.
         self._sum = np.add.accumulate(np.concatenate([self._sum, bends**2]), axis=0)[-1:]
         self._count += len(bends)
-        self._before = series[-2:]
+        self._before = series[-self._order :]
 
     def errors(self) -> npt.NDArray[np.float64]:
         """Estimate of the error of each series by the time step, root mean square. [K]"""
-        return np.asarray(SHARE * np.sqrt(self._sum[0] / max(self._count, 1)))
+        return np.asarray(self._share * np.sqrt(self._sum[0] / max(self._count, 1)))
 
     def warnings(self, step_seconds: float) -> Iterator[str]:
         """Warnings about zones whose air changes too fast for the step, with the step to take.

@@ -110,6 +110,8 @@ class Judgement:
         return cls(outside, str(values["place"]), str(values["when"]), temperature, bound)
 
 
+JUDGED: Final = ("closure", "outside")
+"""Names of what says whether a member of an ensemble is sound."""
 OUTSIDE: Final = {"units": "K", "long_name": "temperatures beyond their causes"}
 """Attributes of the variable ``outside``."""
 

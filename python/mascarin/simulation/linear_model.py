@@ -35,6 +35,8 @@ class StateSpace:
         The matrices. [1/s and units of the inputs]
     states, inputs, outputs : list of str
         Names of rows and columns.
+    warnings : tuple of str
+        Warnings about the building and its mesh.
 
     Examples
     --------
@@ -50,6 +52,7 @@ class StateSpace:
     states: list[str]
     inputs: list[str]
     outputs: list[str]
+    warnings: tuple[str, ...] = ()
 
     def time_constants(self) -> Array:
         """Time constants, longest first, shape (n,). [s]"""
@@ -104,9 +107,11 @@ def state_space(building: Building, *, step: str | float = "15min") -> StateSpac
     >>> state_space(building).outputs
     ['room.air_temperature', 'facade.outside_temperature', 'facade.inside_temperature']
     """
+    from mascarin.building import plausibility  # pydantic
+
     description = building.to_engine(seconds_of(step), {})
     with translated():
         plan = _engine.Plan(description.json)
         _require_room(building, plan.n_cells)
         raw = plan.state_space(description.values)
-    return StateSpace(**raw)
+    return StateSpace(**raw, warnings=tuple(plausibility.warnings(building, description.notes)))

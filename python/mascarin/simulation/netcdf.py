@@ -8,7 +8,8 @@ xarray would write the same file from all records in memory, and takes some mill
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -44,6 +45,60 @@ _LIST: Final = h5py.vlen_dtype(h5py.ref_dtype)
 _NUMBER: Final = np.dtype("<f8")
 
 
+class _Lasting:
+    """A file for HDF5 on a disk that may be full.
+
+    A write that fails would leave objects that the library cannot close: it ends the process by a
+    segmentation fault. So it is told that all was written, and the error is kept.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    mode : str
+        As of `open`.
+    """
+
+    def __init__(self, path: Path, mode: str) -> None:
+        self._file = path.open(mode, buffering=0)
+        self.error: OSError | None = None
+        self.seek, self.tell, self.close = self._file.seek, self._file.tell, self._file.close
+        self.read, self.readinto, self.flush = self._file.read, self._file.readinto, self._file.flush
+
+    def write(self, data: bytes | memoryview) -> int:
+        """Write all, or keep the error."""
+        left = memoryview(data).cast("B")
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError as error:
+            self.error = self.error or error
+        return len(memoryview(data).cast("B"))
+
+    def truncate(self, size: int) -> int:
+        """Set the size, or keep the error."""
+        try:
+            self._file.truncate(size)
+        except OSError as error:
+            self.error = self.error or error
+        return size
+
+
+@contextlib.contextmanager
+def _hdf5(path: Path, mode: str) -> Iterator[h5py.File]:
+    """Open a file with HDF5; raises the first error of writing when the library has closed it."""
+    with contextlib.closing(_Lasting(path, {"w": "w+b", "r+": "r+b"}[mode])) as lasting:
+        try:
+            with h5py.File(lasting, mode, track_order=True) as file:
+                yield file
+        except Exception:
+            if lasting.error is not None:
+                raise lasting.error from None
+            raise
+        if lasting.error is not None:
+            raise lasting.error
+
+
 class NetcdfDraft:
     """A NetCDF file that grows by blocks of rows.
 
@@ -61,7 +116,7 @@ class NetcdfDraft:
         self._path = path
         self._rows = times.rows
         self._done = 0
-        with h5py.File(path, "w", track_order=True) as file:
+        with _hdf5(path, "w") as file:
             stamps = _Stamps(file, self._rows)
             stamps.add("time", times.nanoseconds(), scale=True)
             stamps.add("local_time", times.clock_nanoseconds())
@@ -111,7 +166,7 @@ class NetcdfDraft:
         if self._done != self._rows:
             raise RuntimeError(f"{self._done} rows were written, expected {self._rows}")
         self._raw.close()
-        with h5py.File(self._path, "r+", track_order=True) as file:
+        with _hdf5(self._path, "r+") as file:
             for name, value in attributes.items():
                 if isinstance(value, str):
                     file.attrs.create(name, value, dtype=_TEXT)

@@ -97,6 +97,8 @@ class Gradient:
         Unit of each parameter.
     ranges : dict of str to tuple of float
         Range of each parameter.
+    warnings : tuple of str
+        Warnings of the run.
 
     Examples
     --------
@@ -110,6 +112,7 @@ class Gradient:
     slopes: dict[str, float]
     units: dict[str, str]
     ranges: dict[str, tuple[float, float]]
+    warnings: tuple[str, ...] = ()
 
     def to_dataframe(self) -> pd.DataFrame:
         """Derivatives, units, and derivatives times ranges by parameter, the largest effect first."""

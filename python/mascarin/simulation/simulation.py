@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -13,7 +14,7 @@ import numpy as np
 from mascarin._io.arguments import names_of
 from mascarin._io.durations import seconds_of
 from mascarin.progress import reporting
-from mascarin.simulation import files
+from mascarin.simulation import coarse, files, run_warnings
 from mascarin.simulation.blocks import InMemory, Watch
 from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
@@ -226,7 +227,8 @@ class Simulation(VectorRuns):
         Returns
         -------
         xarray.Dataset
-            Each output over (time), and ``d <output>`` over (parameter, time).
+            Each output over (time), and ``d <output>`` over (parameter, time). The attribute ``warnings``
+            has those of a run with these values.
 
         Raises
         ------
@@ -242,7 +244,10 @@ class Simulation(VectorRuns):
             report(len(paths), len(paths))
         units = [self.building.parameter(path).unit for path in paths]
         named = dict(zip(paths, units, strict=True))
-        return labelled_slopes(self.outputs, self.index, named, records, slopes)
+        said = self.warnings_at(self.vector(parameters or {}))
+        return labelled_slopes(self.outputs, self.index, named, records, slopes).assign_attrs(
+            warnings=list(said)
+        )
 
     def gradient(
         self,
@@ -279,12 +284,13 @@ class Simulation(VectorRuns):
         """
         with reporting(progress, "gradient") as report:
             report(0, 2)
-            trajectory = self.trajectory(self.vector(parameters or {}), memory=memory)
+            vector = self.vector(parameters or {})
+            trajectory = self.trajectory(vector, memory=memory)
             report(1, 2)
             known = [self.building.parameter(path) for path in self.paths]
             found = gradient_of(objective, trajectory, [output.name for output in self.outputs], known)
             report(2, 2)
-        return found
+        return replace(found, warnings=self.warnings_at(vector))
 
     def run_vector(self, vector: Array, *, progress: Report | None = None) -> Results:
         """Run once with a parameter vector; as `run`.
@@ -377,7 +383,7 @@ class Simulation(VectorRuns):
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
-        watch = Watch(self.building, self.outputs)
+        watch = Watch(self.building, self.outputs, self.scheme)
         count = len(self.outputs)
 
         def seen(rows: Array) -> None:
@@ -388,10 +394,6 @@ class Simulation(VectorRuns):
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judgement = Judgement.read(raw, self.compiled.dated)
-        warnings = [*energy.warnings(), *judgement.warnings(self.step_seconds), *watch.melting.warnings()]
-        warnings += vapour.warnings() if vapour is not None else []
-        if self.scheme == "sdirk2":
-            warnings += watch.bends.warnings(self.step_seconds)
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -408,17 +410,47 @@ class Simulation(VectorRuns):
                 halved_steps=int(raw["halvings"]),
                 reversals=int(raw["reversals"]),
             ),
-            warnings=tuple(warnings),
+            warnings=run_warnings.collected(
+                energy,
+                vapour,
+                watch,
+                step_seconds=self.step_seconds,
+                building=self.building_warnings,
+                judged=judgement.warnings(self.step_seconds),
+            ),
             vapour=vapour,
             judgement=judgement,
         )
 
     @cached_property
     def _recorded(self) -> Readings:
-        """What a run records: the outputs asked for, and the layers whose melting is watched."""
+        """What a run records: the outputs asked for, and layers and airs that are watched."""
         from mascarin.building import unmelted  # pydantic, as above
 
-        return Readings.of([*self.outputs, *unmelted.watched(self.building)])
+        airs = coarse.watched(self.building, self.outputs)
+        return Readings.of([*self.outputs, *unmelted.watched(self.building), *airs])
+
+    @cached_property
+    def building_warnings(self) -> tuple[str, ...]:
+        """Warnings about the building, which every run of it has: areas, volumes, materials, mesh."""
+        from mascarin.building import plausibility  # pydantic, as above
+
+        return tuple(plausibility.warnings(self.building, self.notes))
+
+    def warnings_at(self, vector: Array) -> tuple[str, ...]:
+        """Warnings of a run with a parameter vector, of which nothing else is kept.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        return self._run_through(vector, lambda _rows: None, None).warnings
 
     # --- times, weather, identity -------------------------------------------------------------------------
 

@@ -11,6 +11,8 @@ import numpy as np
 
 from mascarin.calibration import profiles
 from mascarin.progress import Progress, reporting
+from mascarin.simulation.nominal import of_nominal
+from mascarin.simulation.run_warnings import of_base
 from mascarin.study.calibration_step import identify
 from mascarin.study.error_model import with_errors
 from mascarin.study.findings import Combination, FormFit, ModelRun
@@ -70,7 +72,8 @@ class ModelRuns:
                 simulation, lead = setup.varied()
                 chosen = factors(setup.building, plan)
                 names = setup.observation.names
-                return analyze(simulation, plan, chosen, lead, names, self._workspace, report)
+                found = analyze(simulation, plan, chosen, lead, names, self._workspace, report)
+                return replace(found, warnings=(*found.warnings, *of_base(of_nominal(simulation))))
 
             return kept(setup.workspace, key, make)
 

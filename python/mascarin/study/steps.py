@@ -78,7 +78,11 @@ def sensitivity(
         drawn = [
             path for name in found.outputs for path in save_all(found, name, out / "figures", name, hours)
         ]
-        content = {**header(study, "sensitivity"), **importance(study, found)}
+        content = {
+            **header(study, "sensitivity"),
+            **importance(study, found),
+            "warnings": list(found.warnings),
+        }
         _write(workspace, "sensitivity", content, {"sensitivity": found.table()}, drawn)
     return content
 

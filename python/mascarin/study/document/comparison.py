@@ -31,7 +31,7 @@ FLOW_LABELS: Final = {
 
 
 def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdict]]) -> dict[str, Any]:
-    """Metrics, criteria, and the energy balance of the fitted model if there is one.
+    """Metrics, criteria, warnings of the runs, and the energy balance of the fitted model if there is one.
 
     Parameters
     ----------
@@ -47,7 +47,17 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
         "criteria": _criteria(verdicts),
         "start": models[main].results.provenance.start,
         "ledger": _ledger(models[main]),
+        "warnings": run_warnings(models),
     }
+
+
+def run_warnings(models: Mapping[str, ModelRun]) -> list[str]:
+    """Warnings of the runs of models, each once, with the models that have it."""
+    found: dict[str, list[str]] = {}
+    for name, run in models.items():
+        for line in run.results.warnings:
+            found.setdefault(line, []).append(name)
+    return [f"{', '.join(names)}: {line}" for line, names in found.items()]
 
 
 def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:

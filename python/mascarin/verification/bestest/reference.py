@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from mascarin._io.regular import require_regular
+from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
 
 PROGRAMS: Final = ("BSIMAC", "CSE", "DeST", "EnergyPlus", "ESP-r", "TRNSYS")
@@ -99,8 +100,9 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
         raise InputError(f"--ranges: {path}: cannot be read ({reason}); expected a CSV file") from error
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    rows = csv.DictReader((line for _, line in lines), skipinitialspace=True)
-    names = [str(name).strip() for name in rows.fieldnames or ()]
+    with csv_refused(str(path)):
+        reader = csv.DictReader((line for _, line in lines), skipinitialspace=True)
+        names, rows = [str(name).strip() for name in reader.fieldnames or ()], list(reader)
     programs = [name for name in names if name not in _OWN]
     missing = [name for name in _OWN if name not in names] or ([] if len(programs) > 1 else ["min", "max"])
     if missing:
