@@ -374,7 +374,8 @@ class Store:
         data: dict[str, Any] = {}
         for name, unit in self.manifest["kept"].items():
             values = table.column(name).combine_chunks()
-            numbers = values.to_numpy(zero_copy_only=False) if len(dims) == 1 else _matrix(values)
+            flat = values if len(dims) == 1 else values.flatten()
+            numbers = flat.to_numpy(zero_copy_only=False).reshape(len(members), *[-1] * (len(dims) - 1))
             data[name] = xr.DataArray(numbers, dims=dims, attrs=attributes(name, unit))
         units = self.manifest.get("sample_units", {})
         for path in self.manifest["paths"]:
@@ -497,9 +498,3 @@ class Store:
         flat = np.full(count * rows, np.nan) if values is None else values.reshape(-1)
         column = pa.array(flat)
         return column if self.manifest["objectives"] else pa.FixedSizeListArray.from_arrays(column, rows)
-
-
-
-def _matrix(column: Any) -> Any:
-    rows = column.type.list_size
-    return column.flatten().to_numpy(zero_copy_only=False).reshape(-1, rows)
