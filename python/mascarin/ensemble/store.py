@@ -39,13 +39,14 @@ if TYPE_CHECKING:
 
 MANIFEST: Final = "manifest.json"
 RESULTS: Final = "members.parquet"
-#: Column with the error of an air by the time step. [K]
 _STEP_ERROR: Final = "time_step_error"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
-#: Columns by which members are judged.
+#: Columns by which members are judged: residual [-], temperatures and error by the time step [K].
 _JUDGED: Final = (*JUDGED, _STEP_ERROR)
+#: Entries of a manifest that are written at the end.
+_AT_END: Final = ("complete", "single_precision", "warnings")
 #: Entries of a manifest that must be equal to continue an ensemble.
 _SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept", "precision")
 
@@ -142,7 +143,7 @@ class Store:
 
     def _restore(self, manifest: Mapping[str, Any]) -> None:
         """Take the entries as they are known, and forget what was damaged: it is run again."""
-        own = {key: self.manifest[key] for key in ("complete", "single_precision") if key in self.manifest}
+        own = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
         self.manifest = {**json.loads(json.dumps(manifest)), **own}
         if self.complete and not self._has_results():
             self.manifest["complete"] = False
@@ -161,8 +162,7 @@ class Store:
             names = {*found.schema.to_arrow_schema().names}
         except (OSError, ValueError, pa.ArrowException):
             return False
-        columns = {"member", *_JUDGED, "failure", *self.manifest["kept"]}
-        return found.num_rows == self.count and columns <= names
+        return found.num_rows == self.count and {"member", *_JUDGED, *self.manifest["kept"]} <= names
 
     def _is_whole(self, file: Path) -> bool:
         """Whether a piece is as it was written; each is read once."""
@@ -323,8 +323,8 @@ class Store:
         return not ensemble_warnings(*(table[name].to_numpy() for name in JUDGED), precision=self.precision)
 
     def _said(self, judged: Sequence[Any], first: int) -> list[str]:
-        step = float(self.manifest["step_seconds"])
-        members = of_members(*judged, step_seconds=step, first=first, precision=self.precision)
+        options: Any = {"step_seconds": float(self.manifest["step_seconds"]), "precision": self.precision}
+        members = of_members(*judged, first=first, **options)
         return [*members, *self.manifest.get("warnings", ())]
 
     def single_precision(self) -> list[str]:
@@ -374,15 +374,15 @@ class Store:
         data: dict[str, Any] = {}
         for name, unit in self.manifest["kept"].items():
             values = table.column(name).combine_chunks()
-            flat = values if len(dims) == 1 else values.flatten()
-            numbers = flat.to_numpy(zero_copy_only=False).reshape(len(members), *[-1] * (len(dims) - 1))
-            data[name] = xr.DataArray(numbers, dims=dims, attrs=attributes(name, unit))
+            flat = (values if len(dims) == 1 else values.flatten()).to_numpy(zero_copy_only=False)
+            shape = (len(members), -1)[: len(dims)]
+            data[name] = xr.DataArray(flat.reshape(shape), dims=dims, attrs=attributes(name, unit))
         units = self.manifest.get("sample_units", {})
         for path in self.manifest["paths"]:
             column = table.column(f"sample: {path}").to_pandas().to_numpy()
             data[f"sample: {path}"] = ("member", column, attributes(path, units.get(path, "")))
-        closure, outside = (table.column(name).to_numpy() for name in JUDGED)
-        data |= {"closure": ("member", closure, CLOSURE), "outside": ("member", outside, OUTSIDE)}
+        for name, attrs in zip(JUDGED, (CLOSURE, OUTSIDE), strict=True):
+            data[name] = ("member", table.column(name).to_numpy(), attrs)
         reasons = zip(members, table.column("failure").to_pylist(), strict=True)
         coords: dict[str, Any] = {"member": members}
         if len(dims) > 1:
