@@ -27,6 +27,7 @@ from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
+from mascarin.weather.brightness import findings
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
@@ -385,7 +386,9 @@ class Simulation(VectorRuns):
         raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        warnings = [*energy.warnings(), *watch.melting.warnings()]
+        site = self.building.site
+        warnings = [*findings(self.climate.record, float(site.latitude), float(site.longitude))]
+        warnings += [*energy.warnings(), *watch.melting.warnings()]
         warnings += vapour.warnings() if vapour is not None else []
         if self.scheme == "sdirk2":
             warnings += watch.bends.warnings(self.step_seconds)
