@@ -13,6 +13,7 @@ from mascarin.building.glazing import Glazing, SimpleGlazing
 from mascarin.building.humidity_rules import humidity_lines
 from mascarin.building.inactive import sides as every_side
 from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.measured_sun import measured_lines
 from mascarin.building.mesh import Mesh, choose
 from mascarin.building.parameters import parameters
 from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
@@ -76,6 +77,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *humidity_lines(building),
         *_melting(building),
         *(f"shading: {words}" for words in [in_words(building)] if words),
+        *measured_lines(building),
         *(f"warning: {text}" for text in warnings(building, mesh.warnings)),
         *(f"assumed: {text}" for text in assumptions(building)),
     ]

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
 from mascarin.building.humidity import with_all_zones
 from mascarin.building.number import Number, Remark
-from mascarin.building.part import Location, derived_number, fault, insist, refuse
+from mascarin.building.part import Location, NotDerivableError, derived_number, fault, insist, refuse
 from mascarin.building.surface import Ground, Side, Surface
 from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone import Zone
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 _FROM_VERTICES = Remark("from the vertices")
 #: Roughness of plaster, concrete and brick in Walton 1983.
 _USUAL_ROUGHNESS = 1.52
+#: Sine of the tilt below which a polygon is horizontal [-].
+_LEVEL = 1e-6
 #: Days of the year.
 _MID_JANUARY, _MID_JULY = 15.0, 196.0
 
@@ -69,10 +72,30 @@ def enclosure(sides: Sequence[tuple[str, str]], surfaces: Mapping[str, Surface])
 def derive_surfaces(surfaces: Mapping[str, Surface], latitude: float) -> dict[str, Surface]:
     """Derive area and direction of every surface, lengths and heights of its sides, and the coldest day."""
     drawn, areas = outlines(surfaces), drawn_areas(surfaces)
-    return {
-        name: _derived_surface(one, drawn.get(name), areas.get(name), latitude)
-        for name, one in surfaces.items()
-    }
+
+    def derived(name: str, one: Surface) -> Surface:
+        with _located(("surfaces", name)):
+            return _derived_surface(one, drawn.get(name), areas.get(name), latitude)
+
+    return {name: derived(name, one) for name, one in surfaces.items()}
+
+
+@contextmanager
+def _located_below(key: str) -> Iterator[None]:
+    """Add a key to where a value stands that cannot be derived."""
+    try:
+        yield
+    except NotDerivableError as error:
+        raise error.below(key) from None
+
+
+@contextmanager
+def _located(at: Location) -> Iterator[None]:
+    """Say where a value stands that cannot be derived."""
+    try:
+        yield
+    except NotDerivableError as error:
+        refuse(error.at(at))
 
 
 def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
@@ -112,10 +135,10 @@ def _derived_surface(
             )
         }
     placed = surface.model_copy(update=shape)
-    sides = {
-        name: _derived_side(getattr(placed, name), placed, polygon, latitude)
-        for name in ("outside", "inside")
-    }
+    sides: dict[str, Side] = {}
+    for name in ("outside", "inside"):
+        with _located_below(name):
+            sides[name] = _derived_side(getattr(placed, name), placed, polygon, latitude)
     return placed.model_copy(update=sides)
 
 
@@ -149,9 +172,12 @@ def _derived_convection(
         case AlamdariHammond(length=None) | PaperEq5(length=None) | Iso15099(length=None):
             length, source = _length(area, tilt, polygon)
             kind = type(convection)
-            return convection.model_copy(update={"length": derived_number(kind, "length", length, source)})
+            with _located_below("convection"):
+                number = derived_number(kind, "length", length, source)
+            return convection.model_copy(update={"length": number})
         case Tarp() if outdoors:
-            return convection.model_copy(update=_wind_facts(convection, area, polygon))
+            with _located_below("convection"):
+                return convection.model_copy(update=_wind_facts(convection, area, polygon))
         case Doe2(roughness=None) if outdoors:
             return convection.model_copy(update=_usual_roughness(Doe2))
     return convection
@@ -165,6 +191,22 @@ def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, s
         heights = polygon.points[:, 2]
         return float(heights.max() - heights.min()), Remark("height of the vertices")
     return 4.0 * polygon.area / polygon.perimeter, Remark("4 area/perimeter of the vertices")
+
+
+def _cavity_height(area: float, polygon: Polygon | None) -> tuple[float, str]:
+    """Length of the gaps along the line of greatest slope [m], the height of ISO 15099:2003, 5.3.3.
+
+    In a horizontal window there is no such line, and the correlations do not depend on it.
+    """
+    if polygon is None:
+        return math.sqrt(area), Remark("edge of a square of this area")
+    east, north, up = map(float, polygon.normal)
+    level = math.hypot(east, north)
+    if level < _LEVEL:
+        return math.sqrt(area), Remark("edge of a square of this area: a horizontal gap has no height")
+    slope = (-up * east / level, -up * north / level, level)
+    along = [sum(a * b for a, b in zip(corner, slope, strict=True)) for corner in polygon.vertices]
+    return max(along) - min(along), Remark("height of the vertices along the slope")
 
 
 def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, Number]:
@@ -189,10 +231,12 @@ def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
 def derive_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
     """Derive area of every window, and lengths and heights of its sides and gaps."""
     drawn = window_outlines(windows)
-    return {
-        name: _derived_window(window, surfaces[window.surface], drawn.get(name))
-        for name, window in windows.items()
-    }
+
+    def derived(name: str, window: Window) -> Window:
+        with _located(("windows", name)):
+            return _derived_window(window, surfaces[window.surface], drawn.get(name))
+
+    return {name: derived(name, window) for name, window in windows.items()}
 
 
 def window_outlines(windows: Mapping[str, Window]) -> dict[str, Polygon]:
@@ -211,16 +255,18 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
     if window.area is None:
         update["area"] = derived_number(Window, "area", area, _FROM_VERTICES)
     if window.cavity_height is None:
-        high, source = _length(area, 90.0, polygon)
+        high, source = _cavity_height(area, polygon)
         update["cavity_height"] = derived_number(Window, "cavity_height", high, source)
     outside, inside = window.outside, window.inside
-    films = {
-        side: _derived_convection(film, bool(face.outdoors), area, float(wall.tilt or 0.0), polygon)
-        for side, film, face in (
-            ("outside", outside.convection, wall.outside),
-            ("inside", inside.convection, wall.inside),
-        )
-    }
+    films: dict[str, Convection] = {}
+    for side, film, face in (
+        ("outside", outside.convection, wall.outside),
+        ("inside", inside.convection, wall.inside),
+    ):
+        with _located_below(side):
+            films[side] = _derived_convection(
+                film, bool(face.outdoors), area, float(wall.tilt or 0.0), polygon
+            )
     height = outside.height
     if not wall.outside.outdoors:
         height = None
@@ -271,7 +317,8 @@ def _volume(zone: str, seen: list[Polygon] | None) -> Number:
     from mascarin.building.geometry import volume
 
     try:
-        return derived_number(Zone, "volume", volume(seen), _FROM_VERTICES)
+        with _located(at[:-1]):
+            return derived_number(Zone, "volume", volume(seen), _FROM_VERTICES)
     except InputError as error:
         refuse(fault(at, *_sentence(error)))
 

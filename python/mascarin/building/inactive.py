@@ -21,6 +21,7 @@ from mascarin.building.convection import (
 )
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
+from mascarin.building.measured_sun import paths as obstructed_paths
 from mascarin.building.surface import NoLongwave, Side, Surface
 from mascarin.building.window import WindowInside, WindowOutside, outer_side
 from mascarin.building.zone import GivenSun
@@ -74,8 +75,9 @@ def without_effect(building: Description) -> dict[str, str]:
     every = sides(building)
     found = dict(_unused(building))
     found.update(_in_site(building, every))
+    parts = obstructed_paths(building)
     for item in every:
-        found.update(_on_side(item))
+        found.update(_on_side(item, parts))
     found.update(_behind_walls(building))
     for name, surface in building.surfaces.items():
         found.update(_in_direction(building, name, surface))
@@ -177,7 +179,8 @@ def _in_glazing(path: str, glazing: PaneGlazing) -> Reasons:
 def _in_site(building: Description, every: list[SurfaceSide]) -> Reasons:
     site = building.site
     seeing = [item for item in every if item.sees_sky]
-    if not any(item.sunlit and item.tilt > 0.0 for item in every):
+    parts = obstructed_paths(building)
+    if not any((item.sunlit or item.path in parts) and item.tilt > 0.0 for item in every):
         yield (
             "site.ground_reflectance",
             "no tilted surface takes its irradiance from the climate",
@@ -196,7 +199,7 @@ def _in_site(building: Description, every: list[SurfaceSide]) -> Reasons:
         yield "site.altitude", "the density of the air is given"
 
 
-def _on_side(item: SurfaceSide) -> Reasons:
+def _on_side(item: SurfaceSide, obstructed: set[str]) -> Reasons:
     side, path = item.side, item.path
     if side.ground is not None and side.ground.amplitude == 0.0:
         yield f"{path}.ground.coldest_day", "the amplitude is 0"
@@ -204,7 +207,8 @@ def _on_side(item: SurfaceSide) -> Reasons:
         yield f"{path}.height", "the surface heat transfer coefficient does not depend on wind"
     if not isinstance(side, WindowInside) and side.outdoors and isinstance(side.longwave, NoLongwave):
         yield f"{path}.emissivity", "longwave is none"
-        if side.irradiance is not None and not isinstance(side, WindowOutside):
+        measured = side.irradiance is not None and not isinstance(side, WindowOutside)
+        if measured and path not in obstructed:
             yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
     windless = not side.exposed.wind
     if isinstance(side.convection, LinearWind) and windless:
@@ -240,7 +244,8 @@ def _in_direction(building: Description, name: str, surface: Surface) -> Reasons
     both = list(_sides(name, surface))
     for window in building.connections.windows_in(name):
         both += _window_sides(building, window)
-    sunlit = any(item.sunlit for item in both)
+    parts = obstructed_paths(building)
+    sunlit = any(item.sunlit or item.path in parts for item in both)
     by_direction = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
     buoyant = any(isinstance(item.side.convection, AlamdariHammond | PaperEq5 | Power) for item in both)
     reasons = ["which surfaces of a zone lie in one plane"] if by_direction else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -340,8 +341,51 @@ def derived_number(part: type[Part], key: str, value: float, source: str, *, ass
         What the value is derived from.
     assumed : bool
         Whether it is an assumption and does not follow from the description.
+
+    Raises
+    ------
+    NotDerivableError
+        The value is outside the limits of the field, or no finite number.
     """
-    return Number(value, source=source, assumed=assumed, derived=True, quantity=_quantity(part, key))
+    quantity = _quantity(part, key)
+    if not math.isfinite(value) or (quantity is not None and not quantity.limits.hold(value)):
+        raise NotDerivableError(key, value, source, quantity)
+    return Number(value, source=source, assumed=assumed, derived=True, quantity=quantity)
+
+
+class NotDerivableError(ValueError):
+    """A value that follows from the description and cannot be used.
+
+    Parameters
+    ----------
+    key : str
+        Name of the field.
+    value : float
+        The value. [unit of the field]
+    source : str
+        What it is derived from.
+    quantity : Quantity, optional
+        Unit and limits of the field.
+    """
+
+    def __init__(self, key: str, value: float, source: str, quantity: Quantity | None) -> None:
+        unit = "" if quantity is None or quantity.unit == "-" else f" {quantity.unit}"
+        limits = "a finite number" if quantity is None else str(quantity.limits) or "a finite number"
+        super().__init__(f"{key}: {value:g}{unit}, {source}; expected {limits}")
+        self.path: Location = (key,)
+        self.found = f"{value:g}{unit} ({source})"
+        meaning = "" if quantity is None else f"{quantity.description}, "
+        self.expected = f"{meaning}{limits}"
+
+    def below(self, key: str) -> NotDerivableError:
+        """The same error with a key before its path."""
+        self.path = (key, *self.path)
+        return self
+
+    def at(self, location: Location) -> InitErrorDetails:
+        """The error as one of the description."""
+        remedy = f"Write '{self.path[-1]}:', or correct what it follows from."
+        return fault((*location, *self.path), self.found, self.expected, remedy)
 
 
 @cache

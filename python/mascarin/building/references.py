@@ -15,6 +15,7 @@ from mascarin.building.inactive import has_height, sides, without_effect
 from mascarin.building.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.measured_sun import obstructed
 from mascarin.building.number import Number, Remark
 from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.self_shading import obstructions
@@ -151,7 +152,7 @@ def _of_air(building: Description) -> Iterator[str]:
 
 
 def _sunlit(building: Description) -> bool:
-    return any(item.sunlit for item in sides(building))
+    return any(item.sunlit for item in sides(building)) or bool(obstructed(building))
 
 
 def _of_sun(building: Description) -> Iterator[str]:

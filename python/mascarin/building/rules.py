@@ -13,6 +13,7 @@ from mascarin.building.course_uses import schedule_uses
 from mascarin.building.derived import shade_outlines
 from mascarin.building.humidity_rules import humidity_faults
 from mascarin.building.material import Resistance
+from mascarin.building.measured_sun import directions_are_known
 from mascarin.building.part import Location, fault
 from mascarin.building.set_points import first_crossing
 from mascarin.building.surface import NoLongwave, Side
@@ -59,6 +60,7 @@ def faults(building: Description) -> Faults:
     yield from windows_lie_in_walls(building)
     yield from _sun_can_be_absorbed(building)
     yield from _shades_can_act(building)
+    yield from directions_are_known(building)
 
 
 def _there_are_surfaces(building: Description) -> Faults:
@@ -316,10 +318,10 @@ def _rays_end_on_surfaces(zone: str, seen: Sequence[ZoneSurface]) -> Faults:
 
 
 def shaded(building: Description) -> tuple[list[str], list[str]]:
-    """Sunlit outdoor surfaces on which shades act, and those without vertices, on which they cannot."""
+    """Outdoor surfaces in the sun on which shades act, and those without vertices, on which they cannot."""
     found: tuple[list[str], list[str]] = ([], [])
     for name, surface in building.surfaces.items():
-        if any(side.sunlit for side in surface.sides):
+        if any(side.exposed.sun for side in surface.sides):
             found[surface.vertices is None].append(name)
     for name, window in building.windows.items():
         if building.surfaces[window.surface].outside.outdoors:

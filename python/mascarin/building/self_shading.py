@@ -170,17 +170,18 @@ def in_words(building: Description) -> str:
         return f"surfaces do not shade each other (site.self_shading: false){thin}{cost}"
     if all(surface.vertices is None for surface in building.surfaces.values()):
         return "nothing shades: no surface outdoors has vertices"
-    missing = f"; without vertices, unshaded: {_listed(bare)}" if bare else ""
+    missing = f"; without vertices, unshaded: {listed(bare)}" if bare else ""
     found = obstructions(building)
     cost = f", about {expected_seconds(found, shades=shades):.1g} s in a year"
     if not found:
         return f"no surface stands in front of another{thin}{cost if any(shades) else ''}{missing}"
     pairs = sum(map(len, found.values()))
-    who = _listed([f"{name} by {_listed(others)}" for (name, _), others in found.items()], "; ")
+    who = listed([f"{name} by {listed(others)}" for (name, _), others in found.items()], "; ")
     return f"{pairs} pairs of surfaces ({who}){thin}{cost}{missing}"
 
 
-def _listed(names: list[str], between: str = ", ") -> str:
+def listed(names: list[str], between: str = ", ") -> str:
+    """The first names, and how many more there are."""
     return between.join([*names[:_NAMES], *([f"{len(names) - _NAMES} more"] if len(names) > _NAMES else [])])
 
 

@@ -152,6 +152,12 @@ class Ground(Part):
         return raw
 
 
+#: Description of a key beside `irradiance`.
+BEHIND_OBSTACLES = (
+    "Whether the irradiance was measured behind all that stands in front, and is used as it is; none: no"
+)
+
+
 class Exposure(Part):
     """Which parts of the weather act on a side, beside the air temperature.
 
@@ -220,7 +226,12 @@ class Side(Part):
     longwave: OutdoorLongwave | None = Field(
         None, description="Exchange with sky, air and ground; none: exact"
     )
-    irradiance: str | None = Field(None, description="Measured column of the irradiance on this plane [W/m2]")
+    irradiance: str | None = Field(
+        None,
+        description="Measured column of the irradiance on this plane [W/m2], free of obstacles: what stands "
+        "in front of the surface takes its part of it",
+    )
+    behind_obstacles: bool | None = Field(None, description=BEHIND_OBSTACLES)
     exposure: Exposure | None = Field(
         None, description="Parts of the weather that act on a side facing outdoors; none: all"
     )
@@ -302,6 +313,7 @@ class Side(Part):
             "height": self.exposed.wind,
             "longwave": bool(self.outdoors),
             "irradiance": self.exposed.sun or (self.measured is not None and air),
+            "behind_obstacles": bool(self.outdoors) and self.irradiance is not None,
         }
         return [
             fault(

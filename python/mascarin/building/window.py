@@ -12,8 +12,8 @@ from mascarin.building.convection import CONVECTION, Convection
 from mascarin.building.glazing import PaneGlazing, both
 from mascarin.building.names import GlazingName, SurfaceName
 from mascarin.building.number import Number
-from mascarin.building.part import Part, fault, insist
-from mascarin.building.surface import Exposure, OutdoorLongwave, Surface
+from mascarin.building.part import Part, fault, insist, refuse
+from mascarin.building.surface import BEHIND_OBSTACLES, Exposure, OutdoorLongwave, Surface
 
 if TYPE_CHECKING:
     pass
@@ -49,13 +49,28 @@ class WindowOutside(Part):
     irradiance: str | None = Field(
         None,
         description="Measured column of the irradiance of this plane [W/m2], shared among beam, sky and "
-        "ground as the climate has them; none: from the climate",
+        "ground as the climate has them, free of obstacles: what stands in front of the window takes its "
+        "part of it; none: from the climate",
     )
+    behind_obstacles: bool | None = Field(None, description=BEHIND_OBSTACLES)
     sky_view: q.SkyView | None = None
     height: q.Height | None = None
     longwave: OutdoorLongwave | None = Field(
         None, description="Exchange with sky, air and ground; none: exact"
     )
+
+    @model_validator(mode="after")
+    def _sound(self) -> WindowOutside:
+        if self.behind_obstacles is not None and self.irradiance is None:
+            refuse(
+                fault(
+                    ("behind_obstacles",),
+                    "'behind_obstacles' of a window without a measured irradiance",
+                    "only what has an effect on this side",
+                    "Remove 'behind_obstacles:', or add 'irradiance:'.",
+                )
+            )
+        return self
 
     @property
     def outdoors(self) -> Literal[True]:

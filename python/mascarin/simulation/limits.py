@@ -61,9 +61,10 @@ class Limits:
         if bad.size:
             member, k = (int(i) for i in bad[0])
             parameter = self._parameters[k]
+            whose = f" (member {member})" if len(vectors) > 1 else ""
             raise InputError(
-                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
-                f"{parameter.unit}; expected {parameter.allowed}"
+                f"{parameter.path}: found {vectors[member, k]:g} {parameter.unit}{whose}; "
+                f"expected {parameter.allowed}"
             )
 
 

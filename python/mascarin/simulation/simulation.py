@@ -29,6 +29,7 @@ from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
+from mascarin.weather.brightness import findings
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
@@ -394,6 +395,8 @@ class Simulation(VectorRuns):
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judgement = Judgement.read(raw, self.compiled.dated)
+        site = self.building.site
+        sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -416,7 +419,7 @@ class Simulation(VectorRuns):
                 watch,
                 step_seconds=self.step_seconds,
                 building=self.building_warnings,
-                judged=judgement.warnings(self.step_seconds),
+                judged=[*judgement.warnings(self.step_seconds), *sun],
             ),
             vapour=vapour,
             judgement=judgement,

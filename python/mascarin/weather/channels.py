@@ -64,6 +64,11 @@ CHANNELS: Final[tuple[str, ...]] = tuple(channel.name for channel in _TABLE)
 BY_NAME: Final[dict[str, Channel]] = {channel.name: channel for channel in _TABLE}
 """The channels by name."""
 
+LIMITS: Final[dict[str, tuple[float, float]]] = {
+    name: (channel.low, channel.high) for name, channel in BY_NAME.items()
+}
+"""Lowest and highest possible value of each channel. [unit of the channel]"""
+
 UNITS: Final[dict[str, str]] = {channel.name: channel.unit for channel in _TABLE}
 """Unit of each channel."""
 

@@ -11,7 +11,8 @@ from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
 from mascarin.weather import measured
 from mascarin.weather.arrays import Array
-from mascarin.weather.channels import BY_NAME
+from mascarin.weather.brightness import bright_parts, with_findings
+from mascarin.weather.channels import LIMITS
 from mascarin.weather.completion import complete
 from mascarin.weather.forcing import forcing, require_period
 from mascarin.weather.gaps import filled
@@ -376,7 +377,7 @@ class Climate(RecordView[WeatherRecord]):
         list of Stretch
             In order of column, then start; see `mascarin.weather.quality.find`.
         """
-        return find(self.data, limits={name: (BY_NAME[name].low, BY_NAME[name].high) for name in BY_NAME})
+        return [*find(self.data, limits=LIMITS), *bright_parts(self.record, self.data.index)]
 
     def fill_gaps(self, longest: str | float, columns: Iterable[str] | None = None) -> Climate:
         """Fill short gaps linearly.
@@ -427,9 +428,8 @@ class Climate(RecordView[WeatherRecord]):
         if key not in self._completed:
             if self.record.check_sun:
                 check_clock(self.record, *key)
-            made = Climate(complete(self.record, *key))
-            made._completed[key] = made
-            self._completed[key] = made
+            made = Climate(with_findings(complete(self.record, *key), self.record, *key))
+            made._completed[key] = self._completed[key] = made
         return self._completed[key]
 
     @property

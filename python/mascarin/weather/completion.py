@@ -65,6 +65,30 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
     )  # fmt: skip
 
 
+def extraterrestrial_horizontal(
+    record: WeatherRecord, latitude: float, longitude: float, kind: Kind
+) -> Array:
+    """Extraterrestrial irradiance on the horizontal.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        Whose rows are meant.
+    latitude, longitude : float
+        Positive north and east. [deg]
+    kind : str
+        `mean` over each interval, or `instant`, at its start.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        One for each row. [W/m2]
+    """
+    grid = record.grid
+    up, extra, _ = _sun_means(SunPath.over(latitude, longitude, grid.start, grid.end), grid, kind)
+    return np.asarray(up * extra)
+
+
 def _sun_means(sun: SunPath, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
     """Mean sine of elevation, extraterrestrial and clear beam of each interval, or at its start."""
     starts = grid.start + grid.interval * np.arange(grid.count)

@@ -11,7 +11,7 @@ use super::thick_walls;
 use super::vents::VentPlan;
 use crate::error::EngineError;
 use crate::input::check::check;
-use crate::input::description::{Description, Side, Zone};
+use crate::input::description::{Description, Facing, Side, Zone};
 use crate::input::forcing::CLIMATE_CHANNELS;
 
 /// A compiled description.
@@ -123,6 +123,14 @@ impl Plan {
     pub fn side(&self, surface: SurfaceId) -> &Side {
         let wall = &self.description.surfaces[surface.wall()];
         if surface.is_outside() { &wall.outside } else { &wall.inside }
+    }
+
+    /// Whether the measured irradiance of a surface is that of the free plane, and something stands in front of it.
+    #[must_use]
+    pub(crate) fn takes_from_measured(&self, surface: SurfaceId) -> bool {
+        let side = self.side(surface);
+        let obstructed = !self.description.site.horizon.is_empty() || self.solar_geometry.shaded(surface);
+        side.facing == Facing::Outdoors && side.irradiance.is_some() && !side.behind_obstacles && obstructed
     }
 
     /// Row of a surface of a zone in the coupled system.

@@ -97,7 +97,7 @@ impl SolarGeometry {
             .zip(all)
             .map(|(&surface, receiver)| {
                 let side = side(description, surface);
-                let lit = side.exposure.sun && side.irradiance.is_none();
+                let lit = side.exposure.sun && !side.behind_obstacles;
                 receiver.filter(Receiver::obstructed).map(|receiver| Shaded {
                     receiver,
                     place: lit.then(|| place(1)),

@@ -215,7 +215,7 @@ walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, in
     plain { name, construction, vertices });
 walk!(FrameShare { fraction } plain { is_frame });
 walk!(Side { facing, convection, emissivity, absorptance, area_factor, sky_view, height, longwave }
-    plain { irradiance, exposure, shaded_by });
+    plain { irradiance, behind_obstacles, exposure, shaded_by });
 walk!(Facing by variant {
     Outdoors {} plain {},
     Zone {} plain { zone },

@@ -2,6 +2,8 @@
 
 pub mod air_flow;
 pub mod blinds;
+#[cfg(test)]
+mod borders;
 pub mod constants;
 pub mod convection;
 pub mod doors;

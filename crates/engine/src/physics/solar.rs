@@ -11,7 +11,7 @@
 use crate::input::description::DiffuseSky;
 use crate::input::forcing::channel;
 use crate::number::elementary::acos;
-use crate::number::real::{Real, same};
+use crate::number::real::{Mask, Real, same};
 
 /// The sun and its radiation at one instant, independent of any plane.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +27,22 @@ pub struct Sunlight {
     circumsolar: f64,
     /// Multiplies sin(tilt): brightening of the horizon [W/m2].
     horizon: f64,
+    /// Extraterrestrial normal irradiance, which sun and sky together do not exceed on any plane [W/m2]; infinite where it is unknown.
+    most: f64,
+    /// Whether they could on some plane.
+    bounded: bool,
+}
+
+/// What short-wave radiation on a plane cannot exceed [W/m2]: all that arrives from outside of the atmosphere, extraterrestrial
+/// normal irradiance, falls at right angles on it, and what the ground reflects of as much. In numbers of the plane: the fraction
+/// of the ground that it sees and the reflectance of the ground [-].
+#[must_use]
+pub(crate) fn greatest_irradiance<S: Real>(
+    extraterrestrial: f64,
+    ground_reflectance: S,
+    ground_view: S,
+) -> S {
+    (S::one() + ground_reflectance * ground_view).scale(extraterrestrial)
 }
 
 /// Orientation of a plane and what it sees of sky and ground.
@@ -75,24 +91,51 @@ impl Sunlight {
     pub fn new(row: &[f64], model: DiffuseSky) -> Self {
         let direction = [row[channel::SUN_EAST], row[channel::SUN_NORTH], row[channel::SUN_UP]];
         let up = direction[2];
-        let direct_normal = if up > 0.0 { row[channel::DIRECT_NORMAL] } else { 0.0 };
-        let diffuse = row[channel::DIFFUSE_HORIZONTAL];
         let extra = row[channel::DIRECT_NORMAL_EXTRA];
+        // Nothing exceeds what arrives from outside of the atmosphere, where that is known.
+        let most = if extra > 0.0 { extra } else { f64::INFINITY };
+        let direct_normal = if up > 0.0 { row[channel::DIRECT_NORMAL].min(most) } else { 0.0 };
+        let diffuse = row[channel::DIFFUSE_HORIZONTAL].min(most);
         let (circumsolar_fraction, horizon_fraction) = match model {
             DiffuseSky::Isotropic => (0.0, 0.0),
             DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
             DiffuseSky::Perez => perez_fractions(up, direct_normal, diffuse, extra),
         };
-        let lowest = if model == DiffuseSky::Perez { COS_85 } else { COS_89 };
+        let lowest = up.max(if model == DiffuseSky::Perez { COS_85 } else { COS_89 });
+        let bright = diffuse * circumsolar_fraction / lowest;
+        // Sun and bright sky around it together are at most as bright as the sun outside of the atmosphere; the rest of the diffuse
+        // radiation comes from all of the sky.
+        let circumsolar = bright.min((most - direct_normal).max(0.0));
+        let isotropic = if bright > circumsolar {
+            diffuse - circumsolar * lowest
+        } else {
+            diffuse * (1.0 - circumsolar_fraction)
+        };
+        let horizon = diffuse * horizon_fraction;
+        let sum = direct_normal + circumsolar + isotropic + horizon.max(0.0);
         Self {
             direction,
             direct_normal,
-            global_horizontal: row[channel::GLOBAL_HORIZONTAL],
-            isotropic: diffuse * (1.0 - circumsolar_fraction),
-            circumsolar: diffuse * circumsolar_fraction / up.max(lowest),
-            horizon: diffuse * horizon_fraction,
+            global_horizontal: row[channel::GLOBAL_HORIZONTAL].min(most),
+            isotropic,
+            circumsolar,
+            horizon,
+            most,
+            bounded: sum > most,
         }
     }
+
+    /// An isotropic sky and no sun.
+    pub(crate) const OVERCAST: Self = Self {
+        direction: [0.0, 0.0, 1.0],
+        direct_normal: 0.0,
+        global_horizontal: 1.0,
+        isotropic: 1.0,
+        circumsolar: 0.0,
+        horizon: 0.0,
+        most: f64::INFINITY,
+        bounded: false,
+    };
 
     /// Takes away what comes from the direction of the sun, on the ground as well.
     pub(crate) fn hide_sun(&mut self) {
@@ -109,10 +152,21 @@ impl Sunlight {
         parts.iter().all(|part| *part == 0.0)
     }
 
+    /// Whether the sun is below the horizon.
+    #[must_use]
+    pub(crate) fn night(&self) -> bool {
+        self.direction[2] <= 0.0
+    }
+
     /// Whether there is radiation from the sun's direction.
     #[must_use]
     pub fn directed(&self) -> bool {
         self.direct_normal > 0.0 || self.circumsolar > 0.0
+    }
+
+    /// What the irradiance on a plane cannot exceed at this instant [W/m2]; infinite where the extraterrestrial one is unknown.
+    pub(crate) fn greatest<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S) -> S {
+        greatest_irradiance(self.most, ground_reflectance, plane.ground_view)
     }
 
     /// Irradiance on a plane [W/m2] that sees a part of sun and sky.
@@ -135,7 +189,11 @@ impl Sunlight {
         let diffuse = (sky + plane.sin_tilt.scale(self.horizon * visible.horizon)).max(S::zero());
         let circumsolar = bright.min(diffuse);
         let beam = facing.scale(self.direct_normal * visible.sun);
-        Irradiance { cosine: facing, beam, circumsolar, horizon: diffuse - sky, diffuse, ground }
+        let light = Irradiance { cosine: facing, beam, circumsolar, horizon: diffuse - sky, diffuse, ground };
+        let light = if self.bounded { light.limited(self.most) } else { light };
+        let most = self.greatest(plane, ground_reflectance).scale(1.0 + 1e-5);
+        debug_assert!(!most.lt(light.total()).any(), "an irradiance above extraterrestrial plus reflected");
+        light
     }
 }
 
@@ -184,7 +242,28 @@ impl<S: Real> Irradiance<S> {
     /// The same parts of a measured sum [W/m2].
     #[inline(always)]
     pub fn measured(&self, sum: f64) -> Self {
-        let factor = S::constant(sum.max(0.0)) / self.total().max(S::constant(1e-6));
+        self.times(S::constant(sum.max(0.0)) / self.total().max(S::constant(1e-6)))
+    }
+
+    /// What obstacles leave of a measured sum of the free plane, whose parts sum to `free` in the climate [W/m2].
+    #[inline(always)]
+    pub(crate) fn left_of(&self, free: S, sum: f64) -> Self {
+        // A given view of the sky may exceed that of the free plane: never more than was measured.
+        let whole = free.max(self.total()).max(S::constant(1e-6));
+        self.times(S::constant(sum.max(0.0)) / whole)
+    }
+
+    /// The same parts where sun and sky are not above a limit [W/m2].
+    // A rare case: kept out of the code of the others.
+    #[inline(never)]
+    fn limited(&self, limit: f64) -> Self {
+        let most = S::constant(limit);
+        Self { ground: self.ground, ..self.times(most / (self.beam + self.diffuse).max(most)) }
+    }
+
+    /// All parts times a factor.
+    #[inline(always)]
+    fn times(&self, factor: S) -> Self {
         Self {
             cosine: self.cosine,
             beam: self.beam * factor,
@@ -233,10 +312,11 @@ fn perez_fractions(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64)
     let clearness = ((diffuse + direct) / diffuse + cube) / (1.0 + cube);
     let elevation = 90.0 - zenith.to_degrees();
     let air_mass = 1.0 / (Real::cos(zenith) + 0.50572 * Real::powf(elevation + 6.07995, -1.6364));
-    let brightness = diffuse * air_mass / extra;
+    // The diffuse radiation of the correlation is not above the extraterrestrial radiation on the horizontal, 1 over the air mass.
+    let brightness = (diffuse * air_mass / extra).min(1.0);
     let f = &PEREZ[PEREZ_BINS.iter().filter(|&&edge| clearness >= edge).count()];
-    let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).max(0.0);
-    (circumsolar, f[3] + f[4] * brightness + f[5] * zenith)
+    let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).clamp(0.0, 1.0);
+    (circumsolar, (f[3] + f[4] * brightness + f[5] * zenith).clamp(-1.0, 1.0))
 }
 
 #[cfg(test)]
@@ -279,6 +359,118 @@ mod tests {
             assert_close(found.diffuse, diffuse);
             assert_close(found.total(), 376.410 + diffuse);
             assert_close(found.directed() + found.scattered() + found.horizon, found.total());
+        }
+    }
+
+    /// Rows that no sky can have: time stamps that are wrong by an hour, sensors that fail, the sun at and below the horizon, at the
+    /// equator and over the poles, on high mountains.
+    fn impossible_rows() -> Vec<[f64; CLIMATE_CHANNELS]> {
+        let mut rows = Vec::new();
+        for up in [-0.5, -1e-9, 0.0, 1e-12, 1e-3, 0.02, 0.0871, 0.0872, 0.3, 0.7, 0.999, 1.0_f64] {
+            for direct in [0.0, 300.0, 1000.0, 1361.0, 5000.0] {
+                for diffuse in [0.0, 1.0, 120.0, 700.0, 3000.0] {
+                    let mut row = [0.0; CLIMATE_CHANNELS];
+                    row[channel::SUN_UP] = up;
+                    row[channel::SUN_EAST] = (1.0 - up * up).max(0.0).sqrt();
+                    (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (direct, diffuse);
+                    row[channel::GLOBAL_HORIZONTAL] = direct * up.max(0.0) + diffuse;
+                    row[channel::DIRECT_NORMAL_EXTRA] = if diffuse > 100.0 { 1316.0 } else { 1408.0 };
+                    rows.push(row);
+                }
+            }
+        }
+        rows
+    }
+
+    const MODELS: [DiffuseSky; 3] = [DiffuseSky::Isotropic, DiffuseSky::HayDavies, DiffuseSky::Perez];
+
+    fn plane(tilt: f64, azimuth: f64) -> Plane<f64> {
+        let ((sine, cosine), (east, north)) =
+            (crate::number::elementary::sincos(tilt), crate::number::elementary::sincos(azimuth));
+        let (sky_view, ground_view) = (0.5 * (1.0 + cosine), 0.5 * (1.0 - cosine));
+        Plane { normal: [sine * east, sine * north, cosine], sin_tilt: sine, sky_view, ground_view }
+    }
+
+    /// On no plane, by no model, whatever the weather, more than arrives from outside of the atmosphere and is reflected by the
+    /// ground; and no part is negative.
+    #[test]
+    fn nothing_above_extraterrestrial_plus_reflected() {
+        let part = SkyVisibility { sun: 0.6, sky: 0.3, horizon: 0.0, ground: 0.5 };
+        for (row, model) in impossible_rows().iter().flat_map(|row| MODELS.map(|model| (row, model))) {
+            let sun = Sunlight::new(row, model);
+            for (k, visible) in [&SkyVisibility::FULL, &part].into_iter().enumerate() {
+                for step in 0..=12 {
+                    let tilt = f64::from(step) * core::f64::consts::PI / 12.0;
+                    let plane = plane(tilt, 1.2 * f64::from(step) + k as f64);
+                    let light = sun.on(&plane, 0.8, visible);
+                    let most = greatest_irradiance(row[channel::DIRECT_NORMAL_EXTRA], 0.8, plane.ground_view);
+                    assert!(light.total() <= most * (1.0 + 1e-12), "{model:?} {row:?}: {}", light.total());
+                    let parts =
+                        [light.beam, light.circumsolar, light.diffuse, light.ground, light.directed()];
+                    assert!(parts.iter().all(|part| *part >= 0.0), "{model:?} {row:?}: {light:?}");
+                    assert!(light.scattered() >= -1e-9, "{model:?} {row:?}: {light:?}");
+                }
+            }
+        }
+    }
+
+    /// 50 W/m2 of diffuse radiation with the sun 0.5 deg high: the bright sky around it stays below what is left of the
+    /// extraterrestrial radiation, and a horizontal plane still receives all that was measured.
+    #[test]
+    fn a_low_sun() {
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        (row[channel::SUN_EAST], row[channel::SUN_UP]) = (1.0, 0.1);
+        (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (1300.0, 60.0);
+        row[channel::DIRECT_NORMAL_EXTRA] = 1361.0;
+        for model in MODELS {
+            let sun = Sunlight::new(&row, model);
+            let level = sun.on(&plane(0.0, 0.0), 0.2, &SkyVisibility::FULL);
+            assert_close(level.diffuse, 60.0);
+            let wall = sun.on(
+                &plane(core::f64::consts::FRAC_PI_2, core::f64::consts::FRAC_PI_2),
+                0.0,
+                &SkyVisibility::FULL,
+            );
+            assert!(wall.directed() <= 1361.0 + 1e-9 && wall.total() <= 1361.0 + 1e-9, "{wall:?}");
+        }
+    }
+
+    /// The fractions of Perez et al. stay in their ranges; between the bins of the clearness they have the steps of the
+    /// source, 0.14 at most with the sun at 60 deg and a diffuse part of a fifth.
+    #[test]
+    fn ranges_of_the_fractions() {
+        for row in impossible_rows() {
+            let [direct, diffuse] = [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL].map(|at| row[at]);
+            let (bright, horizon) = perez_fractions(row[channel::SUN_UP], direct, diffuse, 1361.0);
+            assert!((0.0..=1.0).contains(&bright) && (-1.0..=1.0).contains(&horizon), "{bright} {horizon}");
+        }
+        let cube = 1.041 * Real::powf(core::f64::consts::FRAC_PI_3, 3.0);
+        for edge in PEREZ_BINS {
+            let clear = (edge * (1.0 + cube) - cube - 1.0) * 200.0;
+            let [before, behind] =
+                [1.0 - 1e-9, 1.0 + 1e-9].map(|x| perez_fractions(0.5, clear * x, 200.0, 1361.0));
+            assert!(
+                (before.0 - behind.0).abs() < 0.2 && (before.1 - behind.1).abs() < 0.2,
+                "{edge}: {before:?} {behind:?}"
+            );
+        }
+    }
+
+    /// At the lowest elevations of the ratio of cosines and near the zenith no model jumps.
+    #[test]
+    fn borders_of_the_elevation() {
+        for model in MODELS {
+            for up in [COS_85, COS_89, 0.5, 0.9999] {
+                let [before, behind] = [-1e-10, 1e-10].map(|more| {
+                    let mut row = [0.0; CLIMATE_CHANNELS];
+                    row[channel::SUN_UP] = up + more;
+                    row[channel::SUN_EAST] = (1.0 - (up + more) * (up + more)).sqrt();
+                    (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (500.0, 100.0);
+                    row[channel::DIRECT_NORMAL_EXTRA] = 1361.0;
+                    Sunlight::new(&row, model).on(&plane(1.0, 1.0), 0.2, &SkyVisibility::FULL).total()
+                });
+                assert!((before - behind).abs() < 1e-4, "{model:?} at {up}: {before} and {behind}");
+            }
         }
     }
 

@@ -428,18 +428,47 @@ mod tests {
         assert!((tangent.right / slope - 1.0).abs() < 1e-12);
     }
 
-    /// Heated from below the gas circulates, heated from above it lies still; the branches meet at 60 and 90 deg.
+    /// Heated from below the gas circulates, heated from above it lies still; the branches meet at 90 deg.
     #[test]
     fn tilt() {
         let up = gap(Gas::Air, 0.016, 0.0);
         assert!(up.convection(0.0, 20.0) > 1.5 * up.convection(20.0, 0.0));
         let still = (2.873e-3 + 7.76e-5 * 283.15) / 0.016;
         assert!((up.convection(20.0, 0.0) / still - 1.0).abs() < 1e-9);
-        for angle in [60.0, 90.0] {
-            let [below, above] =
-                [-1e-7, 1e-7].map(|d| gap(Gas::Air, 1.0 / 60.0, 90.0).shape.nusselt(2e4, angle + d));
-            let most = if angle < 61.0 { 0.15 } else { 1e-6 };
-            assert!((below / above - 1.0).abs() < most, "{angle}: {below} and {above}");
+        let shape = gap(Gas::Air, 1.0 / 60.0, 90.0).shape;
+        let [below, above] = [-1e-7, 1e-7].map(|d| shape.nusselt(2e4, 90.0 + d));
+        assert!((below / above - 1.0).abs() < 1e-6, "{below} and {above}");
+    }
+
+    /// Of the vertical correlations the source has steps of -0.54 % at Ra = 1e4 and 0.64 % at 5e4. That of Elsherbiny et al. at 60 deg
+    /// is below that of Hollands et al. by 5.7 % at Ra = 2e4.
+    #[test]
+    fn borders() {
+        let shape = gap(Gas::Air, 1.0 / 60.0, 90.0).shape;
+        for (rayleigh, step) in [(1e4, -0.005_4), (5e4, 0.006_4)] {
+            let [before, behind] = [1.0 - 1e-9, 1.0 + 1e-9].map(|x| shape.nusselt(rayleigh * x, 90.0));
+            assert!((behind / before - 1.0 - step).abs() < 1e-4, "{rayleigh}: {before} and {behind}");
+        }
+        let [before, behind] = [-1e-7, 1e-7].map(|more| shape.nusselt(2e4, 60.0 + more));
+        assert!((behind / before + 0.057_3 - 1.0).abs() < 1e-3, "{}", behind / before - 1.0);
+        // At the onset of convection between level plates, R = 1708, and at 5830 the correlation is continuous.
+        for rayleigh in [1708.0, 5830.0] {
+            let [before, behind] = [-1e-6, 1e-6].map(|more| shape.nusselt(rayleigh + more, 0.0));
+            assert!((behind - before).abs() < 1e-8, "{rayleigh}: {before} and {behind}");
+        }
+    }
+
+    /// The height of a level gap has no effect, heated from below or from above.
+    #[test]
+    fn a_level_gap_has_no_height() {
+        for (outer, inner) in [(0.0, 20.0), (20.0, 0.0)] {
+            for tilt in [0.0, 180.0] {
+                let of = |height| {
+                    let size = [0.016, height];
+                    GasGap::new(Gas::Air, 101_325.0, size, tilt, [0.84; 2]).convection(outer, inner)
+                };
+                assert!((of(0.1) / of(10.0) - 1.0_f64).abs() < 1e-12, "{tilt} deg");
+            }
         }
     }
 

@@ -164,9 +164,9 @@ impl<S: Real> Conditions<S> {
             }
             self.sun.trace(plan, coefficients, now);
             if !plan.passages.is_empty() {
-                self.sun.pass(plan, coefficients, now);
+                self.sun.pass(plan, coefficients);
             }
-            self.sun.distribute(plan, coefficients, now, &mut self.surfaces);
+            self.sun.distribute(plan, coefficients, &mut self.surfaces);
             self.sun.absorb_in_panes(plan, &mut self.surfaces);
         }
     }

@@ -13,6 +13,8 @@ use crate::physics::solar::Plane;
 pub(crate) enum IrradianceSource<S> {
     /// A forcing channel.
     Measured(usize),
+    /// A forcing channel with the irradiance of the free plane of a surface, from which obstacles take their part.
+    Obstructed(usize, SurfaceId),
     /// A plane and a reflectance of the ground that are the same in all lanes, and the surface whose shading applies.
     Uniform(Plane<f64>, f64, SurfaceId),
     /// Another plane, and the surface whose shading applies.
@@ -100,7 +102,7 @@ impl<S: Real> WeatherIndex<S> {
 
     /// Position of the source of a surface's irradiance, added where no earlier surface has the same; none: no sun.
     fn add_source(&mut self, plan: &Plan, coefficients: &Coefficients<S>, index: SurfaceId) -> Option<usize> {
-        let source = source_of(coefficients, index)?;
+        let source = source_of(plan, coefficients, index)?;
         let shaded = |surface: SurfaceId| plan.solar_geometry.shaded(surface);
         let unshaded = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
         let known = self.irradiance_sources.iter().position(|known| match (known, &source) {
@@ -133,9 +135,16 @@ impl<S: Real> WeatherIndex<S> {
 }
 
 /// The source of a surface's irradiance; none: no sun.
-fn source_of<S: Real>(coefficients: &Coefficients<S>, index: SurfaceId) -> Option<IrradianceSource<S>> {
+fn source_of<S: Real>(
+    plan: &Plan,
+    coefficients: &Coefficients<S>,
+    index: SurfaceId,
+) -> Option<IrradianceSource<S>> {
     let surface = &coefficients.surfaces[index];
     match (surface.irradiance, &surface.boundary) {
+        (Some(channel), _) if plan.takes_from_measured(index) => {
+            Some(IrradianceSource::Obstructed(channel, index))
+        }
         (Some(channel), _) => Some(IrradianceSource::Measured(channel)),
         (None, Boundary::Outdoors(outdoors)) if surface.exposure.sun => {
             let (plane, ground) = (&outdoors.plane, coefficients.ground_reflectance);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
+use crate::building::coefficients::Outdoors;
 use crate::building::coefficients::surface::PER_DAY;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
@@ -14,7 +15,7 @@ use crate::physics::convection::{Wind, WindTerms};
 use crate::physics::horizon;
 use crate::physics::longwave::SkyState;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
-use crate::physics::solar::{SkyVisibility, Sunlight};
+use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight};
 
 /// The weather at one stage of a step.
 #[derive(Debug, Clone)]
@@ -64,6 +65,30 @@ impl<'a> Instant<'a> {
     /// Fractions that obstacles leave of sun, sky and ground on a surface.
     pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
         plan.solar_geometry.visibility(surface, &self.fractions)
+    }
+
+    /// A measured irradiance of a surface outdoors by its parts: beam, sky and ground in the proportions of the climate at this
+    /// instant, or of an isotropic sky where the climate has no radiation. Of the irradiance of the free plane obstacles leave
+    /// their part; one that was measured behind them is used as it is.
+    // A rare part of a building: kept out of the code of the others.
+    #[inline(never)]
+    pub(crate) fn measured<S: Real>(
+        &self,
+        plan: &Plan,
+        surface: SurfaceId,
+        outdoors: &Outdoors<S>,
+        (ground, channel): (S, usize),
+    ) -> Irradiance<S> {
+        let (open, sum) = (self.visibility(plan, surface), self.row[channel]);
+        let Some(free) = &outdoors.free else {
+            let light = if self.sunlight.dark() { Sunlight::OVERCAST } else { self.sunlight };
+            return light.on(&outdoors.plane, ground, &open).measured(sum);
+        };
+        let whole = Sunlight::new(self.row, plan.description.site.diffuse);
+        let (whole, left) =
+            if whole.dark() { (Sunlight::OVERCAST, Sunlight::OVERCAST) } else { (whole, self.sunlight) };
+        let before = whole.on(free, ground, &SkyVisibility::FULL);
+        left.on(&outdoors.plane, ground, &open).left_of(before.total(), sum)
     }
 }
 
@@ -173,8 +198,80 @@ fn vapour_pressures(forcing: &Forcing<'_>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::building::test_buildings::glazed_zone;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::test_buildings::{glazed_zone, values};
+    use crate::input::description::DiffuseSky;
     use crate::input::forcing::CLIMATE_CHANNELS;
+    use crate::weather::conditions::Conditions;
+    use crate::weather::index::WeatherIndex;
+
+    /// The irradiance of the south wall of a zone, of which 100 W/m2 were measured, under the overhang or without it.
+    fn left_of_100(
+        overhang: bool,
+        behind: bool,
+        sun: [f64; 3],
+        [direct, diffuse]: [f64; 2],
+    ) -> (f64, SkyVisibility) {
+        let mut description = glazed_zone("area", overhang);
+        description.channels = vec!["G".into()];
+        description.site.diffuse = DiffuseSky::Isotropic;
+        let side = &mut description.surfaces[0].outside;
+        (side.irradiance, side.behind_obstacles) = (Some(0), behind);
+        let plan = Plan::new(description).unwrap();
+        let mut row = [0.0; CLIMATE_CHANNELS + 1];
+        for (at, part) in [channel::SUN_EAST, channel::SUN_NORTH, channel::SUN_UP].into_iter().zip(sun) {
+            row[at] = part;
+        }
+        (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (direct, diffuse);
+        row[channel::GLOBAL_HORIZONTAL] = direct * sun[2].max(0.0) + diffuse;
+        (row[channel::DIRECT_NORMAL_EXTRA], row[CLIMATE_CHANNELS]) = (1361.0, 100.0);
+        let numbers = values(&plan.description);
+        let coefficients = Coefficients::new(&plan, &numbers);
+        let index = WeatherIndex::new(&plan, &coefficients);
+        let forcing = Forcing::new(&row, 1, row.len()).unwrap();
+        let weather = Weather::new(&plan, &forcing);
+        let now = weather.at(0, 0);
+        let mut conditions = Conditions::new(&plan, &coefficients, &index);
+        conditions.update(&plan, &coefficients, &index, &numbers, &now);
+        let wall = SurfaceId::outside(0);
+        // The wall absorbs 0.6 of it.
+        (conditions.surfaces[wall].solar / 0.6, now.visibility(&plan, wall))
+    }
+
+    /// Beam 600 0.75^1/2 = 519.615, sky 0.5 120 = 60, ground 0.2 0.5 420 = 42 W/m2 on the free wall: of 100 W/m2 each obstacle
+    /// takes its part. Behind the wall, or below the horizon, there is no beam; without radiation in the climate it is that of an
+    /// isotropic sky, 0.5 to 0.1.
+    #[test]
+    fn obstacles_act_on_a_measured_irradiance() {
+        let (cosine, sine) = (0.75_f64.sqrt(), 0.5);
+        let south = [0.0, -cosine, sine];
+        let (found, open) = left_of_100(true, false, south, [600.0, 120.0]);
+        let free = 600.0 * cosine + 60.0 + 42.0;
+        let left = 600.0 * cosine * open.sun + 60.0 * open.sky + 42.0 * open.ground;
+        assert!(open.sun < 0.9 && open.sky < 0.9 && open.ground == 1.0, "{open:?}");
+        assert!((found - 100.0 * left / free).abs() < 1e-9, "{found}");
+        // The sun behind the wall, with 120 W/m2 beside it; diffuse radiation alone; and none.
+        let behind_sun = ([0.0, cosine, sine], [600.0, 120.0], [60.0, 42.0]);
+        let cases = [
+            behind_sun,
+            (south, [0.0, 120.0], [60.0, 12.0]),
+            ([0.0, -cosine, -sine], [0.0, 0.0], [0.5, 0.1]),
+        ];
+        for (sun, climate, [sky, ground]) in cases {
+            let (found, open) = left_of_100(true, false, sun, climate);
+            let expected = 100.0 * (sky * open.sky + ground * open.ground) / (sky + ground);
+            assert!((found - expected).abs() < 1e-9, "{sun:?}: {found} is not {expected}");
+        }
+    }
+
+    /// One that was measured behind the obstacles, or without any, is used as it is.
+    #[test]
+    fn nothing_acts_behind_the_obstacles() {
+        let south = [0.0, -0.75_f64.sqrt(), 0.5];
+        for (overhang, behind) in [(true, true), (false, true), (false, false)] {
+            assert_eq!(left_of_100(overhang, behind, south, [600.0, 120.0]).0, 100.0);
+        }
+    }
 
     /// Two steps of two stages, the air one degree warmer at each.
     #[test]

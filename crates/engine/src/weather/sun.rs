@@ -10,7 +10,7 @@ use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::layout::{SurfaceRole, ZonePlan};
 use crate::building::plan::Plan;
 use crate::building::solar_distribution::{FixedDistribution, SolarDistribution, TracedDistribution};
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::weather::index::{IrradianceSource, WeatherIndex};
 use crate::weather::instant::Instant;
 use crate::weather::surface::SurfaceConditions;
@@ -46,6 +46,8 @@ pub struct ZoneSolar<S> {
 pub struct SolarConditions<S> {
     /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
     pub(crate) irradiances: Vec<S>,
+    /// Whether no sun is on any window.
+    dark: bool,
     /// Per window, in the order of [`Plan::windows`](crate::building::plan::Plan::windows).
     pub windows: Vec<WindowConditions<S>>,
     /// Per zone.
@@ -75,6 +77,7 @@ impl<S: Real> SolarConditions<S> {
         });
         Self {
             irradiances: vec![zero; weather_index.irradiance_sources.len()],
+            dark: true,
             windows: windows.collect(),
             zones: vec![ZoneSolar { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
             incidence: plan.zones.iter().map(|zone| vec![zero; zone.surfaces.len()]).collect(),
@@ -130,6 +133,13 @@ impl<S: Real> SolarConditions<S> {
         for (irradiance, source) in self.irradiances.iter_mut().zip(&weather_index.irradiance_sources) {
             *irradiance = match source {
                 IrradianceSource::Measured(channel) => S::constant(now.row[*channel]),
+                IrradianceSource::Obstructed(channel, surface) => {
+                    let Boundary::Outdoors(outdoors) = &coefficients.surfaces[*surface].boundary else {
+                        continue;
+                    };
+                    let given = (coefficients.ground_reflectance, *channel);
+                    now.measured(plan, *surface, outdoors, given).total()
+                }
                 _ if dark => S::zero(),
                 IrradianceSource::Uniform(plane, ground, surface) => {
                     S::constant(now.sunlight.on(plane, *ground, &now.visibility(plan, *surface)).total())
@@ -148,6 +158,7 @@ impl<S: Real> SolarConditions<S> {
         for zone in &mut self.zones {
             zone.transmitted = S::zero();
         }
+        self.dark = now.sunlight.dark();
         for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
             let wall = &coefficients.walls[w];
             at.transmitted = S::zero();
@@ -158,17 +169,26 @@ impl<S: Real> SolarConditions<S> {
             else {
                 continue;
             };
-            if now.sunlight.dark() {
-                at.covered = covered(glass, now, S::zero());
-                continue;
-            }
-            let open = now.visibility(plan, SurfaceId::outside(w));
-            let mut light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
-            if let Some(channel) = coefficients.surfaces[SurfaceId::outside(w)].irradiance {
-                light = light.measured(now.row[channel]);
-            }
-            let (directed, scattered) = (light.directed(), light.scattered());
+            let (outside, ground) = (SurfaceId::outside(w), coefficients.ground_reflectance);
+            let light = match coefficients.surfaces[outside].irradiance {
+                // Without sun in the climate it is the offset of a sensor by night, and by day diffuse.
+                Some(channel) if now.row[channel] > 0.0 && !(now.sunlight.dark() && now.sunlight.night()) => {
+                    self.dark = false;
+                    now.measured(plan, outside, outdoors, (ground, channel))
+                }
+                None if !now.sunlight.dark() => {
+                    now.sunlight.on(&outdoors.plane, ground, &now.visibility(plan, outside))
+                }
+                _ => {
+                    at.covered = covered(glass, now, S::zero());
+                    continue;
+                }
+            };
             let (front, level) = (&glass.optics.front, &glass.horizon);
+            let (directed, mut scattered, mut horizon) = (light.directed(), light.scattered(), light.horizon);
+            if horizon.lt(S::zero()).any() {
+                (scattered, horizon) = front.with_dark_horizon(level, scattered, horizon);
+            }
             let (panes, of_blind) = match &plan.walls[w].glass {
                 Some(layout) => layout.split(&mut at.panes),
                 None => (&mut at.panes[..], None),
@@ -176,9 +196,9 @@ impl<S: Real> SolarConditions<S> {
             let through = glass.optics.beam.split(light.cosine, panes);
             let diffuse = front.absorptance.iter().zip(&level.absorptance);
             for (pane, (&everywhere, &level)) in panes.iter_mut().zip(diffuse) {
-                *pane = *pane * directed + everywhere * scattered + level * light.horizon;
+                *pane = *pane * directed + everywhere * scattered + level * horizon;
             }
-            let spread = front.transmittance * scattered + level.transmittance * light.horizon;
+            let spread = front.transmittance * scattered + level.transmittance * horizon;
             if let (Some((_, blind)), Some(own)) = (&glass.blind, of_blind) {
                 let beam = through * directed;
                 let mut sun = [beam, beam + spread];
@@ -207,7 +227,7 @@ impl<S: Real> SolarConditions<S> {
     /// First incidence of what windows transmit, in zones where beams are traced.
     #[inline(always)]
     pub(crate) fn trace(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
-        if now.sunlight.dark() {
+        if self.dark {
             return;
         }
         for (z, numbers) in coefficients.zones.iter().enumerate() {
@@ -220,11 +240,11 @@ impl<S: Real> SolarConditions<S> {
     /// What windows between zones let pass, back and forth.
     // A rare part of a building: kept out of the code of the others.
     #[inline(never)]
-    pub(crate) fn pass(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+    pub(crate) fn pass(&mut self, plan: &Plan, coefficients: &Coefficients<S>) {
         for powers in [&mut self.passing, &mut self.entering, &mut self.exchanged] {
             powers.fill(S::zero());
         }
-        if now.sunlight.dark() {
+        if self.dark {
             return;
         }
         let on = |(z, i): (usize, usize)| {
@@ -285,12 +305,11 @@ impl<S: Real> SolarConditions<S> {
         &mut self,
         plan: &Plan,
         coefficients: &Coefficients<S>,
-        now: &Instant<'_>,
         surfaces: &mut BySurface<SurfaceConditions<S>>,
     ) {
         for (z, (zone, numbers)) in plan.zones.iter().zip(&coefficients.zones).enumerate() {
             let Some(distribution) = &numbers.solar_distribution else { continue };
-            if now.sunlight.dark() {
+            if self.dark {
                 (self.zones[z].lost, self.zones[z].in_glass) = (S::zero(), S::zero());
                 for &surface in &zone.surfaces {
                     surfaces[surface].solar = S::zero();

@@ -45,6 +45,7 @@ def _side(side: Side, zones: list[str], channels: tuple[list[str], Places], ids:
         written["longwave"] = fields_of(side.longwave, ids, "longwave.")
     if side.irradiance is not None:
         written["irradiance"] = columns.index(side.irradiance)
+        written["behind_obstacles"] = bool(side.behind_obstacles)
     if side.exposure is not None:
         written["exposure"] = side.exposure.model_dump()
     return written

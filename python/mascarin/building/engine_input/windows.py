@@ -182,6 +182,7 @@ def _glazed(
     }
     if window.outside.irradiance is not None:
         outside["irradiance"] = columns.index(window.outside.irradiance)
+        outside["behind_obstacles"] = bool(window.outside.behind_obstacles)
     if window.outside.longwave is not None:
         outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
     inside = {

@@ -61,6 +61,9 @@ pub enum Boundary<S> {
 pub struct Outdoors<S> {
     /// Orientation and view factors to sky and ground.
     pub plane: Plane<S>,
+    /// The same without horizon and without a given view of the sky, where a measured irradiance is that of the free plane and
+    /// obstacles act after it.
+    pub free: Option<Box<Plane<S>>>,
     /// Components (north, east) of the azimuth of the normal, for the wind.
     pub heading: [S; 2],
     /// Fraction of the incident long-wave radiation that has the temperature of the sky; the rest has that of the air [-].
@@ -137,6 +140,10 @@ pub(super) fn imposed<S: Real>(facing: &Facing, values: &Values<'_, S>) -> Optio
 fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
     let wall = &plan.description.surfaces[index.wall()];
     let (mut plane, heading) = plane(wall, index, side, values);
+    let free = plan.takes_from_measured(index).then(|| {
+        let sky_view = (S::one() + plane.normal[2]).scale(0.5);
+        Box::new(Plane { sky_view, ..plane })
+    });
     let horizon = &plan.description.site.horizon;
     if !horizon.is_empty() {
         let [sky, band] = horizon::open(horizon, &plane);
@@ -149,6 +156,7 @@ fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values
     let open = plan.solar_geometry.open_sky(index);
     Outdoors {
         plane,
+        free,
         heading,
         // F_sky sqrt(F_sky): near the horizon the sky has the temperature of the air, and so have the walls that cover a part.
         to_sky: if side.exposure.sky {

@@ -66,7 +66,12 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
 }
 
 fn check_irradiance(place: &str, side: &Side, (channels, glazed): (usize, bool)) -> Checked {
-    let Some(channel) = side.irradiance else { return Ok(()) };
+    let Some(channel) = side.irradiance else {
+        if side.behind_obstacles {
+            return refuse(place, "behind obstacles without a measured irradiance", "irradiance");
+        }
+        return Ok(());
+    };
     check_index(place, "irradiance in channel", channel, channels)?;
     if side.absorptance.is_none() && !glazed {
         return refuse(place, "a measured irradiance without it", "absorptance");

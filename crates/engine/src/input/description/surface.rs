@@ -77,9 +77,13 @@ pub struct Side {
     /// Long-wave exchange with sky, air and ground of an `outdoors` side.
     #[serde(default)]
     pub longwave: OutdoorLongwave,
-    /// Index into [`Description::channels`](super::Description::channels): measured irradiance on this plane [W/m2], used as it is.
+    /// Index into [`Description::channels`](super::Description::channels): measured irradiance on this plane [W/m2].
     #[serde(default)]
     pub irradiance: Option<usize>,
+    /// Whether the irradiance was measured behind all obstacles, and is used as it is; else it is that of the free plane, from which
+    /// obstacles take their part.
+    #[serde(default)]
+    pub behind_obstacles: bool,
     /// What of the weather reaches an `outdoors` side.
     #[serde(default)]
     pub exposure: Exposure,

@@ -4,7 +4,7 @@
 //! number Ra of the height (of `length`), `h = Nu k/length`:
 //!
 //! - g below 15 deg: `Nu = 0.13 Ra^1/3`;
-//! - 15 to 90 deg: `0.56 (Ra sin g)^1/4`, above the critical `Rac = 2.5e5 (e^(0.72 g)/sin g)^1/5` (g in degrees)
+//! - 15 to 90 deg, both included: `0.56 (Ra sin g)^1/4`, above the critical `Rac = 2.5e5 (e^(0.72 g)/sin g)^1/5` (g in degrees)
 //!   `0.13 (Ra^1/3 - Rac^1/3) + 0.56 (Rac sin g)^1/4`;
 //! - 90 to 179 deg: `0.56 (Ra sin g)^1/4`; under a level plate `0.58 Ra^1/5`.
 //!
@@ -21,6 +21,8 @@ use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY};
 const INDOOR_AIR: [f64; 2] = [0.025_621, 1.820_5e-5];
 /// 20 degC [K].
 const INDOOR: f64 = 293.15;
+/// A glazing is vertical above this inclination [deg].
+const VERTICAL: f64 = 90.0 - 1e-6;
 
 /// Where heat flows up and where it flows down.
 #[derive(Debug, Clone)]
@@ -79,7 +81,10 @@ impl<S: Real> Iso15099<S> {
             limit: S::select(flat, -S::one(), limit * limit),
         };
         let plate = per_nusselt.scale(0.58) * rayleigh.powf(S::constant(0.2));
-        let down = Branch { level: S::select(level, plate, S::zero()), limit: S::constant(f64::MAX), ..up };
+        // At the vertical itself the flow turns turbulent as well: 15 to 90 deg, 90 included.
+        let vertical = S::constant(VERTICAL).lt(degrees);
+        let limit = S::select(vertical, up.limit, S::constant(f64::MAX));
+        let down = Branch { level: S::select(level, plate, S::zero()), limit, ..up };
         Self([up, down])
     }
 }

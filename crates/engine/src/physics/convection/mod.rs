@@ -35,6 +35,8 @@
 //! Lanes, derivatives, ledger, and the linear systems need no change.
 
 pub(crate) mod alamdari_hammond;
+#[cfg(test)]
+mod borders;
 pub(crate) mod constant;
 pub(crate) mod correlation;
 pub(crate) mod doe2;

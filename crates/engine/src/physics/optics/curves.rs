@@ -3,7 +3,7 @@
 //! Source: Fritsch & Butland (1984), SIAM J. Sci. Stat. Comput. 5(2), doi:10.1137/0905021.
 
 use super::diffuse::{Diffuse, Unit, cosine};
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 
 /// Number of directions in a quarter of the horizon.
 const HORIZON: usize = 32;
@@ -35,12 +35,21 @@ impl<S: Real> Curves<S> {
         Self { knots, count, pieces }
     }
 
-    /// Transmittance at a cosine; fills in the absorptance of each pane.
+    /// Transmittance at a cosine; fills in the absorptance of each pane. Between two angles of a table the curves may together
+    /// exceed one: they are kept below it.
     #[inline(always)]
     pub fn split(&self, cosine: S, panes: &mut [S]) -> S {
         let mut transmittance = [S::zero()];
         self.read(cosine, 0, &mut transmittance);
         self.read(cosine, 1, panes);
+        let sum = panes.iter().fold(transmittance[0], |sum, part| sum + *part);
+        if S::one().lt(sum).any() {
+            let factor = S::one() / sum.max(S::one());
+            for pane in panes {
+                *pane = *pane * factor;
+            }
+            return transmittance[0] * factor;
+        }
         transmittance[0]
     }
 
@@ -194,6 +203,25 @@ mod tests {
         let means = Curves::new(&angles, &units).diffuse();
         assert!((means.transmittance - 1.0).abs() < 1e-12);
         assert!((means.absorptance[0] - 2.0 / 3.0).abs() < 1e-12);
+    }
+
+    /// A table whose curves together exceed one by 6 % between its angles: what is transmitted and absorbed does not.
+    #[test]
+    fn no_more_than_arrives() {
+        let angles = [0.0, 40.0, 50.0, 60.0, 90.0];
+        let through = [0.63, 0.93, 0.44, 0.95, 0.0];
+        let rest = [0.37, 0.07, 0.06, 0.0, 0.0];
+        let units: Vec<_> = through.iter().zip(rest).map(|(t, a)| vec![*t, a]).collect();
+        let curves = Curves::new(&angles, &units);
+        let mut above = 0;
+        for k in 0..=1000 {
+            let (cosine, mut panes, mut raw) = (f64::from(k) / 1000.0, [0.0], [0.0; 2]);
+            let sum = curves.split(cosine, &mut panes) + panes[0];
+            assert!((0.0..=1.0 + 1e-12).contains(&sum), "{sum} at {cosine}");
+            curves.read(cosine, 0, &mut raw);
+            above += usize::from(raw[0] + raw[1] > 1.0 + 1e-9);
+        }
+        assert!(above > 0, "the curves of the table do not exceed one anywhere");
     }
 
     /// The curve goes through its table.

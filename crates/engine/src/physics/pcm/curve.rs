@@ -324,3 +324,45 @@ pub(super) fn limit_at<S: Real>(from: S, to: S, place: S, width: S) -> S {
     let crosses = (from.lt(place) & place.lt(to)) | (to.lt(place) & place.lt(from));
     S::select(crosses & width.lt((to - from).abs()), place, to)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::description::ParamId;
+
+    /// Every curve at both ends of what melts, at its peak and far beyond: continuous, with the slope that its fraction has, from 0
+    /// to 1, and its integral rises by one kelvin for a kelvin where all is liquid.
+    #[test]
+    fn borders() {
+        let [centre, width, other] = [0, 1, 2].map(ParamId);
+        let values = Values::new(&[25.0_f64, 2.0, 1.0]);
+        let cubic = |continuity| MeltingCurve::SmoothStep { melting_temperature: centre, width, continuity };
+        let curves = [
+            MeltingCurve::TanhWidth { melting_temperature: centre, width },
+            cubic(1),
+            cubic(2),
+            MeltingCurve::Gaussian { melting_temperature: centre, width },
+            MeltingCurve::Gumbel { melting_temperature: centre, width, tail: Tail::Low },
+            MeltingCurve::Gumbel { melting_temperature: centre, width, tail: Tail::High },
+            MeltingCurve::Linear { melting_temperature: centre, width },
+            MeltingCurve::Triangle { melting_temperature: centre, below: width, above: other },
+        ];
+        for (k, described) in curves.iter().enumerate() {
+            let curve = Curve::new(&values, described);
+            assert!(curve.at(-75.0).fraction.abs() < 1e-9 && (curve.at(125.0).fraction - 1.0).abs() < 1e-9);
+            for place in [22.0, 23.0, 24.0, 25.0, 26.0, 27.0, 28.0] {
+                let step = 1e-6;
+                let [before, behind] = [-step, step].map(|more| curve.at(place + more));
+                let rise = behind.fraction - before.fraction;
+                assert!((-1e-12..2e-6).contains(&rise), "curve {k} at {place}: a step of {rise}");
+                // Only the slopes of straight flanks have steps.
+                let mean = 0.5 * (before.slope + behind.slope);
+                assert!((rise / (2.0 * step) - mean).abs() < 1e-5, "curve {k} at {place}");
+                if curve.integrable() {
+                    let area = (behind.molten - before.molten) / (2.0 * step);
+                    assert!((area - curve.at(place).fraction).abs() < 1e-5, "curve {k} at {place}: {area}");
+                }
+            }
+        }
+    }
+}

@@ -281,6 +281,7 @@ pub fn facing(facing: Facing, convection: Option<Convection>) -> Side {
         height: None,
         longwave: OutdoorLongwave::Exact,
         irradiance: None,
+        behind_obstacles: false,
         exposure: Exposure::default(),
         shaded_by: Vec::new(),
     }
