@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from mascarin._io import atomic, display
+from mascarin._io import atomic, display, locks
 from mascarin._io.locks import FolderLock
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
@@ -117,3 +118,28 @@ def test_numbers_of_a_csv_file_are_read_to_the_last_digit(tmp_path: Path, decima
     (tmp_path / "a.csv").write_text("\n".join(["x", *lines]) + "\n", encoding="utf-8")
     found = read_csv(tmp_path / "a.csv", sep=";", decimal=decimal)
     np.testing.assert_array_equal(found["x"].to_numpy(), written)
+
+
+def test_what_a_killed_process_left_is_removed_by_the_next_command(tmp_path: Path) -> None:
+    target, foreign = tmp_path / "room.fmu", tmp_path / "film.part"
+    foreign.write_text("a download")
+    killed = (
+        "import os, signal, sys\nfrom pathlib import Path\nfrom mascarin._io import atomic\n"
+        "with getattr(atomic, sys.argv[2])(Path(sys.argv[1])):\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    for how in ("replacing", "drafted"):
+        subprocess.run([sys.executable, "-c", killed, str(target), how], check=False)
+    assert len(list(tmp_path.glob(".room.fmu.*.part"))) == 2
+    with locks.writing(target):
+        assert [file.name for file in tmp_path.glob("*.part")] == ["film.part"]
+    subprocess.run([sys.executable, "-c", killed, str(target), "drafted"], check=False)
+    with locks.writing_into(tmp_path):
+        assert [file.name for file in tmp_path.glob("*.part")] == ["film.part"]
+    # Without a lock another process may still be writing: only what is older than a day is removed.
+    for name in (".a.csv.abcdefgh.part", ".b.csv.abcdefgh.part"):
+        (tmp_path / name).write_text("half")
+    old = time.time() - 2 * atomic.OLD
+    os.utime(tmp_path / ".a.csv.abcdefgh.part", (old, old))
+    atomic._cleaned.clear()
+    atomic.write(tmp_path / "c.csv", "whole")
+    assert sorted(file.name for file in tmp_path.glob("*.part")) == [".b.csv.abcdefgh.part", "film.part"]

@@ -6,8 +6,10 @@ import contextlib
 import errno
 import glob
 import os
+import re
 import shutil
 import tempfile
+import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Final
@@ -17,7 +19,13 @@ from mascarin._io.regular import special
 from mascarin.errors import InputError
 
 PART: Final = ".part"
-"""Ending of a file that is being written; one that is found later was left by a killed process."""
+"""Ending of a file that is being written; one that is found later was left by a killed process.
+
+What a killed process left is removed by the next command that writes the same file or folder, which it holds
+(`_io.locks`), and by any other writer in that folder after `OLD`: a process may still be writing before.
+"""
+OLD: Final = 86_400.0
+"""Age from which no process is still writing a file. [s]"""
 
 
 @contextlib.contextmanager
@@ -56,6 +64,7 @@ def replacing(path: Path, kind: str = "") -> Iterator[BinaryIO]:
     'a,b\n'
     """
     _require_possible(path, kind)
+    _remove_old(path.parent)
     handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=PART, dir=path.parent)
     draft = Path(name)
     try:
@@ -112,6 +121,7 @@ def drafted(path: Path, kind: str = "") -> Iterator[Path]:
         The file cannot be written; the file that was there before is unchanged.
     """
     _require_possible(path, kind)
+    _remove_old(path.parent)
     with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=PART, dir=path.parent) as folder:
         draft = Path(folder) / path.name
         yield draft
@@ -148,7 +158,8 @@ def write(path: Path, content: str | bytes, kind: str = "") -> Path:
         The file cannot be written.
     """
     with replacing(path, kind) as file:
-        file.write(content.encode() if isinstance(content, str) else content)
+        # Names of files may have bytes that are no text; such a byte is written as an escape.
+        file.write(content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content)
     return path
 
 
@@ -162,9 +173,34 @@ def remove_drafts_of(path: Path) -> None:
     _remove(path.parent.glob(f"{glob.escape(_prefix(path))}*{PART}"))
 
 
+def remove_named_drafts(folder: Path) -> None:
+    """Remove what killed processes left in a folder that this process has locked, and that is not its own.
+
+    Only names as `replacing` and `drafted` make them: other programs use the ending, too.
+    """
+    _remove(draft for draft in folder.glob(f".*{PART}") if _DRAFT.fullmatch(draft.name))
+
+
+#: Folders in which old drafts have been looked for.
+_cleaned: Final[set[Path]] = set()
+_DRAFT: Final = re.compile(rf"\..+\.[a-z0-9_]{{8}}{re.escape(PART)}")
+
+
+def _remove_old(folder: Path) -> None:
+    """Remove drafts of killed processes that no later command has found; once for a folder."""
+    if folder in _cleaned:
+        return
+    _cleaned.add(folder)
+    with contextlib.suppress(OSError):
+        before = time.time() - OLD
+        for draft in folder.glob(f".*{PART}"):
+            if _DRAFT.fullmatch(draft.name) and draft.lstat().st_mtime < before:
+                _remove([draft])
+
+
 def _remove(drafts: Iterable[Path]) -> None:
     for draft in drafts:
-        if draft.is_dir():
+        if draft.is_dir() and not draft.is_symlink():
             shutil.rmtree(draft, ignore_errors=True)
         else:
             draft.unlink(missing_ok=True)

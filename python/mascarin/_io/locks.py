@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
-from mascarin._io import identity
+from mascarin._io import atomic, identity
 from mascarin._io.regular import special
 from mascarin.errors import InputError, InUse
 
@@ -128,12 +129,13 @@ def writing(*files: Path | None) -> Iterator[None]:
                 place = file.resolve()
                 name = (
                     place.name
-                    if len(place.name.encode()) < 200
-                    else hashlib.sha256(place.name.encode()).hexdigest()
+                    if len(os.fsencode(place.name)) < 200
+                    else hashlib.sha256(os.fsencode(place.name)).hexdigest()
                 )
                 guard = place.with_name(f".{name}{NAME}")
                 taken = f"{file}: another process is writing to this file"
                 held.callback(_release, _acquired(guard, taken, "another file"), guard)
+                atomic.remove_drafts_of(file)
         yield
 
 
@@ -188,6 +190,7 @@ def writing_into(folder: Path | None) -> Iterator[None]:
         raise InputError(f"{folder}: cannot be made ({error.strerror}); choose another folder (-o)") from None
     try:
         with FolderLock(folder, remove=True):
+            atomic.remove_named_drafts(folder)
             yield
     finally:
         if not before:

@@ -189,8 +189,8 @@ class DesignResults:
             for name, table in tables.items()
         ]
         target = out / "designs.parquet"
-        with atomic.drafted(target) as draft:
-            tables["designs"].to_parquet(draft, index=False)
+        with atomic.replacing(target) as file:
+            tables["designs"].to_parquet(file, index=False)
         text = json.dumps(self.summary(), indent=1, ensure_ascii=False)
         return [*written, target, atomic.write(out / "design.json", text + "\n")]
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
 
-from mascarin._io import atomic, locks
+from mascarin._io import atomic, locks, memory
 from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 
 def require_parquet() -> None:
@@ -29,3 +34,32 @@ def foreign(file: Path) -> bool:
     if file.name == locks.NAME or file.suffix == atomic.PART:
         return False
     return not (file.name == "pieces" and file.is_dir() and not any(file.iterdir()))
+
+
+def table_of(file: BinaryIO, folder: Path, filters: Any, without: Collection[str]) -> pa.Table:
+    """Columns of a Parquet file.
+
+    Parameters
+    ----------
+    file : file
+        The open file: Parquet's library takes no names with bytes that are no text.
+    folder : Path
+        Its folder, for errors.
+    filters : list of tuple or None
+        Rows that are read, as pyarrow takes them.
+    without : collection of str
+        Columns that are left out.
+
+    Raises
+    ------
+    InputError
+        It claims more than memory holds.
+    """
+    import pyarrow.parquet as pq
+
+    found = pq.read_metadata(file)
+    names = [name for name in found.schema.to_arrow_schema().names if name not in without]
+    if filters is None:
+        memory.require(8 * found.num_rows * len(names), f"{folder}: the results", "read fewer members")
+    file.seek(0)
+    return pq.read_table(file, columns=names, filters=filters, page_checksum_verification=True)

@@ -14,12 +14,12 @@ import re
 import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
 
-from mascarin._io import atomic, display, identity, memory, own_files
-from mascarin.ensemble.folder import foreign, require_parquet
+from mascarin._io import atomic, display, identity, own_files
+from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
@@ -158,7 +158,8 @@ class Store:
         import pyarrow.parquet as pq
 
         try:
-            found = pq.read_metadata(self.path / RESULTS)
+            with (self.path / RESULTS).open("rb") as file:
+                found = pq.read_metadata(file)
             names = {*found.schema.to_arrow_schema().names}
         except (OSError, ValueError, pa.ArrowException):
             return False
@@ -255,8 +256,8 @@ class Store:
         """
         if self.complete:
             return
-        with self._blamed(), atomic.drafted(self.path / RESULTS) as draft:
-            self._join(draft)
+        with self._blamed(), atomic.drafted(self.path / RESULTS) as draft, draft.open("wb") as file:
+            self._join(file)
         if single_precision:
             self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
         self.manifest["warnings"] = list(warnings)
@@ -264,7 +265,7 @@ class Store:
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
         shutil.rmtree(self.path / "pieces", ignore_errors=True)
 
-    def _join(self, target: Path) -> None:
+    def _join(self, target: BinaryIO) -> None:
         """Write all chunks to one file, a part at a time."""
         import pyarrow as pa
         import pyarrow.parquet as pq
@@ -272,19 +273,20 @@ class Store:
         rows = max(_GROUP // self._width(), 1)
         held: list[pa.Table] = []
         writer: pq.ParquetWriter | None = None
-        for table in self._ordered():
-            writer = writer or pq.ParquetWriter(target, table.schema, write_page_checksum=True)
-            held.append(table)
-            joined = pa.concat_tables(held)
-            whole = len(joined) // rows * rows
-            for at in range(0, whole, rows):
-                writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
-            held = [joined.slice(whole)]
-        if writer is not None:
-            rest = pa.concat_tables(held)
-            if len(rest):
+        with contextlib.ExitStack() as opened:
+            for table in self._ordered():
+                writer = writer or opened.enter_context(
+                    pq.ParquetWriter(target, table.schema, write_page_checksum=True)
+                )
+                held.append(table)
+                joined = pa.concat_tables(held)
+                whole = len(joined) // rows * rows
+                for at in range(0, whole, rows):
+                    writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
+                held = [joined.slice(whole)]
+            rest = pa.concat_tables(held) if held else ()
+            if writer is not None and len(rest):
                 writer.write_table(rest.combine_chunks(), row_group_size=rows)
-            writer.close()
 
     def to_dataframe(self) -> pd.DataFrame:
         """Samples, objectives, relative energy-balance residual and failures by member; no series.
@@ -419,25 +421,13 @@ class Store:
         InputError
             No member has been run.
         """
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        pieces = [] if self.complete else [self._piece(*one) for one in sorted(self._chunks())]
-        sources: list[Any] = (
-            [self.path / RESULTS] if self.complete else [pa.BufferReader(one) for one in pieces]
-        )
-        if not sources:
+        if self.complete:
+            with (self.path / RESULTS).open("rb") as file:
+                return [table_of(file, self.path, filters, without)]
+        pieces = [self._piece(*one) for one in sorted(self._chunks())]
+        if not pieces:
             raise InputError(f"{self.path}: no member has been run yet")
-        tables = []
-        for source in sources:
-            with pq.ParquetFile(source, page_checksum_verification=True) as file:
-                names = [name for name in file.schema_arrow.names if name not in without]
-                memory.require(
-                    8 * file.metadata.num_rows * len(names), f"{self.path}: the results", "read fewer members"
-                )
-                table = file.read(columns=names)
-            tables.append(table if filters is None else table.filter(pq.filters_to_expression(filters)))
-        return tables
+        return [table_of(io.BytesIO(piece), self.path, filters, without) for piece in pieces]
 
     def _piece(self, first: int, last: int) -> bytes:
         """Content of a piece."""

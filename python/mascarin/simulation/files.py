@@ -177,7 +177,9 @@ class _Parquet:
         schema = pa.schema(
             fields, metadata={**(table.schema.metadata or {}), _KEY: json.dumps(dict(attributes)).encode()}
         )
-        pq.write_table(table.cast(schema), self._part, write_page_checksum=True)
+        # Open files: Parquet's library takes no names with bytes that are no text.
+        with self._part.open("wb") as file:
+            pq.write_table(table.cast(schema), file, write_page_checksum=True)
 
     def close(self) -> None:
         """Nothing is open."""
@@ -257,10 +259,10 @@ def _read_parquet(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     import pyarrow.parquet as pq
 
     try:
-        shape = pq.read_metadata(path)
-        numbers = shape.num_rows * shape.num_columns
-        memory.require(8 * numbers, f"{path}: the series", "use a part of the file")
-        table = pq.read_table(path, page_checksum_verification=True)
+        with path.open("rb") as raw, pq.ParquetFile(raw, page_checksum_verification=True) as file:
+            numbers = file.metadata.num_rows * file.metadata.num_columns
+            memory.require(8 * numbers, f"{path}: the series", "use a part of the file")
+            table = file.read()
     except pa.ArrowException as error:
         raise ValueError(str(error).splitlines()[0]) from None
     attributes = own_files.json_of((table.schema.metadata or {})[_KEY])
