@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io import atomic, display, locks
+from mascarin._io.regular import require_text
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.energy import ensemble_warnings
@@ -100,6 +101,7 @@ class Store:
             The folder is not empty and holds no ensemble; or pyarrow is not installed.
         """
         _require_parquet()
+        require_text(path)
         if (path / MANIFEST).exists() or not path.exists():
             return
         # What is left where the first file could not be written: the lock, drafts, an empty folder.
