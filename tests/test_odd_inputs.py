@@ -68,6 +68,15 @@ def run(place: Path, *more: str) -> list[str]:
 DSC = "temperature [degC],cp heating [J/(g K)]\n" + "".join(
     f"{t:.2f},{2.0:.2f}\n" for t in temperatures()[::8]
 )
+#: Channels of the weather that the measured table does not have.
+ABSENT = (
+    "wind_speed",
+    "wind_direction",
+    "dew_point",
+    "global_horizontal",
+    "diffuse_horizontal",
+    "direct_normal",
+)
 #: Commands that read a file: its ending, a file that is read, and the words.
 READ: dict[str, tuple[str, str, Callable[[str, Path], list[str]]]] = {
     "check": (".yaml", ROOM, lambda file, at: ["check", file]),
@@ -76,7 +85,10 @@ READ: dict[str, tuple[str, str, Callable[[str, Path], list[str]]]] = {
     "measured": (
         ".csv",
         "time,a,b\n2001-01-01 00:00,1,2\n2001-01-01 01:00,2,3\n",
-        lambda file, at: [*run(at), "--measurements", file],
+        lambda file, at: [
+            "run", str(at / "room.yaml"), "--weather", file, "--column", "air_temperature=a",
+            *(f"--column={name}=none" for name in ABSENT), "--timezone", "UTC",
+        ],
     ),
     "dsc": (".csv", DSC, lambda file, at: ["dsc", file]),
     "convert": (".idf", IDF, lambda file, at: ["convert", file, "-o", str(at / "made.yaml")]),
@@ -147,8 +159,67 @@ def test_what_is_no_file_is_refused(name: str, place: Path) -> None:
     names = [*map(str, kinds.values()), "/dev/full", "", ".", f"a\0b{ending}", f"\udcff{ending}"]
     for file in names:
         code, _, err = said(*words(file, place))
-        assert code == 2, (file, err[-500:])
+        # GenOpt has exit code 1 for an error.
+        assert code in ((1, 2) if name == "optimize" else (2,)), (file, err[-500:])
         assert "defect" not in err
+
+
+@posix
+def test_what_cannot_be_written_is_refused(place: Path) -> None:
+    room, weather = str(place / "room.yaml"), ["--weather", str(place / "site.epw")]
+    short = [*weather, "--end", "1995-01-02", "--step", "3h"]
+    outputs = {
+        ".csv": [["run", room, *short], ["weather", weather[1]]],
+        ".nc": [["run", room, *short]],
+        ".parquet": [["run", room, *short]],
+        ".html": [["view", room]],
+        ".fmu": [["fmu", room, *short]],
+        ".yaml": [["convert", str(place / "model.idf")]],
+        "": [["sweep", room, *short, "--draw", "2", "--objective", "max:room.air_temperature"]],
+    }
+    (place / "model.idf").write_text(IDF, encoding="utf-8")
+    (place / "file").write_text("x")
+    for ending, commands in outputs.items():
+        (place / f"folder{ending}").mkdir(exist_ok=True)
+        (place / f"folder{ending}" / "kept").write_text("x")
+        os.mkfifo(place / f"pipe{ending}")
+        for command in commands:
+            for name in ("folder", "pipe", "none/out", "file/out", "n" * 300, "a\0b", "\udcff/x", "\udcff"):
+                if not ending and name == "none/out":
+                    continue  # folders are made
+                odd = str(place / f"{name}{ending}")
+                option = "--csv" if command[0] == "weather" else "-o"
+                code, _, err = said(*command, option, odd, *(["--no-open"] if command[0] == "view" else []))
+                assert code == 2, (command[0], odd, err[-400:])
+                assert "defect" not in err
+    assert not list(place.rglob("*.part"))
+
+
+NUMBERS = ("", "nan", "inf", "-1", "0", "1e400", "9" * 400, "1e-300", "x", "1h1h", "1e30 h", "\0", "\x1b[31m")
+OPTIONS = ("--step", "--start", "--end", "--initial", "--interval", "--set", "--output")
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_an_odd_value_of_an_option_is_refused(option: str, place: Path) -> None:
+    for value in NUMBERS:
+        words = [*run(place), option, value]
+        code, out, err = said(*words)
+        possible = option == "--initial" and value in ("-1", "0", "1e-300")
+        assert code == (0 if possible else 2), (value, err[-400:])
+        assert not HIDDEN.search(out + err)
+
+
+@posix
+def test_inputs_may_have_names_that_are_no_text(place: Path) -> None:
+    odd = place / "\udcff\x1b[31m.yaml"
+    odd.write_text(ROOM, encoding="utf-8")
+    words = ["run", str(odd), *run(place)[2:]]
+    for more in (["-o", str(place / "o.csv")], ["-o", str(place / "o.nc")], ["--json"],
+                 ["--report", str(place / "o.html")]):  # fmt: skip
+        code, out, err = said(*words, *more)
+        assert code == 0, err[-400:]
+        assert not HIDDEN.search(out + err)
+    assert "\\udcff\\u001b[31m.yaml" in (place / "o.html").read_text(encoding="utf-8")
 
 
 @posix

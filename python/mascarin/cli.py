@@ -279,6 +279,9 @@ def _report(error: BaseException) -> int:
         place = "a file" if error.filename is None else f"'{error.filename}'"
         _say(f"error: cannot use {place}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
         return EXIT_INPUT
+    if isinstance(error, ValueError) and str(error).startswith("embedded null"):
+        _say("error: found a name of a file with a zero in it, which no system has; correct the name")
+        return EXIT_INPUT
     if isinstance(error, MemoryError):
         free = memory.available()
         _say(

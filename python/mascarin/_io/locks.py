@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
 from mascarin._io import atomic, identity
-from mascarin._io.regular import special
+from mascarin._io.regular import require_text, special
 from mascarin.errors import InputError, InUse
 
 if TYPE_CHECKING:
@@ -124,6 +124,7 @@ def writing(*files: Path | None) -> Iterator[None]:
         held.enter_context(identity.outputs(*(file for file in files if file is not None)))
         for file in files:
             if file is not None:
+                _require_possible(file)
                 _require_writable(file)
                 # The name of the output may be as long as the system allows.
                 place = file.resolve()
@@ -151,6 +152,13 @@ def _require_writable(file: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"{file}: cannot be written ({error.strerror}); choose another folder") from None
+
+
+def _require_possible(path: Path) -> None:
+    """Refuse a name that no system has."""
+    if "\0" in str(path):
+        raise InputError(f"{str(path)!r}: found a name with a zero in it; choose another name")
+    require_text(path)
 
 
 @contextlib.contextmanager
@@ -181,6 +189,7 @@ def writing_into(folder: Path | None) -> Iterator[None]:
     if folder is None:
         yield
         return
+    _require_possible(folder)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: found a file, expected a folder; choose another folder (-o)")
     before = folder.exists()

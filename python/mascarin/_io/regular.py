@@ -51,6 +51,32 @@ def requiring(check: Callable[[Path], object]) -> Iterator[None]:
         _REQUIRED.reset(token)
 
 
+def require_text(path: Path) -> None:
+    """Refuse a name of an output that is not text: files name others, and libraries open them by text.
+
+    Parameters
+    ----------
+    path : Path
+        File or folder.
+
+    Raises
+    ------
+    InputError
+        Its name, or that of a folder above it, is not UTF-8.
+
+    Examples
+    --------
+    >>> require_text(Path("results"))
+    """
+    try:
+        str(path.absolute()).encode()
+    except UnicodeEncodeError:
+        raise InputError(
+            f"{str(path)!r}: found a name that is not UTF-8 text; expected one that other files can contain: "
+            "choose another name or folder"
+        ) from None
+
+
 def special(path: Path) -> str | None:
     """What a path is, in words, if it is neither a file nor a folder; links are followed.
 

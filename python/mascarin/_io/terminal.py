@@ -8,7 +8,8 @@ from typing import Final
 #: Control characters but tab and line feed; marks that change the direction of text or that nobody sees.
 #: Unicode 15, chapter 23; Boucher & Anderson 2021, Trojan Source, arXiv:2111.00169.
 _HIDDEN: Final = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufff9-\ufffb"
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufff9-\ufffb"
+    "\ud800-\udfff"  # parts of names that are not UTF-8
     "\U000e0000-\U000e007f]"
 )
 
@@ -37,5 +38,5 @@ def printable(text: str) -> str:
 
 
 def _escaped(found: re.Match[str]) -> str:
-    units = found[0].encode("utf-16-be")
+    units = found[0].encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[k]:02x}{units[k + 1]:02x}" for k in range(0, len(units), 2))

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 import numpy as np
 
 from mascarin._io import atomic, display, identity, own_files
+from mascarin._io.regular import require_text
 from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
@@ -100,6 +101,7 @@ class Store:
             The folder is not empty and holds no ensemble; or pyarrow is not installed.
         """
         require_parquet()
+        require_text(path)
         if (path / MANIFEST).exists() or not path.exists():
             return
         # What is left where the first file could not be written: the lock, drafts, an empty folder.

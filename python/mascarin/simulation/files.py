@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from mascarin._io import atomic, identity, memory, own_files
-from mascarin._io.regular import require_regular
+from mascarin._io.regular import require_regular, require_text
 from mascarin.errors import InputError
 from mascarin.simulation.blocks import InMemory
 from mascarin.weather.timezones import parse_timezone
@@ -42,6 +42,7 @@ def require_ending(path: Path, option: str) -> None:
 
 
 def _require_pyarrow(path: Path) -> None:
+    require_text(path)
     try:
         import pyarrow  # noqa: F401
     except ImportError:
