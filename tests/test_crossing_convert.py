@@ -82,8 +82,8 @@ WITHOUT_OBJECTS: Final = {
 def test_every_feature_is_crossed_with_the_conversion() -> None:
     missing = sorted(set(FEATURES) - set(OBJECTS) - set(WITHOUT_OBJECTS))
     assert missing == [], (
-        f"features that are not crossed with 'mascarin convert': {missing}. Enter their objects of EnergyPlus "
-        "in OBJECTS of tests/test_crossing_convert.py, or the reason why there are none in WITHOUT_OBJECTS"
+        f"features that are not crossed with 'mascarin convert': {missing}. Enter their objects of EnergyPlus"
+        " in OBJECTS of tests/test_crossing_convert.py, or the reason why there are none in WITHOUT_OBJECTS"
     )
 
 
