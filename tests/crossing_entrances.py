@@ -282,7 +282,7 @@ def _optimize(bench: Bench) -> Told:
         patch.setattr(Program, "_start", start)
         # One run at a time: the folder is that of the process.
         told = bench.command("optimize", sorted((bench.folder / "genopt").glob("*.ini"))[0], "--workers", "1")
-    return Told(told.code, "\n".join([told.text, *said]))
+    return Told(told.code, "\n".join([made.text, told.text, *said]))
 
 
 def _design_command(bench: Bench) -> Told:
@@ -363,7 +363,7 @@ WITHOUT_BUILDING: Final[dict[str, str]] = {
 WITHOUT_RUN: Final[dict[str, str]] = {
     "fmu": "the importing program makes the run",
     "view": "shows the building",
-    "genopt": "writes a project; its runs are those of optimize",
+    "cost": "one evaluation of a search, in a process of its own: genopt, which writes the project, says it",
     "check": "reads the building",
     "parameters": "reads the building",
     "outputs": "reads the building",

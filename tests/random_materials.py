@@ -110,9 +110,9 @@ def _table(draw: Draw, start: float) -> Json:
         law |= {"kind": "capacity", "capacities": [draw.log(1.5e3, 6e4) for _ in temperatures]}
     if draw.chance(0.5):
         law["melting_range"] = [temperatures[1], temperatures[-2]]
-    if draw.chance(0.3):
+    if draw.chance(0.6):
         law["temperature_shift"] = draw.number(-2.0, 2.0)
-    if draw.chance(0.3):
+    if draw.chance(0.6):
         law["enthalpy_scale"] = draw.number(0.8, 1.2)
     return law
 
@@ -128,7 +128,7 @@ def melting(draw: Draw) -> Json:
     }
     if draw.chance(0.1):
         made["source"] = "a measurement"
-    way = draw.whole(0, 5)
+    way = draw.whole(0, 4)
     if way == 0:
         return made | {"law": _table(draw, middle)}
     made["latent_heat"] = draw.log(5e4, 3e5)
@@ -171,7 +171,7 @@ def materials(draw: Draw) -> Json:
             made["gap"]["source"] = "ISO 6946:2017"
     if draw.chance(0.35):
         made["product"] = product(draw)
-    if draw.chance(0.35):
+    if draw.chance(0.45):
         made["wax"] = melting(draw)
     return made
 

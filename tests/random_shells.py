@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from mascarin.building.part import Part
+from mascarin.building.surface import Side
+from mascarin.building.window import WindowOutside
 from random_draw import Draw, four
 from random_schedules import Schedules
 
@@ -51,6 +54,14 @@ def film(draw: Draw, facing: str) -> Any:
     return draw.one(any_air)
 
 
+def _irradiance(draw: Draw, part: type[Part], column: str) -> Json:
+    """A measured irradiance: of the free plane, or behind what shades it where a part has this key."""
+    made: Json = {"irradiance": column}
+    if "behind_obstacles" in part.model_fields and draw.chance(0.4):
+        made["behind_obstacles"] = draw.of(True, True, False)
+    return made
+
+
 def outdoors(draw: Draw) -> Json:
     """A side that faces the weather, or parts of it."""
     side: Json = {
@@ -65,7 +76,7 @@ def outdoors(draw: Draw) -> Json:
     if exposed["sun"]:
         side["absorptance"] = draw.noted(draw.number(0.0, 1.0), 0.0)
         if draw.chance(0.08):
-            side["irradiance"] = "G_wall"
+            side |= _irradiance(draw, Side, "G_wall")
     if ((exposed["sun"] and "irradiance" not in side) or exposed["sky"]) and draw.chance(0.15):
         side["sky_view"] = draw.number(0.0, 1.0)
     if exposed["wind"] and draw.chance(0.25):
@@ -149,7 +160,7 @@ def window(draw: Draw, schedules: Schedules, surface: str, between: bool, glazin
     outer: Json = {"convection": film(draw, "zone" if between else "outdoors")}
     if not between:
         if draw.chance(0.08):
-            outer["irradiance"] = "G_pane"
+            outer |= _irradiance(draw, WindowOutside, "G_pane")
         elif draw.chance(0.1):
             outer["sky_view"] = draw.number(0.1, 1.0)
         if draw.chance(0.2):

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from mascarin._io.durations import seconds_of
 from mascarin.weather import Climate, Measurements
 from random_draw import Draw
 from random_schedules import COLUMNS
@@ -109,7 +110,7 @@ def weather(seed: int) -> Weather:
 def _options(draw: Draw) -> tuple[dict[str, Any], float]:
     """Step, scheme and start of a run, and its length [s]."""
     step = draw.one(STEPS)
-    seconds = pd.Timedelta(step).total_seconds()
+    seconds = seconds_of(step)
     count = draw.whole(20, 70) if seconds > 200.0 else draw.whole(60, 140)
     initial: Any = draw.of(draw.number(-30.0, 5.0), draw.number(5.0, 28.0), draw.number(28.0, 60.0))
     if draw.chance(0.1):
@@ -118,7 +119,7 @@ def _options(draw: Draw) -> tuple[dict[str, Any], float]:
     if draw.chance(0.35 if seconds > 500.0 else 0.1):
         # A period that is much shorter than a day has no state that repeats in a heavy building.
         options |= {"initial": "repeat", "first_period": "1d" if seconds > 500.0 else "6h"}
-        count = max(count, int(pd.Timedelta(options["first_period"]).total_seconds() / seconds))
+        count = max(count, int(seconds_of(options["first_period"]) / seconds))
     usual = ["sdirk2"] * 3 + ["linearly-implicit", "backward-euler"] * 2
     options["scheme"] = draw.one([*usual, "apparent-capacity"])
     return options, seconds * count
@@ -138,7 +139,7 @@ def _start(draw: Draw, kind: str, latitude: float) -> pd.Timestamp:
 
 def _height(index: pd.DatetimeIndex, place: dict[str, Any], minutes: float) -> Array:
     """Sine of the height of the sun (Cooper 1969; equation of time neglected: a few minutes)."""
-    day = index.dayofyear.to_numpy() + index.hour.to_numpy() / 24.0
+    day = index.day_of_year.to_numpy() + index.hour.to_numpy() / 24.0
     tilt = np.radians(23.45) * np.sin(2.0 * np.pi * (284.0 + day) / 365.0)
     hour = (
         index.hour.to_numpy() + (index.minute.to_numpy() + minutes) / 60.0 + float(place["longitude"]) / 15.0
@@ -179,7 +180,7 @@ def _channels(
         },
         index=index,
     )
-    normal = SOLAR_CONSTANT * (1.0 + 0.033 * math.cos(2.0 * math.pi * index[0].dayofyear / 365.0))
+    normal = SOLAR_CONSTANT * (1.0 + 0.033 * math.cos(2.0 * math.pi * index[0].day_of_year / 365.0))
     direct, diffuse, total = _radiation(draw, kind, place, index, covered, normal)
     if draw.chance(0.25):
         frame["global_horizontal"] = total

@@ -113,6 +113,8 @@ SAID: Final[dict[str, str]] = {
     "unmelted layer": r"stayed (solid|liquid)",
     "open balance": r"energy balance (does|of .{0,40}do(es)?) not close",
     "open vapour balance": r"vapour balance (does|of .{0,40}do(es)?) not close",
+    "no sorption data": r"no sorption data",
+    "implausible surfaces": r"cannot enclose",
     "saturated air": r"(was|were) saturated",
 }
 

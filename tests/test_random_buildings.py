@@ -17,7 +17,9 @@ from random_judges import faults
 PARTS = 6
 CASES = 60
 #: Cases whose descriptions are drawn and not run.
-DRAWN = 240
+DRAWN = 300
+#: Cases of a part that a run may refuse or not solve.
+MOST_ENDED = 1
 #: Least part of the drawn descriptions that can be used.
 USABLE = 0.9
 
@@ -66,8 +68,8 @@ def test_nothing_impossible_comes_out(part: int) -> None:
     lines = [random_campaign.judged(seed) for seed in range(part, CASES, PARTS)]
     found = [(line["seed"], *fault) for line in lines for fault in line["faults"]]
     assert found == []
-    ended = [line for line in lines if line["outcome"] != "run"]
-    assert len(ended) <= (1.0 - USABLE) * len(lines), [(one["seed"], one.get("error")) for one in ended]
+    ended = [(line["seed"], line.get("error")) for line in lines if line["outcome"] != "run"]
+    assert len(ended) <= MOST_ENDED, ended
 
 
 def test_judges_find_what_is_impossible() -> None:

@@ -1,0 +1,102 @@
+"""Every feature of a building in a model of EnergyPlus: it is converted, or what is left out is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import pytest
+
+from crossing_features import FEATURES
+from idf_samples import IDF
+from mascarin.building import Building
+from mascarin.building.reading import parse
+from mascarin.convert import convert, yaml_text
+
+
+class Objects(NamedTuple):
+    """Objects of EnergyPlus for a feature.
+
+    Attributes
+    ----------
+    text : str
+        What is added to the model of `idf_samples`.
+    has : callable
+        Whether a building has the feature; None where the objects are left out.
+    named : str
+        Class that a finding names where the objects are left out.
+    """
+
+    text: str
+    has: Callable[[Building], bool] | None
+    named: str = ""
+
+
+_HYSTERESIS = """
+Material,Lining,MediumSmooth,0.012,0.25,900,1000;
+MaterialProperty:PhaseChangeHysteresis,Lining,20000,0.25,900,1000,1,23,1,0.25,900,1000,1,20,1;
+Construction,Melting,Brick,Lining;
+BuildingSurface:Detailed,Side,Wall,Melting,Store,,Outdoors,,SunExposed,WindExposed,autocalculate,4,
+  4,0,3, 4,0,0, 4,3,0, 4,3,3;
+"""
+_BLIND = """
+WindowMaterial:Shade,Roller,0.1,0.6,0.1,0.6,0.9,0,0.003,0.1,0.05,0.5,0.5,0.5,0.5,0;
+WindowShadingControl,Noon,Room,1,ExteriorShade,,AlwaysOn,,,No,No,Roller,FixedSlatAngle,,,,,Sequential,Window;
+"""
+_NETWORK = "AirflowNetwork:SimulationControl,Network,MultizoneWithoutDistribution;"
+_INNER = (
+    "FenestrationSurface:Detailed,Hatch,Window,Glass,Between,,autocalculate,,1,4, 3,5,2, 3,5,1, 1,5,1, 1,5,2;"
+)
+_STACK = "ZoneVentilation:WindandStackOpenArea,Slit,Store,0.1,Always,autocalculate,0,1,autocalculate;"
+_LOGGED = (
+    "Schedule:File,Logged,Any,logged.csv,2,1,8760,Comma,No,60;\nLights,Lamp,Store,Logged,LightingLevel,50;"
+)
+
+#: By feature: objects, and whether the building has it.
+OBJECTS: Final[dict[str, Objects]] = {
+    "nothing": Objects("", lambda one: len(one.zones) == 2),
+    "own curves": Objects("", lambda one: any(m.kind == "pcm" for m in one.materials.values())),
+    "hysteresis": Objects(
+        _HYSTERESIS, lambda one: any(getattr(m, "hysteresis", None) for m in one.materials.values())
+    ),
+    "vents": Objects(_NETWORK, None, "AirflowNetwork"),
+    "controls": Objects(_NETWORK, None, "AirflowNetwork"),
+    "openings": Objects(_STACK, lambda one: bool(one.openings)),
+    "blinds": Objects(_BLIND, None, "WindowShadingControl"),
+    "loads": Objects("", lambda one: any(zone.loads for zone in one.zones.values())),
+    "interior windows": Objects(_INNER, lambda one: len(one.windows) == 2),
+    "measured columns": Objects(_LOGGED, lambda one: "Lamp" in one.zones["Store"].gains),
+    "mechanical air": Objects("", lambda one: bool(one.air_paths)),
+    "shades": Objects("", lambda one: bool(one.shades)),
+}
+#: Features that a model of EnergyPlus cannot have, with the reason.
+WITHOUT_OBJECTS: Final = {
+    "products": "the catalogue belongs to Mascarin",
+    "humidity": "the vapour of people and materials is part of other objects, whose findings name it",
+    "thermal bridges": "EnergyPlus has no object for them",
+    "sensors and ties": "outputs inside walls belong to nodes, and numbers are not tied",
+}
+
+
+def test_every_feature_is_crossed_with_the_conversion() -> None:
+    missing = sorted(set(FEATURES) - set(OBJECTS) - set(WITHOUT_OBJECTS))
+    assert missing == [], (
+        f"features that are not crossed with 'mascarin convert': {missing}. Enter their objects of EnergyPlus"
+        " in OBJECTS of tests/test_crossing_convert.py, or the reason why there are none in WITHOUT_OBJECTS"
+    )
+
+
+@pytest.mark.parametrize("feature", list(OBJECTS))
+def test_a_feature_is_converted_or_named(feature: str, tmp_path: Path) -> None:
+    file, objects = tmp_path / "model.idf", OBJECTS[feature]
+    file.write_text(IDF + objects.text, encoding="utf-8")
+    (tmp_path / "logged.csv").write_text("hour,value\n" + "".join(f"{h},0.5\n" for h in range(8760)))
+    found = convert(file)
+    left = [f"{one.kind} {one.name}: {one.what}" for one in found.findings]
+    if objects.has is None:
+        assert any(objects.named in line for line in left), left
+    else:
+        assert objects.has(found.building), left
+    assert parse(yaml_text(found), "model.yaml") == found.building
+    assert found.building.check()
