@@ -384,8 +384,7 @@ class Simulation(VectorRuns):
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
-        watch = Watch(self.building, self.outputs, self.scheme)
-        count = len(self.outputs)
+        watch, count = Watch(self.building, self.outputs, self.scheme), len(self.outputs)
 
         def seen(rows: Array) -> None:
             watch.add(rows)
@@ -395,8 +394,7 @@ class Simulation(VectorRuns):
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judgement = Judgement.read(raw, self.compiled.dated)
-        site = self.building.site
-        sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
+        parts = {"building": self.building_warnings, "judged": judgement.warnings(self.step_seconds)}
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -413,14 +411,7 @@ class Simulation(VectorRuns):
                 halved_steps=int(raw["halvings"]),
                 reversals=int(raw["reversals"]),
             ),
-            warnings=run_warnings.collected(
-                energy,
-                vapour,
-                watch,
-                step_seconds=self.step_seconds,
-                building=self.building_warnings,
-                judged=[*judgement.warnings(self.step_seconds), *sun],
-            ),
+            warnings=run_warnings.collected(energy, vapour, watch, step_seconds=self.step_seconds, **parts),
             vapour=vapour,
             judgement=judgement,
         )
@@ -435,10 +426,12 @@ class Simulation(VectorRuns):
 
     @cached_property
     def building_warnings(self) -> tuple[str, ...]:
-        """Warnings about the building, which every run of it has: areas, volumes, materials, mesh."""
+        """Warnings that every run has: areas, volumes, materials and mesh of the building, irradiance."""
         from mascarin.building import plausibility  # pydantic, as above
 
-        return tuple(plausibility.warnings(self.building, self.notes))
+        site = self.building.site
+        sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
+        return (*sun, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[str, ...]:
         """Warnings of a run with a parameter vector, of which nothing else is kept.
