@@ -391,9 +391,8 @@ class Simulation(VectorRuns):
             take(rows[:, :count])
 
         raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
-        energy = EnergyLedger.read(raw)
+        energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        judgement = Judgement.read(raw, self.compiled.dated)
         parts = {"building": self.building_warnings, "judged": judgement.warnings(self.step_seconds)}
         return Finished(
             energy=energy,
