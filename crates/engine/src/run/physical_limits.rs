@@ -1,7 +1,7 @@
 //! What no building can do, looked for after every step of a run: an energy balance closes for nonsense, too.
 //!
-//! *Impossible* are temperatures below absolute zero, negative humidity, ideal loads above their capacity, and recorded fractions outside
-//! of 0 to 1 ([`Output::limits`]): the run ends with an error that names time and place; a member in lanes is marked as failed and run
+//! *Impossible* are temperatures below absolute zero, negative humidity, ideal loads above their capacity, a calculated irradiance above
+//! the extraterrestrial one and what the ground reflects of it, and recorded fractions outside of 0 to 1 ([`Output::limits`]): the run ends with an error that names time and place; a member in lanes is marked as failed and run
 //! again alone, where it ends in the same way.
 //!
 //! *Outside of its causes* is a temperature below the lowest, or above the highest, of the start of the run and of all temperatures that
@@ -16,10 +16,12 @@ use crate::error::EngineError;
 use crate::input::forcing::channel;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::constants::KELVIN;
+use crate::physics::solar::greatest_irradiance;
 use crate::run::outputs::Output;
 use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use crate::weather::index::IrradianceSource;
 
 /// Largest part of a difference of temperatures by which a step of SDIRK2 leaves the range of its causes [-].
 ///
@@ -36,6 +38,8 @@ const NO_VAPOUR: ByPrecision = ByPrecision { double: -1e-12, single: -1e-6 };
 /// What rounding and the tolerances of the solver may add to a load, as a part of its capacity [-].
 const CAPACITY: ByPrecision = ByPrecision { double: 1e-6, single: 1e-2 };
 
+/// What rounding may add to an irradiance, and a change of the extraterrestrial one within a step, as a part of the limit [-].
+const IRRADIANCE: f64 = 1e-3;
 /// What rounding may add to a quantity beyond its limits, in its unit.
 const FRACTION: ByPrecision = ByPrecision { double: 1e-9, single: 1e-3 };
 
@@ -100,6 +104,7 @@ impl<S: Real> PhysicalLimits<S> {
         for &zone in &stepper.model.plan.ideal_loads {
             impossible = impossible | beyond_capacity(stepper, state, row, zone);
         }
+        impossible = impossible | too_bright(stepper, row);
         if impossible.any() {
             if const { S::LANES == 1 } {
                 return Err(self.name_impossible(stepper, state, row, step));
@@ -201,6 +206,12 @@ impl<S: Real> PhysicalLimits<S> {
                 return impossible(zone_name(zone), what);
             }
         }
+        if too_bright(stepper, row).lane(0) {
+            let most = greatest(stepper, row).lane(0);
+            let sun = stepper.weather.sun.irradiances.iter().map(|sun| sun.lane(0)).fold(0.0, f64::max);
+            let what = format!("an irradiance of {sun:.0} W/m2, expected {most:.0} W/m2 at most");
+            return impossible("a surface outdoors".to_owned(), what);
+        }
         let (place, temperature) = extreme(plan, state, |a, b| a < b);
         impossible(place, format!("{temperature:.1} degC, expected no temperature below -273.15 degC"))
     }
@@ -216,6 +227,29 @@ impl<S: Real> PhysicalLimits<S> {
             if low - coldest > hottest - high { (cold, coldest, low) } else { (hot, hottest, high) };
         self.outlier = Some(Outlier { step, place, temperature, bound });
     }
+}
+
+/// What an irradiance cannot exceed in a forcing row, on a plane that sees nothing but the ground [W/m2].
+#[inline(always)]
+fn greatest<S: Real>(stepper: &Stepper<'_, S>, row: &[f64]) -> S {
+    let reflectance = stepper.model.coefficients.ground_reflectance;
+    greatest_irradiance(row[channel::DIRECT_NORMAL_EXTRA], reflectance, S::one())
+}
+
+/// Lanes where a calculated irradiance is above what can be; none where the extraterrestrial one is unknown.
+#[inline(always)]
+fn too_bright<S: Real>(stepper: &Stepper<'_, S>, row: &[f64]) -> S::Mask {
+    if row[channel::DIRECT_NORMAL_EXTRA] <= 0.0 {
+        return S::Mask::splat(false);
+    }
+    let weather = &stepper.weather;
+    let mut brightest = S::zero();
+    for (source, &sun) in weather.index.irradiance_sources.iter().zip(&weather.sun.irradiances) {
+        if let IrradianceSource::Uniform(..) | IrradianceSource::Varied(..) = source {
+            brightest = brightest.max(sun);
+        }
+    }
+    greatest(stepper, row).scale(1.0 + IRRADIANCE).lt(brightest)
 }
 
 /// Lanes where one of the values of some outputs is beyond its limits.
@@ -337,7 +371,7 @@ mod tests {
     fn judged(
         plan: &Plan,
         rows: &[f64],
-        change: impl Fn(&mut State<f64>),
+        change: impl Fn(&mut State<f64>, &mut Stepper<'_, f64>),
     ) -> Result<PhysicalLimits<f64>, EngineError> {
         let (scheme, numbers) = (Scheme::Sdirk2, values(plan));
         let weather = Weather::new(plan, &Forcing::new(rows, 2, plan.n_channels()).unwrap());
@@ -347,7 +381,7 @@ mod tests {
         Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
         let at = Action::Balance.weather_rows(&weather, scheme);
         limits.judge(&mut stepper, &state, at, 0).unwrap();
-        change(&mut state);
+        change(&mut state, &mut stepper);
         limits.judge(&mut stepper, &state, at, 7)?;
         Ok(limits)
     }
@@ -361,25 +395,30 @@ mod tests {
     fn what_is_impossible_is_an_error_that_names_it() {
         let plan = Plan::new(conditioned(0.04)).unwrap();
         let rows = forcing(&plan, Scheme::Sdirk2, 1, HOUR, conditioned_weather);
-        let text = |change: &dyn Fn(&mut State<f64>)| judged(&plan, &rows, change).unwrap_err().to_string();
-        let cold = text(&|state| state.cells[0] = -273.2);
+        let text = |change: &dyn Fn(&mut State<f64>, &mut Stepper<'_, f64>)| {
+            judged(&plan, &rows, change).unwrap_err().to_string()
+        };
+        let cold = text(&|state, _| state.cells[0] = -273.2);
         assert!(
             cold.contains("step 7") && cold.contains("surface north (layer layer_0) has -273.2 degC"),
             "{cold}"
         );
-        let surface = text(&|state| state.surfaces[SurfaceId::inside(1)] = -764.0);
+        let surface = text(&|state, _| state.surfaces[SurfaceId::inside(1)] = -764.0);
         assert!(surface.contains("surface east (inside) has -764.0 degC"), "{surface}");
-        let air = text(&|state| state.air[1] = -300.0);
+        let air = text(&|state, _| state.air[1] = -300.0);
         assert!(air.contains("zone gap (air) has -300.0 degC"), "{air}");
         // Capacities of 300 W and 80 W.
         for (load, most) in [(300.1, "300"), (-80.1, "80")] {
-            let beyond = text(&|state| state.load[0] = load);
+            let beyond = text(&|state, _| state.load[0] = load);
             assert!(
                 beyond.contains(&format!("an ideal load of {load:.6} W, expected {most}.000000 W")),
                 "{beyond}"
             );
         }
-        assert!(judged(&plan, &rows, |state| state.load[0] = 300.0).is_ok());
+        assert!(judged(&plan, &rows, |state, _| state.load[0] = 300.0).is_ok());
+        // 1361 W/m2 and a fifth of it from the ground.
+        let bright = text(&|_, stepper| stepper.weather.sun.irradiances.fill(1640.0));
+        assert!(bright.contains("an irradiance of 1640 W/m2, expected 1633 W/m2 at most"), "{bright}");
     }
 
     /// At rest at 20 degC every other temperature is without a cause.
@@ -387,14 +426,14 @@ mod tests {
     fn a_temperature_without_a_cause_is_found() {
         let plan = Plan::new(cell(0.04)).unwrap();
         let rows = at_rest(&plan);
-        let sound = judged(&plan, &rows, |_| ()).unwrap();
+        let sound = judged(&plan, &rows, |_, _| ()).unwrap();
         assert!(sound.excess <= 0.0 && sound.outlier.is_none(), "{sound:?}");
         // The sky of this weather is colder than 20 degC: it is a cause.
         let [low, high] = sound.bounds;
         assert!((high - 20.0).abs() < 1e-9 && (-30.0..19.0).contains(&low), "{low}, {high}");
         let slack = OVERSHOOT * (high - low) + 1e-3;
         for (temperature, bound) in [(60.0, high), (-60.0, low)] {
-            let found = judged(&plan, &rows, |state| state.cells[5] = temperature).unwrap();
+            let found = judged(&plan, &rows, |state, _| state.cells[5] = temperature).unwrap();
             let outlier = found.outlier.unwrap();
             assert_eq!((outlier.step, outlier.temperature, outlier.bound), (7, temperature, bound));
             let beyond = (temperature - bound).abs() - slack;
