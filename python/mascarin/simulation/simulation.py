@@ -386,7 +386,7 @@ class Simulation(VectorRuns):
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         warnings = [*energy.warnings(), *watch.melting.warnings()]
-        warnings += vapour.warnings() if vapour is not None else []
+        warnings += vapour.warnings(self.step_seconds) if vapour is not None else []
         if self.scheme == "sdirk2":
             warnings += watch.bends.warnings(self.step_seconds)
         return Finished(
