@@ -33,6 +33,7 @@ from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
 from mascarin.building.surface import Side, Surface
 from mascarin.weather import CHANNELS, Climate
+from mascarin.weather.moisture import humidity_of_dew_point
 
 Array = npt.NDArray[np.float64]
 Objects = dict[str, Any]
@@ -121,9 +122,8 @@ def write_weather(
 
 
 def _relative_humidity(air: Array, dew: Array) -> Array:
-    """Magnus formula over water [%]."""
-    there, full = (np.exp(17.62 * t / (243.12 + t)) for t in (dew, air))
-    return np.asarray(np.clip(100.0 * there / full, 1.0, 100.0))
+    """Over water [%]."""
+    return np.asarray(np.clip(humidity_of_dew_point(air, dew), 1.0, 100.0))
 
 
 def _head(building: Building, begin: pd.Timestamp, times: pd.DatetimeIndex, per_hour: int) -> list[str]:

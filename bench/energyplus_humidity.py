@@ -36,6 +36,7 @@ from mascarin.building import Building
 from mascarin.building.derived import outlines
 from mascarin.building.geometry import parents
 from mascarin.building.vapour_sides import vapour_sides
+from mascarin.weather.moisture import relative_humidity, saturation_pressure, vapour_pressure
 
 SETTLING = 28  # days left out of the comparison
 PER_HOUR = 60
@@ -57,14 +58,10 @@ def weather(steady: bool) -> pd.DataFrame:
     measured = cell.table()
     if not steady:
         return measured
-    full = _saturation(measured["outdoor_air"]) / _saturation(STEADY)
+    full = saturation_pressure(measured["outdoor_air"]) / saturation_pressure(STEADY)
     given = {"relative_humidity": np.minimum(99.0, measured["relative_humidity"] * full)}
     constant = {"outdoor_air": STEADY, "infrared": cell.SIGMA * (STEADY + 273.15) ** 4}
     return measured.assign(**given, **constant, global_horizontal=0.0, diffuse_horizontal=0.0)
-
-
-def _saturation(temperature: Any) -> Any:
-    return np.exp(17.62 * temperature / (243.12 + temperature))
 
 
 def building(deep: bool, steady: bool) -> Building:
@@ -239,7 +236,7 @@ def _pressure(damp: Building) -> float:
 
 
 def _percent(ratio: Any, air: Any, damp: Building) -> Any:
-    return 100.0 * ratio * _pressure(damp) / (0.62198 + ratio) / (611.2 * _saturation(air))
+    return relative_humidity(air, ratio, _pressure(damp))
 
 
 def _ratios(table: pd.DataFrame, walls: list[str], areas: Any, damp: Building, rule: str) -> Any:
@@ -249,18 +246,18 @@ def _ratios(table: pd.DataFrame, walls: list[str], areas: Any, damp: Building, r
     wall, film = (np.array([_column(table, name, key) for name in walls]) for key in ("wall", "film"))
     pressure, volume, step = _pressure(damp), float(damp.zones["room"].volume), 3600.0 / PER_HOUR
     kelvin, warm = wall + 273.15, air + 273.15
-    full = 611.2 * _saturation(wall) / (VAPOUR * kelvin)
+    full = saturation_pressure(wall) / (VAPOUR * kelvin)
     diffusivity = 2.0e-7 * kelvin**0.81 / pressure / RESISTANCE * VAPOUR * kelvin
     hours = np.arange(len(air)) // PER_HOUR % 24
     source = np.where((hours >= 8) & (hours < 20), POWER / (2500940.0 + 1858.95 * air), 0.0)
     now, found = ratio[0], np.empty(len(air))
-    humidity = now * pressure / (0.62198 + now) / VAPOUR / warm[0] / full[:, 0]
+    humidity = float(vapour_pressure(now, pressure)) / VAPOUR / warm[0] / full[:, 0]
     for k in range(len(air)):
         if rule == "density" and k:
             humidity = humidity * full[:, k - 1] / full[:, k]
         density = pressure / (287.055 * warm[k] * (1.0 + 1.6078 * now))
         transfer = film[:, k] / (density * (1006.0 + 1860.0 * now))
-        there = now * pressure / (0.62198 + now) / (VAPOUR * warm[k])
+        there = float(vapour_pressure(now, pressure)) / (VAPOUR * warm[k])
         flux = (humidity * full[:, k] - there) / (0.5 * DEPTHS[0] / diffusivity[:, k] + 1.0 / transfer)
         humidity = np.minimum(humidity - step * flux / (CAPACITY * DEPTHS[0]), 1.0)
         gained = flow[k] * (outdoors[k] - now) + source[k] + float(areas @ flux)

@@ -8,7 +8,8 @@ import pytest
 from pvlib.irradiance import erbs, get_extra_radiation
 
 from mascarin.weather import Climate
-from mascarin.weather.derive import cloud_cover, dew_point, diffuse_erbs
+from mascarin.weather.derive import cloud_cover, diffuse_erbs
+from mascarin.weather.moisture import dew_point
 from mascarin.weather.radiation import BEAM_CEILING, clear_beam, direct_by_closure
 from mascarin.weather.sun import SunPath
 

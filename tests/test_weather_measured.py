@@ -9,7 +9,7 @@ import pytest
 
 from mascarin.errors import InputError
 from mascarin.weather import CHANNELS, Climate, Place, summary
-from mascarin.weather.derive import dew_point
+from mascarin.weather.moisture import dew_point
 
 GILLOT = Place(-20.892, 55.529, 8.0)
 

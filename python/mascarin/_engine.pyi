@@ -14,8 +14,14 @@ __all__ = [
     "Plan",
     "Trajectory",
     "_panic",
+    "condensing_pressure",
+    "dew_point",
     "fmu_library",
+    "humidity_ratio",
     "interrupt",
+    "saturation_pressure",
+    "vapour_pressure",
+    "wet_bulb",
 ]
 
 _Array = npt.NDArray[np.float64]
@@ -37,6 +43,24 @@ def interrupt() -> None:
 
 def fmu_library() -> tuple[bytes, str, str, str]:
     """The library of an FMU: bytes packed as LZMA, ending, and the architecture and system it is for."""
+
+def saturation_pressure(temperature: _Array) -> _Array:
+    """Saturation pressure over water, also below 0 degC, at temperatures [degC]: [Pa]."""
+
+def condensing_pressure(temperature: _Array) -> _Array:
+    """Pressure from which vapour condenses at temperatures [degC]: over ice below 0.01 degC [Pa]."""
+
+def humidity_ratio(vapour: _Array, pressure: _Array) -> _Array:
+    """Humidity ratios at pressures of vapour and of the air [Pa]: [kg/kg]."""
+
+def vapour_pressure(ratio: _Array, pressure: _Array) -> _Array:
+    """Vapour pressures at humidity ratios [kg/kg] and pressures of the air [Pa]: [Pa]."""
+
+def dew_point(vapour: _Array) -> _Array:
+    """Dew points of vapour pressures [Pa]: over water, also below 0 degC [degC]."""
+
+def wet_bulb(temperature: _Array, ratio: _Array, pressure: _Array) -> _Array:
+    """Wet-bulb temperatures [degC] at temperatures [degC], humidity ratios [kg/kg] and pressures [Pa]."""
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""

@@ -33,7 +33,7 @@ pub use input::{description, forcing};
 pub use linear_model as state_space;
 pub use number as real;
 pub use number::simd as dispatch;
-pub use physics::pcm;
+pub use physics::{pcm, psychrometrics};
 pub use run::ensemble as batch;
 pub use step::state;
 

@@ -3,6 +3,7 @@
 mod errors;
 mod options;
 mod plan;
+mod psychrometrics;
 mod trajectory;
 
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
@@ -34,6 +35,12 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(fmu_library, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::saturation_pressure, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::condensing_pressure, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::humidity_ratio, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::vapour_pressure, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::dew_point, module)?)?;
+    module.add_function(wrap_pyfunction!(psychrometrics::wet_bulb, module)?)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<errors::EngineSolverError>())?;
     module.add("EngineDefect", module.py().get_type::<errors::EngineDefect>())?;

@@ -233,6 +233,8 @@ pub fn describe_run<'py>(
     vapour.set_item("stored", run.ledger.vapour.stored)?;
     vapour.set_item("exchanged", run.ledger.vapour.total_exchanged)?;
     vapour.set_item("closure", run.ledger.vapour.closure())?;
+    vapour.set_item("corrected", run.ledger.vapour.corrected)?;
+    vapour.set_item("fastest", run.ledger.vapour.fastest)?;
     result.set_item("vapour", vapour)?;
     result.set_item("outside", run.outside)?;
     let outlier = run

@@ -8,9 +8,11 @@ ASHRAE Handbook of Fundamentals, ch. 1 (specific heat and gas constant of dry ai
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from mascarin import _engine
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
 SPECIFIC_HEAT = 1006.0
 _GAS_CONSTANT = 287.055  # dry air [J/(kg K)]
 _VAPOUR = 1860.0  # specific heat of water vapour [J/(kg K)]
-_WATER_TO_AIR = 0.621945  # molar mass of water over that of dry air [-]
 _SEA_LEVEL = 101_325.0  # pressure of the standard atmosphere [Pa]
 _STANDARD = 288.15  # 15 degC [K]
 
@@ -45,8 +46,8 @@ def heat_capacity(site: Site) -> float:
 def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[float, float]:
     """Density and specific heat of moist air, for `site.air_density` and `site.air_specific_heat`.
 
-    A mixture of ideal gases; the specific heat is that of a kilogram of the mixture. Saturation pressure
-    over water by Magnus.
+    A mixture of ideal gases; the specific heat is that of a kilogram of the mixture. Relative humidity is
+    that over water, also below 0 degC.
 
     Parameters
     ----------
@@ -70,8 +71,7 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
 
     References
     ----------
-    ASHRAE Handbook of Fundamentals 2017, ch. 1 (mixture, specific heat of water vapour). WMO-No. 8, annex 4.B
-    (Magnus formula, -45 to 60 degC).
+    ASHRAE Handbook of Fundamentals 2017, ch. 1 (mixture, specific heat of water vapour, eqs. 6 and 20).
 
     Examples
     --------
@@ -83,10 +83,10 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
         raise InputError(f"temperature: found {temperature:g} degC; expected -45 to 60 degC")
     if not 0.0 <= humidity <= 1.0:
         raise InputError(f"humidity: found {humidity:g}; expected a relative humidity from 0 to 1")
-    vapour = humidity * 611.2 * math.exp(17.62 * temperature / (243.12 + temperature))
+    vapour = humidity * float(_engine.saturation_pressure(np.array([temperature]))[0])
     if pressure <= vapour:
         raise InputError(f"pressure: found {pressure:g} Pa; expected a pressure of moist air [Pa]")
-    ratio = _WATER_TO_AIR * vapour / (pressure - vapour)
+    ratio = float(_engine.humidity_ratio(np.array([vapour]), np.array([pressure]))[0])
     kelvin = temperature + 273.15
     mass = (pressure - vapour) / (_GAS_CONSTANT * kelvin) * (1.0 + ratio)
     return mass, (SPECIFIC_HEAT + ratio * _VAPOUR) / (1.0 + ratio)

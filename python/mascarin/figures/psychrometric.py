@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from mascarin import _engine
 from mascarin.figures import colors
 
 if TYPE_CHECKING:
@@ -71,10 +72,10 @@ def chart(
         if figure is not None:
             figure.colorbar(mesh, ax=ax, label=label)
     for percent in _LINES:
-        # Ratio of the vapour pressures, from the saturated ratio: w = 0.622 e / (p - e).
-        share = percent / 100.0
-        w = saturated[:, 1]
-        line = 1000.0 * 0.621945 * share * w / (0.621945 + w * (1.0 - share))
+        # The vapour pressure, over that of the air, is a share of the saturated one.
+        whole = np.ones(len(saturated))
+        vapour = _engine.vapour_pressure(np.ascontiguousarray(saturated[:, 1]), whole)
+        line = 1000.0 * _engine.humidity_ratio(percent / 100.0 * vapour, whole)
         ax.plot(saturated[:, 0], line, color=colors.INK, lw=1.0 if percent == 100 else 0.5, alpha=0.7)
         at = int(np.flatnonzero(line <= 0.94 * top)[-1])
         at = min(at, int(0.97 * len(line)))

@@ -56,7 +56,7 @@ def collected(
         The balances, further checks, layers that do not melt, steps too long for the air of a zone; last
         those about the building.
     """
-    found = [*energy.warnings(), *(vapour.warnings() if vapour is not None else ()), *judged]
+    found = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
     found += [*watch.melting.warnings(), *watch.bends.warnings(step_seconds)]
     return tuple(dict.fromkeys((*found, *building)))
 

@@ -7,10 +7,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Self
 
+from mascarin.simulation.coarse import STEPS
 from mascarin.simulation.energy import CLOSED
 
 VAPOUR_FLOWS: Final = ("outdoor_air", "interzone", "gains", "humidifying", "drying", "condensation")
 """Flows of vapour into the zones; drying and condensation take vapour away and are negative."""
+
+
+#: Exchanges of the vapour of an air within a step up to which the scheme by itself keeps the humidity between
+#: its causes: 1/(2 g - 1) of SDIRK2, with g = 1 - 1/sqrt(2), as a magnitude [-].
+MOST_EXCHANGES: Final = 1.0 + 2.0**0.5
+#: Shortest step that is proposed [s].
+SHORTEST: Final = 60.0
 
 
 @dataclass(frozen=True)
@@ -27,6 +35,10 @@ class VapourLedger:
         Sum of the magnitudes of all flows. [kg]
     relative_residual : float
         Sum over steps of |stored - into|, over all vapour exchanged. [-]
+    corrected : int
+        Steps in which the humidity of an air was kept between its causes by more than 0.1 g/kg.
+    fastest : float
+        Fastest exchange of the vapour of an air in these steps. [1/s]
 
     Examples
     --------
@@ -42,15 +54,33 @@ class VapourLedger:
     stored: float
     exchanged: float
     relative_residual: float
+    corrected: int = 0
+    fastest: float = 0.0
 
     @property
     def closes(self) -> bool:
         """Whether the vapour stored is the vapour that flowed in: a residual of 1e-10 at most."""
         return self.relative_residual <= CLOSED
 
-    def warnings(self) -> list[str]:
-        """One line where the vapour balance does not close, and one where saturated air lost vapour."""
+    def warnings(self, step_seconds: float) -> list[str]:
+        """One line each where the balance does not close, saturated air lost vapour, the step is too long.
+
+        Parameters
+        ----------
+        step_seconds : float
+            Time step. [s]
+        """
         found = []
+        if self.corrected and step_seconds > SHORTEST:
+            longest = min(MOST_EXCHANGES / self.fastest, 0.99 * step_seconds) / 60.0
+            better = next((step for step in STEPS if step <= longest), STEPS[-1])
+            within = 1.0 / self.fastest / 60.0
+            found.append(
+                f"the time step of {step_seconds / 60.0:g} min is too long for the vapour of the air, which "
+                f"was exchanged within {within:.2g} min in {self.corrected} steps: its humidity was kept "
+                "between that of the air and of the surfaces that drive it, and is less accurate there; "
+                f"take a step of {better} min"
+            )
         if not self.closes:
             found.append(
                 "the vapour balance does not close: the vapour stored and the vapour that flowed in differ "
@@ -73,10 +103,13 @@ class VapourLedger:
         Parameters
         ----------
         raw : mapping
-            Vapour by flow, ``stored``, ``exchanged`` [kg] and ``closure`` [-].
+            Vapour by flow, ``stored``, ``exchanged`` [kg], ``closure`` [-], ``corrected`` [-] and
+            ``fastest`` [1/s].
         """
         into = {flow: float(raw[flow]) for flow in VAPOUR_FLOWS}
-        return cls(into, float(raw["stored"]), float(raw["exchanged"]), float(raw["closure"]))
+        stored, exchanged, residual = (float(raw[key]) for key in ("stored", "exchanged", "closure"))
+        corrected, fastest = int(raw["corrected"]), float(raw["fastest"])
+        return cls(into, stored, exchanged, residual, corrected, fastest)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
@@ -88,8 +121,13 @@ class VapourLedger:
             The values.
         """
         into = {flow: float(values[f"{flow}_kg"]) for flow in VAPOUR_FLOWS}
-        numbers = (values[key] for key in ("stored_kg", "exchanged_kg", "closure"))
-        return cls(into, *(float(number) for number in numbers))
+        stored, exchanged = float(values["stored_kg"]), float(values["exchanged_kg"])
+        # Files of versions before these numbers have none.
+        corrected, fastest = (
+            int(values.get("corrected_steps", 0)),
+            float(values.get("fastest_per_second", 0.0)),
+        )
+        return cls(into, stored, exchanged, float(values["closure"]), corrected, fastest)
 
     @classmethod
     def from_json(cls, text: str | None) -> Self | None:
@@ -110,6 +148,8 @@ class VapourLedger:
             "stored_kg": self.stored,
             "exchanged_kg": self.exchanged,
             **into,
+            "corrected_steps": self.corrected,
+            "fastest_per_second": self.fastest,
         }
 
     def __repr__(self) -> str:

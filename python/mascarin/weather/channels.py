@@ -40,7 +40,7 @@ class Channel:
 
 _TABLE: Final = (
     Channel("air_temperature", "degC", "instant", -90.0, 65.0, "dry-bulb temperature of the air"),
-    Channel("dew_point", "degC", "instant", -100.0, 45.0, "dew-point temperature"),
+    Channel("dew_point", "degC", "instant", -115.0, 65.0, "dew-point temperature"),
     Channel("cloud_cover", "tenths", "instant", 0.0, 10.0, "part of the sky covered by cloud"),
     Channel("infrared", "W/m2", "mean", 20.0, 800.0, "long-wave radiation from the sky on the horizontal"),
     Channel("wind_speed", "m/s", "instant", 0.0, 110.0, "wind speed at the mast"),

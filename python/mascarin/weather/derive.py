@@ -1,9 +1,7 @@
-"""Quantities derived from measured ones: dew point, diffuse irradiance, cloud cover.
+"""Quantities derived from measured ones: diffuse irradiance, cloud cover.
 
 References
 ----------
-Alduchov & Eskridge 1996, Journal of Applied Meteorology 35(4), 601-609,
-doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (Magnus form over water).
 Erbs, Klein & Duffie 1982, Solar Energy 28(4), 293-302, doi:10.1016/0038-092X(82)90302-4.
 Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
 Kasten & Czeplak 1980, Solar Energy 24(2), 177-189, doi:10.1016/0038-092X(80)90391-6.
@@ -18,34 +16,10 @@ import numpy as np
 
 from mascarin.weather.arrays import Array
 
-MAGNUS_B: Final = 17.625
-"""Alduchov & Eskridge 1996 [-]."""
-MAGNUS_C: Final = 243.04
-"""Alduchov & Eskridge 1996 [degC]."""
-
 _CLOUD_LOSS: Final = 0.71
 _CLEAR_GAIN: Final = 1098.0
 _CLEAR_DECAY: Final = -0.057
 _LOWEST_SUN: Final = float(np.sin(np.radians(10.0)))
-
-
-def dew_point(temperature: Array, humidity: Array) -> Array:
-    """Dew point over water from the Magnus form.
-
-    Parameters
-    ----------
-    temperature : ndarray, shape (n,)
-        Air temperature [degC].
-    humidity : ndarray, shape (n,)
-        Relative humidity, taken as at least 1 [%].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Dew point [degC].
-    """
-    share = np.log(np.maximum(humidity, 1.0) / 100.0) + MAGNUS_B * temperature / (MAGNUS_C + temperature)
-    return np.asarray(MAGNUS_C * share / (MAGNUS_B - share))
 
 
 def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:

@@ -10,10 +10,10 @@ import numpy as np
 
 from mascarin._io.arguments import names_of
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather import derive
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS, Kind
 from mascarin.weather.columns import Column
+from mascarin.weather.moisture import dew_point
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.starts import knot_lines, to_starts
 from mascarin.weather.table import Table
@@ -210,11 +210,11 @@ def _with_humidity(record: WeatherRecord) -> WeatherRecord:
             "between 0 and 1 has unit: '1'."
         )
     kind = kinds.pop("relative_humidity")
-    columns["dew_point"] = derive.dew_point(air, humidity)
+    columns["dew_point"] = dew_point(air, humidity)
     kinds["dew_point"] = kind
     if "relative_humidity" in closing:
         pair = (record.closing.get("air_temperature", float(air[-1])), closing.pop("relative_humidity"))
-        closing["dew_point"] = float(derive.dew_point(np.array([pair[0]]), np.array([pair[1]]))[0])
-    note = f"{record.file}: dew point from air temperature and relative humidity (Alduchov & Eskridge 1996)."
+        closing["dew_point"] = float(dew_point(*pair))
+    note = f"{record.file}: dew point from air temperature and relative humidity over water."
     notes = (*record.provenance, note)
     return replace(record, columns=columns, kinds=kinds, closing=closing, provenance=notes)

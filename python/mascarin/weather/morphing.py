@@ -28,8 +28,7 @@ from mascarin._io.tables import read_csv
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.channels import RADIATION
 from mascarin.weather.climate import Climate
-from mascarin.weather.derive import dew_point
-from mascarin.weather.moisture import humidity_of_dew_point
+from mascarin.weather.moisture import dew_point, humidity_of_dew_point
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -218,7 +217,7 @@ def morphed(climate: Climate, changes: MonthlyChanges | Mapping[str, Monthly]) -
     if "dew_point" in data:
         humid = humidity_of_dew_point(before, data["dew_point"].to_numpy(dtype=np.float64))
         humid = np.clip(humid + changes.of("relative_humidity")[month], 1.0, 100.0)
-        warmed["dew_point"] = np.asarray(dew_point(after, humid), dtype=np.float64)
+        warmed["dew_point"] = dew_point(after, humid)
     if "infrared" in data:
         ratio = (after + _KELVIN) / (before + _KELVIN)
         warmed["infrared"] = data["infrared"].to_numpy(dtype=np.float64) * ratio**4

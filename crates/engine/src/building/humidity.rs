@@ -17,6 +17,8 @@ pub(crate) struct HumidityPlan {
     /// Row of each zone.
     pub(crate) rows: Vec<usize>,
     pub(crate) pattern: Pattern,
+    /// Of each zone: the first of those that it exchanges vapour with, directly or through others; itself where there is none before it.
+    pub(crate) groups: Vec<usize>,
 }
 
 impl HumidityPlan {
@@ -42,11 +44,34 @@ impl HumidityPlan {
         let (rows, pattern) = number_zones(description.zones.len(), &between);
         let place = |&[from, to]: &[usize; 2]| pattern.place(rows[to], rows[from]).filter(|_| from != to);
         let places = carries.iter().map(place).collect();
-        Some(Self { recovered: carries.len() - others, places, carries, rows, pattern })
+        let groups = groups(description.zones.len(), &between);
+        Some(Self { recovered: carries.len() - others, places, carries, rows, pattern, groups })
     }
 
     /// How many of [`Self::carries`] recover vapour: the last ones.
     pub(crate) fn recovered(&self) -> usize {
         self.recovered
+    }
+}
+
+/// The first zone of the group of each zone, from pairs that exchange vapour.
+fn groups(zones: usize, pairs: &[[usize; 2]]) -> Vec<usize> {
+    let mut groups: Vec<usize> = (0..zones).collect();
+    for pair in pairs {
+        let [a, b] = pair.map(|zone| groups[zone]);
+        let (first, other) = (a.min(b), a.max(b));
+        groups.iter_mut().filter(|group| **group == other).for_each(|group| *group = first);
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_of_zones_that_exchange_vapour() {
+        assert_eq!(groups(6, &[[4, 1], [2, 5], [5, 1]]), [0, 1, 1, 3, 1, 1]);
+        assert_eq!(groups(2, &[]), [0, 1]);
     }
 }

@@ -135,7 +135,7 @@ fn run_with_slopes(
             if options.probes.iter().any(Output::averages_absorbed_sun) {
                 stepper.follower.average_absorbed_sun();
             }
-            let state = stepper.follower.begin(&options.initial);
+            let state = stepper.follower.begin(&options.initial, weather.row(0, 0));
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();

@@ -56,7 +56,8 @@ impl Trajectory {
         stepper.known.start();
         let keep =
             |state: &State<f64>, history, steps| StepKeeper::new(state, history, steps, options, bytes);
-        let mut kept = keep(&stepper.begin(&options.initial), stepper.history(), weather.steps() + 1);
+        let mut kept =
+            keep(&stepper.begin(&options.initial, weather.row(0, 0)), stepper.history(), weather.steps() + 1);
         let mut period = None;
         let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
             match (action, options.warmup) {
@@ -144,7 +145,7 @@ impl<'a> ReversePass<'a> {
             stepper.follower.average_absorbed_sun();
         }
         let length = Tape::len();
-        let now = stepper.follower.begin(&options.initial);
+        let now = stepper.follower.begin(&options.initial, weather.row(0, 0));
         Tape::truncate(length);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
@@ -240,7 +241,7 @@ impl<'a> ReversePass<'a> {
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::truncate(self.base);
-        let start = self.stepper.follower.begin(&self.options.initial);
+        let start = self.stepper.follower.begin(&self.options.initial, self.weather.row(0, 0));
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         start.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));

@@ -60,7 +60,14 @@ impl<S: Real> Isotherm<S> {
         Self { lines }
     }
 
+    /// Whether it is one straight line.
+    #[inline(always)]
+    pub(crate) fn is_straight(&self) -> bool {
+        self.lines.len() == 1
+    }
+
     /// Content at a relative humidity [kg/m3].
+    #[inline(always)]
     pub fn content(&self, humidity: S) -> S {
         let of = |line: &Segment<S>| line.content + line.slope * (humidity - S::constant(line.humidity));
         let mut content = of(&self.lines[0]);

@@ -95,7 +95,7 @@ pub(crate) fn march_observed<'a, S: Real>(
     let plan = stepper.model.plan;
     stepper.attend(control);
     prepare(&mut stepper, options);
-    let mut state = stepper.begin(&options.initial);
+    let mut state = stepper.begin(&options.initial, weather.row(0, 0));
     let (cycles, warm_up_change) =
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());

@@ -351,8 +351,8 @@ impl Output {
                 step.surface_humidity(state, SurfaceId::new(surface, side))
             }
             Self::Condensation { surface, side } => {
-                let humidity = step.surface_humidity(state, SurfaceId::new(surface, side));
-                S::select(S::one().lt(humidity), S::one(), S::zero())
+                let condenses = step.condenses(state, SurfaceId::new(surface, side));
+                S::select(condenses, S::one(), S::zero())
             }
             Self::VentInflow { vent } => step.vents_now().flows[vent][1],
             Self::VentOutflow { vent } => step.vents_now().flows[vent][0],

@@ -376,7 +376,7 @@ mod tests {
         let (scheme, numbers) = (Scheme::Sdirk2, values(plan));
         let weather = Weather::new(plan, &Forcing::new(rows, 2, plan.n_channels()).unwrap());
         let mut stepper = Stepper::new(plan, &numbers, scheme);
-        let mut state = stepper.begin(&Initial::Everywhere(20.0));
+        let mut state = stepper.begin(&Initial::Everywhere(20.0), weather.row(0, 0));
         let mut limits = PhysicalLimits::new(&state, scheme);
         Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
         let at = Action::Balance.weather_rows(&weather, scheme);

@@ -51,9 +51,9 @@ impl<'a> StepByStep<'a> {
         options.check_forcing(plan, first_step)?;
         let mut stepper = Stepper::new(plan, parameters, options.scheme);
         prepare(&mut stepper, options);
-        let mut state = stepper.begin(&options.initial);
         let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
         let weather = Weather::for_single_run(plan, first_period, repeated);
+        let mut state = stepper.begin(&options.initial, weather.row(0, 0));
         let control = RunControl::default();
         warm_up(&mut stepper, &mut state, &weather, options, &control, &mut |_, _, _| Ok(()))?;
         let (mut ledger, mut limits) = (Ledger::new(), PhysicalLimits::new(&state, options.scheme));

@@ -95,9 +95,9 @@ impl<'a, S: Real> Follower<'a, S> {
         }
     }
 
-    /// The state that a run starts from.
-    pub(crate) fn begin(&self, initial: &Initial) -> State<S> {
-        State::new(&self.model, initial)
+    /// The state that a run starts from, in the weather of a forcing row.
+    pub(crate) fn begin(&self, initial: &Initial, row: &[f64]) -> State<S> {
+        State::new(&self.model, initial, row)
     }
 
     /// A place for unknowns in plain numbers.

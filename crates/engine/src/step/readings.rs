@@ -4,8 +4,8 @@ use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::layout::SurfaceRole;
 use crate::building::model::Model;
 use crate::linear::wall::WallSystem;
-use crate::number::real::Real;
-use crate::physics::psychrometrics::relative_humidity;
+use crate::number::real::{Mask, Real};
+use crate::physics::psychrometrics::{condenses, relative_humidity};
 use crate::step::film::film;
 use crate::step::stage_weather::StageWeather;
 use crate::step::state::State;
@@ -104,6 +104,14 @@ impl<S: Real> Readings<'_, S> {
     pub(crate) fn surface_humidity(&self, state: &State<S>, surface: SurfaceId) -> S {
         let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else { return S::zero() };
         relative_humidity(state.surfaces[surface], state.vapour[zone], self.pressure())
+    }
+
+    /// Whether vapour of the air of a zone condenses on a surface in it, or forms frost there.
+    pub(crate) fn condenses(&self, state: &State<S>, surface: SurfaceId) -> S::Mask {
+        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
+            return S::Mask::splat(false);
+        };
+        condenses(state.surfaces[surface], state.vapour[zone], self.pressure())
     }
 
     /// Temperature of the sky at the end of the last stage [degC].

@@ -22,7 +22,7 @@ fn worst<S: Real>(case: &Case, plan: &Plan, numbers: &[S]) -> [f64; 3] {
     let weather = Weather::new(plan, &forcing);
     let mut stepper = Stepper::new(plan, numbers, case.scheme);
     stepper.evaluate_residuals();
-    let mut state = stepper.begin(&case.options().initial);
+    let mut state = stepper.begin(&case.options().initial, weather.row(0, 0));
     stepper.balance_surfaces(&mut state, &weather.at(0, 0)).unwrap();
     let (mut ledger, mut apart, mut largest) = (Ledger::new(), S::zero(), S::zero());
     for step in 0..case.steps {

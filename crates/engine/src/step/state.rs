@@ -89,8 +89,8 @@ pub struct State<S> {
 }
 
 impl<S: Real> State<S> {
-    /// The state that a run starts from.
-    pub(crate) fn new(model: &Model<'_, S>, initial: &Initial) -> Self {
+    /// The state that a run starts from, in the weather of a forcing row.
+    pub(crate) fn new(model: &Model<'_, S>, initial: &Initial, row: &[f64]) -> Self {
         let plan = model.plan;
         let (cells, surfaces, air) = match initial {
             Initial::Everywhere(temperature) => {
@@ -106,7 +106,7 @@ impl<S: Real> State<S> {
             memory: cells.iter().map(|&cell| PcmMemory::new(S::zero(), cell)).collect(),
             enthalpy: vec![S::zero(); plan.n_cells],
             load: vec![S::zero(); plan.zones.len()],
-            vapour: vapour_at(model, &air),
+            vapour: vapour_at(model, &air, row),
             opened: vec![S::zero(); plan.description.controls.len()],
             unchanged: vec![S::constant(LONG_AGO); plan.description.controls.len()],
             cells,
@@ -312,10 +312,12 @@ impl<S: Real> State<S> {
     }
 }
 
-/// Humidity ratios and moisture contents at the relative humidity that the building starts from, with airs at temperatures [degC].
-fn vapour_at<S: Real>(model: &Model<'_, S>, air: &[S]) -> Vec<S> {
+/// Humidity ratios and moisture contents at the relative humidity that the building starts from, with airs at temperatures [degC], at the
+/// pressure of a forcing row.
+fn vapour_at<S: Real>(model: &Model<'_, S>, air: &[S], row: &[f64]) -> Vec<S> {
     let Some(humidity) = &model.coefficients.humidity else { return Vec::new() };
-    let ratio = |&air: &S| humidity_ratio(humidity.initial * saturation_pressure(air), humidity.pressure);
+    let pressure = humidity.pressure_in(row);
+    let ratio = |&air: &S| humidity_ratio(humidity.initial * saturation_pressure(air), pressure);
     let content = |surface: &VapourSurface<S>| {
         let layers = &surface.layers;
         let content = layers.isotherm.content(humidity.initial);

@@ -70,9 +70,9 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// The state that a run starts from.
-    pub fn begin(&self, initial: &Initial) -> State<S> {
-        State::new(&self.model, initial)
+    /// The state that a run starts from, in the weather of a forcing row.
+    pub fn begin(&self, initial: &Initial, row: &[f64]) -> State<S> {
+        State::new(&self.model, initial, row)
     }
 
     /// Lets the caller stop it, also within a step.

@@ -2,7 +2,6 @@
 
 use crate::building::coefficients::HumidityCoefficients;
 use crate::building::coefficients::humidity::{Control, Dryer};
-use crate::input::forcing::channel;
 use crate::number::real::Real;
 use crate::physics::mechanical_air::Unit;
 use crate::physics::psychrometrics::humidity_ratio;
@@ -99,8 +98,7 @@ impl<S: Real> HumidityConditions<S> {
         now: &Instant<'_>,
     ) {
         let row = now.row;
-        let pressure = row[channel::PRESSURE];
-        self.pressure = if pressure.is_nan() { humidity.pressure } else { S::constant(pressure) };
+        self.pressure = humidity.pressure_in(row);
         self.outdoor = humidity_ratio(S::constant(now.vapour), self.pressure);
         for (at, zone) in self.zones.iter_mut().zip(&humidity.zones) {
             at.gain = zone.gain(row);

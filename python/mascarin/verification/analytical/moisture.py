@@ -44,7 +44,7 @@ DRY: Final = AIR_DENSITY * VOLUME
 FLOW: Final = DRY * CHANGES / 3600.0
 
 
-def _saturation(celsius: float) -> float:
+def saturation(celsius: float) -> float:
     """Saturation pressure over water (ASHRAE Handbook of Fundamentals 2017, ch. 1, eq. 6). [Pa]"""
     t = celsius + 273.15
     terms = -5.8002206e3 / t + 1.3914993 - 4.8640239e-2 * t + 4.1764768e-5 * t**2
@@ -53,13 +53,13 @@ def _saturation(celsius: float) -> float:
 
 def _ratio(humidity: float) -> float:
     """Humidity ratio at a relative humidity. [kg/kg]"""
-    vapour = humidity * _saturation(WARM)
+    vapour = humidity * saturation(WARM)
     return 0.621945 * vapour / (PRESSURE - vapour)
 
 
 def _relative(ratio: float) -> float:
     """Relative humidity at a humidity ratio. [-]"""
-    return float(ratio * PRESSURE / (0.621945 + ratio) / _saturation(WARM))
+    return float(ratio * PRESSURE / (0.621945 + ratio) / saturation(WARM))
 
 
 def _slope(ratio: float) -> float:
@@ -82,7 +82,7 @@ humidity:
   initial: {initial}
 {sorption}  zones: {{room: {{gains: {{source: {{rate: {source}, schedule: day}}}}}}}}
 """
-    dew_point = float(brentq(lambda t: _saturation(t) - OUTDOORS * _saturation(WARM), 0.1, WARM))
+    dew_point = float(brentq(lambda t: saturation(t) - OUTDOORS * saturation(WARM), 0.1, WARM))
     columns = {
         "air_temperature": setup.steady(WARM),
         "outside": setup.steady(WARM),
@@ -123,7 +123,7 @@ def _exchange() -> float:
 def _layer(source: float) -> tuple[float, float]:
     """Humidity ratio at the begin and the end of the source: air and one layer, linear about their mean."""
     mean = _ratio(OUTDOORS) + source / FLOW * (END - BEGIN) / 24.0
-    transfer, saturated = AREA * _exchange(), _saturation(WARM)
+    transfer, saturated = AREA * _exchange(), saturation(WARM)
     to_wall, from_wall = transfer * _slope(mean), transfer * saturated
     store = AREA * DEPTH * CAPACITY
     matrix = np.array([[-(FLOW + to_wall) / DRY, from_wall / DRY], [to_wall / store, -from_wall / store]])
@@ -145,7 +145,7 @@ def _thick_wall(source: float) -> tuple[float, float]:
     film = FILM / (AIR_DENSITY * AIR_HEAT * GAS * (WARM + 273.15))
     k = np.arange(1, HARMONICS + 1)
     omega = 2.0 * np.pi * k / setup.DAY
-    wall = 1.0 / np.sqrt(1j * omega * CAPACITY * permeability / _saturation(WARM))
+    wall = 1.0 / np.sqrt(1j * omega * CAPACITY * permeability / saturation(WARM))
     gain = source * (np.exp(-1j * omega * BEGIN * 3600) - np.exp(-1j * omega * END * 3600))
     response = gain / (2j * np.pi * k) / (1j * omega * DRY + FLOW + AREA * _slope(mean) / (1.0 / film + wall))
     begin, end = (2.0 * float(np.sum(response * np.exp(1j * omega * h * 3600)).real) for h in (BEGIN, END))

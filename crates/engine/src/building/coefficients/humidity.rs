@@ -6,11 +6,11 @@ use super::zone::ZoneCoefficients;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::input::description::{Drying, HumidityControl, HumiditySetPoint, ZoneHumidity};
-use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, channel, scheduled};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::AIR_SPECIFIC_HEAT;
-use crate::physics::psychrometrics::{LATENT_HEAT, saturation_pressure};
+use crate::physics::psychrometrics::{LATENT_HEAT, condensing_pressure};
 use crate::physics::sorption::VapourLayers;
 
 /// Vapour that an ideal plant takes away or adds where no capacity is given [kg/s]: more than any building needs.
@@ -64,7 +64,7 @@ pub enum Dryer<S> {
     Coil {
         /// Vapour taken away per heat [kg/J].
         per_heat: S,
-        /// Saturation pressure at the temperature of the coil [Pa].
+        /// Saturation pressure at the temperature of the coil, over ice where frost forms on it [Pa].
         saturated: S,
     },
 }
@@ -131,6 +131,15 @@ impl<S: Real> HumidityCoefficients<S> {
     }
 }
 
+impl<S: Real> HumidityCoefficients<S> {
+    /// Pressure of the air in a forcing row [Pa].
+    #[inline(always)]
+    pub(crate) fn pressure_in(&self, row: &[f64]) -> S {
+        let pressure = row[channel::PRESSURE];
+        if pressure.is_nan() { self.pressure } else { S::constant(pressure) }
+    }
+}
+
 impl<S: Real> VapourZone<S> {
     /// `air`: dry air of the zone [kg].
     fn new(zone: &ZoneHumidity, values: &Values<'_, S>, air: S) -> Self {
@@ -144,7 +153,7 @@ impl<S: Real> VapourZone<S> {
                 let ratio = values.get(*sensible_heat_ratio);
                 Dryer::Coil {
                     per_heat: (S::one() - ratio) / ratio.scale(LATENT_HEAT),
-                    saturated: saturation_pressure(values.get(*temperature)),
+                    saturated: condensing_pressure(values.get(*temperature)),
                 }
             }
         });
@@ -160,6 +169,12 @@ impl<S: Real> VapourZone<S> {
     #[inline(always)]
     pub(crate) fn has_plants(&self) -> bool {
         self.drying.is_some() || self.humidifying.is_some()
+    }
+
+    /// Whether there are sources, or it is dried or humidified.
+    #[inline(always)]
+    pub(crate) fn has_sources(&self) -> bool {
+        !self.gains.is_empty() || self.has_plants()
     }
 
     /// Vapour from all sources in a forcing row [kg/s].

@@ -10,10 +10,15 @@
 //! ```
 //!
 //! with outdoor air and air from other zones, sources `G` and what plants and saturation take away, `D`. `p(w)` and `phi(u)` are
-//! replaced by their tangents at the start of a step: each stage is linear, and what is stored is what has flowed in. The layers
-//! are eliminated onto the zone; the zones are a sparse M-matrix.
+//! replaced by their tangents, which are drawn anew until the solution lies on the curves (Newton's method): each solution is linear, and what
+//! is stored is what has flowed in. The layers are eliminated onto the zone; the zones are a sparse M-matrix.
+//!
+//! Each stage alone is a step of backward Euler: its humidity is a mean of what it starts from and of what drives it. The second stage of SDIRK2
+//! starts from an extrapolation, and may end beyond both; `bounds` keeps it between them.
 
 pub(crate) mod balances;
+mod bounds;
+mod counting;
 mod flows;
 pub(crate) mod of_step;
 mod plants;

@@ -79,16 +79,18 @@ impl<S: Real> Limits<S> {
 
     /// The same in a stage at a node before the end of the step, whose limits are given, with the humidity ratio at the start of the step.
     ///
-    /// Air that is beyond a set point, which has stepped or whose plant was off, comes to it on a straight line over the step. A stage
-    /// that held it at once would take away its vapour over a part of the step, and the next one goes on from the slope of the first: the
-    /// step would end far on the other side of the set point.
+    /// Air that is beyond a set point, which has stepped or whose plant was off, comes to it on a straight line over the step, and so does air
+    /// that saturation falls below. A stage that held it at once would take away its vapour over a part of the step, and the next one goes on
+    /// from the slope of the first: the step would end far on the other side of the set point.
     #[inline(always)]
     pub(super) fn on_the_way(&self, end: &Self, start: S, node: f64) -> Self {
         let line = |target: S| start + (target - start).scale(node);
-        let dry = S::select(self.dry.lt(start), self.dry.max(line(end.dry)).min(self.saturated), self.dry);
+        let falls = self.saturated.lt(start);
+        let saturated = S::select(falls, self.saturated.max(line(end.saturated)), self.saturated);
+        let dry = S::select(self.dry.lt(start), self.dry.max(line(end.dry)).min(saturated), self.dry);
         let wet = self.humidify.min(line(end.humidify));
         let humidify = S::select(start.lt(self.humidify), wet, self.humidify);
-        Self { humidify, dry, ..*self }
+        Self { humidify, dry, saturated, ..*self }
     }
 
     /// The mode of a zone, with or without plants, from a humidity ratio and what was taken away: the point of the law on the line

@@ -1,11 +1,14 @@
 //! Vapour that a surface takes up in a stage, as a straight line of the humidity ratio of the air.
 
-use crate::number::real::Real;
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::sorption::VapourLayers;
 
 use super::flows::SurfaceFlows;
 
-/// The tangent of the sorption of a layer at the start of the step.
+/// How far the line of a relative humidity may be from it at the solution [-].
+const HUMIDITY: ByPrecision = ByPrecision { double: 1e-10, single: 1e-5 };
+
+/// The tangent of the sorption of a layer, at the start of a step or at the solution of a stage.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tangent<S> {
     /// Moisture content [kg/m2], and the humidity there [-].
@@ -28,6 +31,27 @@ impl<S: Real> Tangent<S> {
             let (humidity, slope) = layers.isotherm.humidity(content / depth);
             *tangent = Self { content, humidity, capacity: depth * slope };
         }
+    }
+
+    /// Draws those of both layers anew that are far from the sorption at the contents reached [kg/m2]; true where they were.
+    #[inline(always)]
+    pub(super) fn follow(both: &mut [Self; 2], layers: &VapourLayers<S>, contents: &[S]) -> S::Mask {
+        let mut any = S::Mask::splat(false);
+        if layers.isotherm.is_straight() {
+            return any;
+        }
+        let used = if layers.two { 2 } else { 1 };
+        let near = S::constant(HUMIDITY.of::<S>());
+        for ((tangent, &content), &depth) in both.iter_mut().zip(contents).zip(&layers.depths).take(used) {
+            let (humidity, slope) = layers.isotherm.humidity(content / depth);
+            let on_line = tangent.humidity + (content - tangent.content) / tangent.capacity;
+            let far = near.lt((humidity - on_line).abs());
+            tangent.content = S::select(far, content, tangent.content);
+            tangent.humidity = S::select(far, humidity, tangent.humidity);
+            tangent.capacity = S::select(far, depth * slope, tangent.capacity);
+            any = any | far;
+        }
+        any
     }
 
     /// What the layer stores per humidity and length of a stage [kg/(m2 s)], and the humidity that the stage starts from [-], with its
