@@ -34,7 +34,7 @@ Identity = tuple[int, int]
 """Device and inode."""
 
 
-@dataclass
+@dataclass(eq=False)
 class _Register:
     """Files of one command, or of the session.
 

@@ -89,7 +89,7 @@ def forcing(
     """
     out = np.empty((*steps.stage.shape, len(CHANNELS) + len(channels)))
     first = steps.first
-    out[..., : len(CHANNELS)] = _at_place(completed, site, steps)
+    _fill_at_place(out[..., : len(CHANNELS)], completed, site, steps)
     for place, name in enumerate(channels, start=len(CHANNELS)):
         record = record_of(source, measured, name)
         record.grid.require(first, steps.last, f"{record.file}: {name}")
@@ -99,22 +99,24 @@ def forcing(
     return out
 
 
-def _at_place(completed: WeatherRecord, site: SiteLike, steps: Steps) -> Array:
+def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: Steps) -> None:
     """Weather and sun without measured columns; the last one is kept, for other buildings at the place."""
     latitude, longitude = float(site.latitude), float(site.longitude)
     key = (latitude, longitude, steps.first, steps.last, len(steps.stage), steps.weights)
     if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
-        return _LAST[0].values
-    out = np.empty((*steps.stage.shape, len(CHANNELS)))
+        out[...] = _LAST[0].values
+        return
     reach = 5.0 * completed.grid.interval + 3600.0
     sun = SunPath.over(latitude, longitude, steps.first - reach, steps.last + reach, steps.first)
-    _fill_sun(out, sun, steps.stage, steps.first, completed.grid)
+    # In blocks, so that what is worked out on the way takes no memory beside the result.
+    for row in range(0, len(steps.stage), _ROWS):
+        block = slice(row, row + _ROWS)
+        _fill_sun(out[block], sun, steps.stage[block], steps.first, completed.grid)
     for name in SOURCE_CHANNELS[:7]:
         out[..., CHANNELS.index(name)] = _weather(completed, name, steps)
     _fill_radiation(out, completed, sun, steps)
     if out.nbytes <= _MOST_KEPT:
-        _LAST[:] = [_Kept(completed, key, out)]
-    return out
+        _LAST[:] = [_Kept(completed, key, out.copy())]
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,8 @@ class _Kept:
 
 
 _LAST: Final[list[_Kept]] = []
+#: Steps whose sun is worked out together.
+_ROWS: Final = 2**15
 #: A year in steps of 15 min takes 10 MB. [B]
 _MOST_KEPT: Final = 16 * 2**20
 
