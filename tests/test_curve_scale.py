@@ -1,4 +1,4 @@
-"""Hysteresis of measured curves whose shapes differ: ``curve_scale`` converges in walls of random materials."""
+"""Hysteresis of measured curves of different shapes: `curve_scale` converges in random walls."""
 
 from __future__ import annotations
 
