@@ -183,6 +183,24 @@ impl<S: Real> Curve<S> {
         (point.fraction, point.slope)
     }
 
+    /// The convex part of the compact curve between two temperatures, and its slope: with all that the slope falls by left out; beyond the
+    /// second temperature its tangent there.
+    pub(super) fn convex(&self, temperature: S, [from, to]: [S; 2]) -> (S, S) {
+        let Shape::Measured(segments) = &self.shape else {
+            // The slope rises up to the peak, and falls behind it.
+            let place = temperature.max(from).min(self.peak().max(from).min(to));
+            let (fraction, slope) = self.compact(place);
+            return (fraction + slope * (temperature - place), slope);
+        };
+        let place = temperature.max(from).min(to);
+        let [(before, rise_before), (here, rise)] =
+            [from, place].map(|place| segments.convex(place - self.centre));
+        let (begin, slope) = self.compact(from);
+        let value = begin + here - before + (slope - rise_before) * (place - from);
+        let slope = slope + rise - rise_before;
+        (value + slope * (temperature - place), slope)
+    }
+
     /// Whether the integral of the fraction is known.
     pub(super) fn integrable(&self) -> bool {
         !matches!(self.shape, Shape::Gumbel(_))

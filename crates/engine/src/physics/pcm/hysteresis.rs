@@ -10,7 +10,10 @@ use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
 
 /// A temperature beyond all others, for a mark that is not known [degC].
-const FAR: f64 = 1e100;
+pub(super) const FAR: f64 = 1e100;
+
+/// Rounding of a fraction [-].
+const LEAST: f64 = 1e-12;
 
 /// Count of the numbers of a memory.
 pub(crate) const REMEMBERED: usize = 4;
@@ -124,8 +127,10 @@ impl<S: Real> Hysteresis<S> {
                 (melting.max(freezing.min(held)), up.max(down))
             }
             HysteresisModel::CurveScale => {
-                let warmer = (S::one() - first * (S::one() - melting), first * melting_slope);
-                let colder = (second * freezing, second * freezing_slope);
+                // Rounding may lead beyond the limits.
+                let warmer = S::one() - first * (S::one() - melting);
+                let warmer = (warmer.max(S::zero()), first * melting_slope);
+                let colder = ((second * freezing).min(S::one()), second * freezing_slope);
                 let heats = memory.temperature.lt(temperature);
                 let (fraction, slope) = either(heats, warmer, colder);
                 let still = !heats & !temperature.lt(memory.temperature);
@@ -164,10 +169,7 @@ impl<S: Real> Hysteresis<S> {
                 self.marked(fraction, [first, second], !on)
             }
             HysteresisModel::CurveScale => {
-                let tiny = S::constant(1e-300);
-                let solid = (S::one() - melting).max(tiny);
-                let liquid = freezing.max(tiny);
-                [((S::one() - fraction) / solid).min(S::one()), (fraction / liquid).min(S::one())]
+                [share(S::one() - fraction, S::one() - melting), share(fraction, freezing)]
             }
         };
         PcmMemory { liquid_fraction: fraction, temperature, marks }
@@ -235,40 +237,38 @@ impl<S: Real> Hysteresis<S> {
         self.heating.width().min(self.cooling.width())
     }
 
-    /// The convex part of the fraction and its slope: each curve up to its peak, then its tangent.
-    /// The memory must be complete.
+    /// The convex part of the fraction and its slope: those of both curves where they hold. The memory must be complete.
     pub(super) fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
         let [first, second] = memory.marks;
-        let [_, warmer] = self.thresholds(memory);
-        let [freezing_peak, melting_peak] = self.peaks(memory);
-        let along = |curve: &Curve<S>, peak: S, from: S| {
-            let place = temperature.max(from).min(peak);
-            let (fraction, slope) = curve.compact(place);
-            (fraction + slope * (temperature - place), slope)
-        };
-        let nothing = -S::constant(FAR);
-        let freezing = along(&self.cooling, freezing_peak, nothing);
-        let scaled = |share: S, (fraction, slope): (S, S)| (share * fraction, share * slope);
+        let [colder, warmer] = self.thresholds(memory);
+        let far = S::constant(FAR);
+        let (frozen, frozen_slope) = self.cooling.convex(temperature, [-far, colder]);
+        let (molten, molten_slope) = self.heating.convex(temperature, [warmer, far]);
         match self.model {
             HysteresisModel::CurveTrack => {
-                let melting = along(&self.heating, melting_peak, nothing);
                 let cools = S::constant(0.5).lt(first);
-                (S::select(cools, freezing.0, melting.0), S::select(cools, freezing.1, melting.1))
+                (S::select(cools, frozen, molten), S::select(cools, frozen_slope, molten_slope))
             }
             HysteresisModel::CurveSwitch | HysteresisModel::CurveScale => {
                 let scale = self.model == HysteresisModel::CurveScale;
                 let (solid, liquid) = if scale { (first, second) } else { (S::one(), S::one()) };
-                let melting = scaled(solid, along(&self.heating, melting_peak, warmer));
                 let begun = solid * self.heating.compact(warmer).0;
-                let (frozen, frozen_slope) = scaled(liquid, freezing);
                 let melts = !temperature.lt(warmer);
                 (
-                    frozen + S::select(melts, melting.0 - begun, S::zero()),
-                    frozen_slope + S::select(melts, melting.1, S::zero()),
+                    liquid * frozen + S::select(melts, solid * molten - begun, S::zero()),
+                    liquid * frozen_slope + S::select(melts, solid * molten_slope, S::zero()),
                 )
             }
         }
     }
+}
+
+/// What is solid, or liquid, over that of a curve. It is above one where curves of different shapes have led the fraction below the melting or
+/// above the freezing curve: with less, the fraction would jump to the curve at the present temperature.
+#[inline(always)]
+fn share<S: Real>(present: S, of_curve: S) -> S {
+    let share = present / of_curve.max(S::constant(LEAST));
+    S::select(share.lt(S::constant(1.0 + LEAST)), share.min(S::one()), share)
 }
 
 /// Whether a fraction rose in the first part of a step and fell in the second, or the reverse.

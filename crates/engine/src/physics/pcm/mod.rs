@@ -17,7 +17,7 @@ use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
 use curve::{Curve, CurvePoint, limit_at};
-use hysteresis::Hysteresis;
+use hysteresis::{FAR, Hysteresis};
 use table::{Table, TablePoint};
 
 pub use curve::CUT;
@@ -374,15 +374,17 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
         let (latent, (fraction, slope)) = match &self.law {
             Law::Melting(latent, curve) => {
-                let place = temperature.min(curve.peak());
-                let (fraction, slope) = curve.whole(place);
-                (latent, (fraction + slope * (temperature - place), slope))
+                if curve.is_measured() {
+                    (latent, curve.convex(temperature, [-S::constant(FAR), S::constant(FAR)]))
+                } else {
+                    let place = temperature.min(curve.peak());
+                    let (fraction, slope) = curve.whole(place);
+                    (latent, (fraction + slope * (temperature - place), slope))
+                }
             }
             Law::Hysteresis(latent, hysteresis) => (latent, hysteresis.rising(temperature, memory)),
             Law::Table(table) => {
-                let place = temperature.min(table.peak());
-                let PcmPoint { enthalpy, capacity, .. } = self.at(place, memory);
-                return (enthalpy + capacity * (temperature - place), capacity);
+                return table.convex(temperature, self.volumetric_heat);
             }
         };
         self.heat(*latent, (temperature, true), fraction, slope)

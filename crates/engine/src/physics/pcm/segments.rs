@@ -19,6 +19,15 @@ struct Segment {
     area: f64,
 }
 
+/// A part of a segment in which the slope rises, or falls: at its start the convex part of the height and its slope, height and slope.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    start: f64,
+    convex: [f64; 2],
+    curve: [f64; 2],
+    rises: bool,
+}
+
 /// A monotone C1 curve from its first point to its last; constant before and after.
 #[derive(Debug, Clone)]
 pub(super) struct Segments {
@@ -191,6 +200,52 @@ impl Segments {
         }
     }
 
+    /// The convex part of the height and its slope: that of the curve with all that its slope falls by left out. The rest, this less the
+    /// height, is convex as well.
+    pub(super) fn convex<S: Real>(&self, x: S) -> (S, S) {
+        let found = x.look_up(|x| {
+            let Piece { start, convex: [value, slope], curve: [height, steepness], rises } = self.piece(x);
+            [start, value, slope, height, steepness, if rises { 1.0 } else { 0.0 }]
+        });
+        let [start, value, slope, height, steepness, rises] = found;
+        let Reading { height: reached, slope: there, .. } = self.at(x);
+        let distance = x - start;
+        let bent = reached - height - steepness * distance;
+        (value + slope * distance + rises * bent, slope + rises * (there - steepness))
+    }
+
+    /// The piece that a temperature is in.
+    fn piece(&self, x: f64) -> Piece {
+        let mut piece = Piece { start: self.first(), convex: [0.0; 2], curve: [0.0; 2], rises: false };
+        if x < piece.start {
+            return piece;
+        }
+        for segment in &self.all {
+            let turn = -segment.square / (3.0 * segment.cube);
+            let turns = 0.0 < turn && turn < 1.0;
+            let parts = if turns { [Some([0.0, turn]), Some([turn, 1.0])] } else { [Some([0.0, 1.0]), None] };
+            for [from, to] in parts.into_iter().flatten() {
+                let (begin, end) = (segment.place(from), segment.place(to));
+                // Where two segments meet the slope may rise at once.
+                piece.convex[1] += (begin.curve[1] - piece.curve[1]).max(0.0);
+                piece = Piece { convex: piece.convex, ..begin };
+                piece.rises = end.curve[1] > begin.curve[1];
+                if x < end.start {
+                    return piece;
+                }
+                let length = end.start - begin.start;
+                piece.convex[0] += piece.convex[1] * length;
+                if piece.rises {
+                    piece.convex[0] += end.curve[0] - begin.curve[0] - begin.curve[1] * length;
+                    piece.convex[1] += end.curve[1] - begin.curve[1];
+                }
+                piece = Piece { convex: piece.convex, ..end };
+            }
+        }
+        piece.curve[1] = 0.0;
+        piece
+    }
+
     /// The integral at a temperature of the range.
     fn inside(&self, x: f64) -> f64 {
         let segment = self.segment(x);
@@ -207,6 +262,13 @@ impl Segment {
 
     fn end(&self) -> f64 {
         self.start + self.length
+    }
+
+    /// A place on the curve, of which no convex part is known.
+    fn place(&self, u: f64) -> Piece {
+        let height = self.below + u * (self.linear + u * (self.square + u * self.cube));
+        let slope = (self.linear + u * (2.0 * self.square + u * 3.0 * self.cube)) / self.length;
+        Piece { start: self.start + u * self.length, convex: [0.0; 2], curve: [height, slope], rises: false }
     }
 
     /// Integral of `offset + rise` from the start.
@@ -257,6 +319,29 @@ mod tests {
         let sum: f64 = (0..parts).map(|k| 0.5 * (at(k) + at(k + 1))).sum();
         assert!((curve.at(30.0).area - sum * 1.5 / f64::from(parts)).abs() < 1e-6);
         assert_eq!(curve.at(19.4).area, 0.0);
+    }
+
+    /// The slopes of the convex part and of the rest never fall, and are the derivatives of both.
+    #[test]
+    fn a_curve_is_the_difference_of_two_convex_ones() {
+        let capacities = Segments::integral(&[18.0, 19.0, 20.0, 22.0], &[2.0, 9.0, 1.0, 4.0]);
+        for curve in [curve(), capacities] {
+            let rest = |x: f64| {
+                let ((value, slope), Reading { height, slope: steepness, .. }) =
+                    (curve.convex(x), curve.at(x));
+                (value - height, slope - steepness)
+            };
+            let mut last = [0.0; 2];
+            for k in 0..2000 {
+                let x = 16.003 + 0.006 * f64::from(k);
+                let ((value, slope), (other, fall)) = (curve.convex(x), rest(x));
+                assert!(slope >= last[0] - 1e-9 && fall >= last[1] - 1e-9, "{x}: {slope}, {fall}");
+                assert!((curve.convex(x + 1e-6).0 - value - 1e-6 * slope).abs() < 1e-7, "{x}");
+                assert!((rest(x + 1e-6).0 - other - 1e-6 * fall).abs() < 1e-7, "{x}");
+                last = [slope, fall];
+            }
+            assert_eq!(curve.convex(17.0), (0.0, 0.0));
+        }
     }
 
     /// Numbers that are no temperatures end in the first or the last segment.

@@ -73,6 +73,17 @@ impl<S: Real> Table<S> {
         }
     }
 
+    /// A convex part of the enthalpy [J/m3] and its slope: what the curve rises by less is convex as well. The heat of the solid counts at
+    /// all temperatures, and that of the liquid is added behind the curve.
+    pub(super) fn convex(&self, temperature: S, [solid, liquid]: [S; 2]) -> (S, S) {
+        let read = temperature - self.shift;
+        let (value, slope) = self.curve.convex(read);
+        let above = (read - S::constant(self.curve.last())).max(S::zero());
+        let after = S::select(S::zero().lt(above), liquid, S::zero());
+        let below = read - S::constant(self.curve.first());
+        (value * self.factor + below * solid + above * liquid, slope * self.factor + solid + after)
+    }
+
     /// Temperature of the largest capacity [degC].
     #[inline(always)]
     pub(super) fn peak(&self) -> S {
