@@ -205,7 +205,7 @@ _STILL: Final = (
     Convection("{kind: alamdari_hammond, length: 2.5}", 0, lambda d, _: 0.6 * (d / _LENGTH**2) ** 0.2),
     Convection("{kind: alamdari_hammond, length: 2.5}", 180, lambda d, _: _blend(1.4, 1.63, d, _LENGTH)),
     Convection("{kind: tarp}", 0, lambda d, _: 1.810 * d ** (1 / 3) / 2.382),
-    Convection("{kind: tarp}", 180, lambda d, _: 9.482 * d ** (1 / 3) / 6.283),
+    Convection("{kind: tarp}", 180, lambda d, _: 9.482 * d ** (1 / 3) / 6.238),
     Convection("{kind: tarp}", 45, lambda d, _: 1.810 * d ** (1 / 3) / (1.382 + math.sqrt(0.5))),
     Convection("{kind: power, upward: {a: 1, b: 2, n: 0.25}, downward: {a: 0.5, b: 1, n: 0.3}}", 180,
          lambda d, _: 1.0 + 2.0 * d**0.25),
