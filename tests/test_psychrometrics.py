@@ -58,13 +58,11 @@ def test_functions_are_inverse_to_each_other() -> None:
 
 def room() -> mc.Building:
     """A room that holds the vapour of the outdoor air at its temperature."""
+    sky = {"kind": "offset", "depression": 0.0}
     outside = {"outdoors": True, "convection": 15, "longwave": "none", "emissivity": 0.9, "absorptance": 0.5}
     plain: dict[str, Any] = {
         "name": "room",
-        "site": {
-            "latitude": 48, "longitude": 2, "altitude": 0, "timezone": "UTC",
-            "sky": {"kind": "offset", "depression": 0.0},
-        },
+        "site": {"latitude": 48, "longitude": 2, "altitude": 0, "timezone": "UTC", "sky": sky},
         "materials": {"sheet": {"conductivity": 50.0, "density": 100, "specific_heat": 100}},
         "constructions": {"sheet": {"layers": [{"material": "sheet", "thickness": 0.001}]}},
         "zones": {"room": {"volume": 10, "infiltration": 60, "longwave": "none"}},

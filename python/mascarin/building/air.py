@@ -83,10 +83,11 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
         raise InputError(f"temperature: found {temperature:g} degC; expected -45 to 60 degC")
     if not 0.0 <= humidity <= 1.0:
         raise InputError(f"humidity: found {humidity:g}; expected a relative humidity from 0 to 1")
-    vapour = humidity * float(_engine.saturation_pressure(np.array([temperature]))[0])
+    vapour = humidity * float(_engine.saturation_pressure(np.array([temperature], dtype=np.float64))[0])
     if pressure <= vapour:
         raise InputError(f"pressure: found {pressure:g} Pa; expected a pressure of moist air [Pa]")
-    ratio = float(_engine.humidity_ratio(np.array([vapour]), np.array([pressure]))[0])
+    pressures = np.array([[vapour], [pressure]], dtype=np.float64)
+    ratio = float(_engine.humidity_ratio(*pressures)[0])
     kelvin = temperature + 273.15
     mass = (pressure - vapour) / (_GAS_CONSTANT * kelvin) * (1.0 + ratio)
     return mass, (SPECIFIC_HEAT + ratio * _VAPOUR) / (1.0 + ratio)

@@ -78,7 +78,9 @@ KINDS: Final[Mapping[Kind, OutputKind]] = {
     "relative_humidity": OutputKind(
         "ZONE.relative_humidity", "-", "Vapour pressure over that of saturated air, over water", _HUMID
     ),
-    "dew_point": OutputKind("ZONE.dew_point", "degC", "Temperature at which the air is saturated", _HUMID),
+    "dew_point": OutputKind(
+        "ZONE.dew_point", "degC", "Temperature at which the air is saturated over water", _HUMID
+    ),
     "wet_bulb": OutputKind("ZONE.wet_bulb", "degC", "Temperature of adiabatic saturation of the air", _HUMID),
     "latent_heating": OutputKind(
         "ZONE.latent_heating_load",
@@ -101,7 +103,7 @@ KINDS: Final[Mapping[Kind, OutputKind]] = {
     "condensation": OutputKind(
         _SIDES.format("condensation"),
         "-",
-        "1 where the surface is colder than the dew point of the zone, else 0",
+        "1 where dew, or below 0.01 degC frost, forms on the surface, else 0",
         "surfaces in zones of a building with `humidity`",
     ),
     "air_changes": OutputKind(

@@ -106,7 +106,7 @@ class Output:
     zones transmits into the zone of its inside, less what it transmits the other way.
 
     In a building with humidity, the relative humidity at a side is that of the air of the zone at the
-    temperature of the surface; condensation is 1 where the surface is colder than the dew point, else 0. The
+    temperature of the surface; condensation is 1 where the surface has dew or frost, else 0. The
     latent loads are what ideal drying takes away and ideal humidifying adds, neither below 0, as means over
     the step.
 

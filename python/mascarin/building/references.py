@@ -45,7 +45,7 @@ _SKIES = {
     "clark_allen": (CLARK,),
     "brunt": (
         "Brunt 1932, doi:10.1002/qj.49705824704 (emissivity of the clear sky)",
-        "Alduchov & Eskridge 1996, doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (vapour pressure)",
+        "ASHRAE Handbook of Fundamentals 2017, ch. 1, eq. 6 (vapour pressure at the dew point)",
     ),
 }
 _SKY_SPLIT = "Walton 1983, NBSIR 83-2655 (split of the sky by height above the horizon)"

@@ -76,7 +76,7 @@ def vapour_pressure(ratio: npt.ArrayLike, pressure: npt.ArrayLike = STANDARD_PRE
     Examples
     --------
     >>> float(vapour_pressure(0.01).round(1))
-    1603.3
+    1603.4
     """
     return _each(_engine.vapour_pressure, ratio, pressure)
 

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mascarin.verification.analytical import setup
+from mascarin.verification.analytical import moisture, setup
 from mascarin.verification.analytical.check import Case, Check
 
 SIGMA: Final = 5.670374419e-8  # W/(m2 K4), CODATA 2018
@@ -139,7 +139,7 @@ def _sky(name: str) -> Iterator[Check]:
     skies: dict[str, float] = {
         "martin_berdahl": 0.711 + 0.56 * dew / 100.0 + 0.73 * (dew / 100.0) ** 2,
         "clark_allen": 0.787 + 0.764 * math.log((dew + KELVIN) / 273.0),
-        "brunt": 0.618 + 0.056 * math.sqrt(6.1094 * math.exp(17.625 * dew / (243.04 + dew))),
+        "brunt": 0.618 + 0.056 * math.sqrt(0.01 * moisture.saturation(dew)),
     }
     factor = 1.0 + 0.0224 * cloud - 0.0035 * cloud**2 + 0.00028 * cloud**3
     layer = 0.1 * cloud * math.exp(-1200.0 / 8200.0)

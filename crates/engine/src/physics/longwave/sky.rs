@@ -12,6 +12,7 @@ use crate::input::forcing::channel;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::{KELVIN, SIGMA};
+use crate::physics::psychrometrics::saturation_pressure;
 
 /// Scale height of the effect of clouds [m]: the base of a cloud is colder than the air at the ground (Martin & Berdahl 1984).
 const CLOUD_SCALE_HEIGHT: f64 = 8200.0;
@@ -74,7 +75,8 @@ impl SkyState {
             Sky::Offset { .. } => 0.0,
             Sky::ClarkAllen { .. } => Real::ln((dew + KELVIN) / 273.0),
             Sky::MartinBerdahl { .. } => dew / 100.0,
-            Sky::Brunt { .. } => Real::sqrt(vapour_pressure(dew)),
+            // His law takes the vapour pressure in [hPa].
+            Sky::Brunt { .. } => Real::sqrt(saturation_pressure(dew).scale(0.01)),
         };
         Self { black: SIGMA * air.pow4(), air, humidity, cloud: row[channel::CLOUD_COVER] }
     }
@@ -100,12 +102,6 @@ pub fn sky_emission<S: Real>(
         }
     };
     clouds.emissivity(clear, state.cloud).min(S::one()).scale(state.black)
-}
-
-/// Vapour pressure [hPa] at a dew point [degC]: Magnus form, Alduchov & Eskridge (1996),
-/// J. Appl. Meteorol. 35, doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2.
-fn vapour_pressure(dew: f64) -> f64 {
-    6.1094 * Real::exp(17.625 * dew / (243.04 + dew))
 }
 
 #[cfg(test)]
@@ -139,8 +135,8 @@ mod tests {
         close(emission(&martin, &[0.711, 0.56, 0.73], cloud), 0.7743 * 1.0595 * 418.766);
         // 0.787 + 0.764 ln(283.15/273) = 0.814890.
         close(emission(&Sky::ClarkAllen { a, b }, &[0.787, 0.764], clear), 0.814_890 * 418.766);
-        // Vapour pressure 6.1094 e^(176.25/253.04) = 12.2602 hPa: 0.52 + 0.065 3.50146 = 0.747595.
-        close(emission(&Sky::Brunt { a, b }, &[0.52, 0.065], clear), 0.747_595 * 418.766);
+        // Vapour pressure 12.27995 hPa: 0.52 + 0.065 3.504276 = 0.747778.
+        close(emission(&Sky::Brunt { a, b }, &[0.52, 0.065], clear), 0.747_778 * 418.766);
         // 10 K below the air: sigma 283.15^4 = 364.484; measured: the channel.
         close(emission(&Sky::Offset { depression: a }, &[10.0], clear), 364.484);
         close(emission(&Sky::Measured { scale: a }, &[1.1], cloud), 1.1 * 333.0);
