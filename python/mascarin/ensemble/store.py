@@ -280,7 +280,9 @@ class Store:
         """Warnings about members, and of a run with the values of the building; see `mascarin.sweep`."""
         import pyarrow.parquet as pq
 
-        names, closure, errors = ["member", "closure", _STEP_ERROR], {}, {}
+        names = ["member", "closure", _STEP_ERROR]
+        closure: dict[int, float] = {}
+        errors: dict[int, float] = {}
         for file in self._files():
             # Stores of earlier versions do not have the errors by the time step.
             table = pq.read_table(file, columns=[n for n in names if n in pq.read_schema(file).names])
