@@ -188,13 +188,14 @@ def calibrate(
     )
     if errors:
         found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
+    notes = (*found.warnings, *_said_of_the_run(simulation, found))
+    return replace(found, nominal_building=chosen, times=observation.times, warnings=notes)
+
+
+def _said_of_the_run(simulation: Simulation, found: Calibration) -> list[str]:
+    """Warnings of the run at the estimates."""
     said = of_nominal(simulation, simulation.vector(found.values))
-    return replace(
-        found,
-        nominal_building=chosen,
-        times=observation.times,
-        warnings=(*found.warnings, *(f"the run at the estimates: {line}" for line in said)),
-    )
+    return [f"the run at the estimates: {line}" for line in said]
 
 
 def _beginning(

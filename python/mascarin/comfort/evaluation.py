@@ -48,7 +48,7 @@ class Evaluation:
         By 1e-6 of the unit or less counts as 0.
         """
         above = excess(self.values, self.high)
-        below = -shortfall(self.values, self.low)
+        below = 0.0 - shortfall(self.values, self.low)
         # A value may be outside both limits where they cross: only the upper one counts then.
         return np.where(above > 0.0, above, below)
 

@@ -12,7 +12,7 @@ import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 import h5py
 import numpy as np
@@ -21,6 +21,8 @@ from mascarin import __version__
 from mascarin.simulation.netcdf_reading import seal
 
 if TYPE_CHECKING:
+    import io
+
     import numpy.typing as npt
 
     from mascarin.building import Output
@@ -60,7 +62,7 @@ class _Lasting:
     """
 
     def __init__(self, path: Path, mode: str) -> None:
-        self._file = path.open(mode, buffering=0)
+        self._file = cast("io.FileIO", path.open(mode, buffering=0))
         self.error: OSError | None = None
         self.seek, self.tell, self.close = self._file.seek, self._file.tell, self._file.close
         self.read, self.readinto, self.flush = self._file.read, self._file.readinto, self._file.flush
