@@ -139,6 +139,7 @@ def _light(scheme: str) -> dict[str, Any]:
         {"at": "00:00", "value": 0}, {"at": "04:00", "value": 1}, {"at": "05:00", "value": 0},
         {"at": "09:00", "value": 1}, {"at": "10:00", "value": 0}, {"at": "14:00", "value": 1},
         {"at": "15:00", "value": 0}]}}}  # fmt: skip
+    del tree["humidity"]["materials"]
     tree["humidity"]["zones"]["room"] = {"gains": {"bath": {"rate": 0.002}}}
     melts = 28 if scheme == "apparent-capacity" else 60
     tree["materials"]["pcm"] = {
