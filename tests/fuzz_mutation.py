@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import random
 import re
@@ -76,13 +77,15 @@ def mutate(tree: Any, draw: random.Random) -> None:
             other, place = draw.choice(places)
             holder[key] = json.loads(json.dumps(other[place])) if _has(other, place) else None
         case 2 if isinstance(holder, dict):
-            holder[draw.choice((*map(str, holder), "x", "kind", "nodes", "a.b", ""))] = draw.choice(VALUES)
+            holder[draw.choice((*map(str, holder), "x", "kind", "nodes", "a.b", ""))] = copy.deepcopy(
+                draw.choice(VALUES)
+            )
         case 3 if isinstance(holder, list):
             holder.append(holder[key])
         case 4 if isinstance(holder[key], int | float):
             holder[key] = holder[key] * draw.choice((-1, 0, 1e-12, 1e12, 10, 0.1))
         case _:
-            holder[key] = draw.choice(VALUES)
+            holder[key] = copy.deepcopy(draw.choice(VALUES))
 
 
 def _scale(tree: Any, draw: random.Random) -> None:

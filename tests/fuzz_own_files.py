@@ -7,6 +7,7 @@ also mutated below its seal: its hash fits, as in a file that someone made on pu
 from __future__ import annotations
 
 import base64
+import copy
 import functools
 import json
 import random
@@ -124,7 +125,7 @@ def _json(content: bytes, draw: random.Random) -> bytes:
 def _tree(tree: Any, draw: random.Random) -> Any:
     for _ in range(draw.choice((1, 1, 2, 4))):
         if draw.random() < 0.05:
-            return draw.choice(fuzz_mutation.VALUES)
+            return copy.deepcopy(draw.choice(fuzz_mutation.VALUES))
         if draw.random() < 0.05:
             return functools.reduce(lambda inner, _: [inner], range(draw.choice((50, 70, 900))), tree)
         fuzz_mutation.mutate(tree, draw)

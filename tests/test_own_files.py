@@ -65,6 +65,15 @@ def test_a_claim_that_the_file_cannot_hold_takes_no_memory(entry: Any) -> None:
         own_files.unpacked(len(head).to_bytes(8, "little") + head + b"\0" * 8)
 
 
+def test_a_key_that_may_be_empty_may_not_be_missing() -> None:
+    kinds: dict[str, Any] = {"costs": (list, type(None)), "n": int}
+    own_files.require({"costs": None, "n": 1}, kinds)
+    own_files.require({"n": 1}, kinds, further=("costs",))
+    for found in ({"n": 1}, {"costs": [], "n": True}, {"costs": {}, "n": 1}, {}):
+        with pytest.raises(own_files.DamagedError):
+            own_files.require(found, kinds)
+
+
 def test_nested_json_is_bounded() -> None:
     for depth in (own_files.DEEPEST + 1, 900, 100_000):
         with pytest.raises(own_files.DamagedError):

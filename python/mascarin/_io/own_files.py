@@ -353,9 +353,11 @@ def require(
     """
     optional = set(further)
     for key, kind in keys.items():
-        if key not in found and key in optional:
-            continue
-        value = found.get(key)
+        if key not in found:
+            if key in optional:
+                continue
+            raise DamagedError(f"{key}: found nothing")
+        value = found[key]
         kinds = kind if isinstance(kind, tuple) else (kind,)
         # True is a whole number for Python.
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):

@@ -145,7 +145,7 @@ class Store:
 
     def _restore(self, manifest: Mapping[str, Any]) -> None:
         """Take the entries as they are known, and forget what was damaged: it is run again."""
-        own = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
+        own: dict[str, Any] = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
         self.manifest = {**json.loads(json.dumps(manifest)), **own}
         if self.complete and not self._has_results():
             self.manifest["complete"] = False
@@ -286,8 +286,8 @@ class Store:
                 for at in range(0, whole, rows):
                     writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
                 held = [joined.slice(whole)]
-            rest = pa.concat_tables(held) if held else ()
-            if writer is not None and len(rest):
+            rest = pa.concat_tables(held) if held else None
+            if writer is not None and rest is not None and len(rest):
                 writer.write_table(rest.combine_chunks(), row_group_size=rows)
 
     def to_dataframe(self) -> pd.DataFrame:
