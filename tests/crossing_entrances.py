@@ -190,7 +190,8 @@ def _period(bench: Bench) -> tuple[str, ...]:
 
 def run(bench: Bench, *more: str | Path) -> Told:
     """``mascarin run``."""
-    words = ("--weather", bench.file("inputs.yaml"), *_period(bench), "--initial", str(bench.initial))
+    words: tuple[str | Path, ...] = ("--weather", bench.file("inputs.yaml"), *_period(bench))
+    words = (*words, "--initial", str(bench.initial))
     return bench.command("run", bench.file("building.yaml"), *words, *more)
 
 
@@ -205,7 +206,9 @@ def _report(bench: Bench) -> Told:
 
 
 def _sweep(bench: Bench) -> Told:
-    words = ("--weather", bench.file("inputs.yaml"), "-o", bench.folder / "sweep", "--draw", "3")
+    words: tuple[str | Path, ...] = (
+        "--weather", bench.file("inputs.yaml"), "-o", bench.folder / "sweep", "--draw", "3",
+    )  # fmt: skip
     vary = [word for path in VARIED for word in ("--vary", path)]
     return bench.command(
         "sweep", bench.file("building.yaml"), *words, *vary, "--objective", f"max:{OUTPUT}", *_period(bench)
@@ -213,7 +216,9 @@ def _sweep(bench: Bench) -> Told:
 
 
 def _fmu(bench: Bench) -> Told:
-    words = ("--weather", bench.file("inputs.yaml"), "-o", bench.folder / "unit.fmu", *_period(bench))
+    words: tuple[str | Path, ...] = (
+        "--weather", bench.file("inputs.yaml"), "-o", bench.folder / "unit.fmu", *_period(bench),
+    )  # fmt: skip
     return bench.command("fmu", bench.file("building.yaml"), *words)
 
 

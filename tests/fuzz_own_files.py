@@ -162,7 +162,7 @@ def results() -> Results:
     """Results of a run, made up."""
     outputs = [
         Output("room.air_temperature", "degC", "air_temperature", zone=0),
-        Output("roof.outside_temperature", "degC", "surface_temperature", surface=0, side=0),
+        Output("roof.outside_temperature", "degC", "face_temperature", surface=0, side=0),
     ]
     records = np.random.default_rng(1).normal(20.0, 2.0, (48, 2))
     return Results(
@@ -194,7 +194,8 @@ def _store(folder: Path, count: int) -> Store:
     store = Store.begin(folder, MANIFEST)
     for first in range(0, count, 2):
         members = Members({"zones.room.volume": np.array([20.0, 30.0])}, {})
-        chunk = Chunk(first, np.ones((2, 2, 1)), np.array([1e-12, 1e-13]), {})
+        residuals, zeros = np.array([1e-12, 1e-13]), np.zeros(2)
+        chunk = Chunk(first, np.ones((2, 2, 1)), residuals, zeros, {}, zeros)
         store.add(chunk, members)
     return store
 

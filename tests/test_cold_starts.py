@@ -91,7 +91,7 @@ def test_windows_stay_above_absolute_zero(
         end=str(np.datetime64(start) + 1),
         step=step,
         initial=initial,
-        scheme=scheme,
+        scheme=scheme,  # type: ignore[arg-type]
         outputs=["window.inside_temperature", "window.outside_temperature", "room.air_temperature"],
     )
     # The outdoor air is above -30 degC, and the sky some 30 K colder.

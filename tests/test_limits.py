@@ -29,7 +29,7 @@ PACKAGE = Path(mc.__file__).parent
 def around(limit: float) -> np.ndarray:
     """A limit, and its neighbours of one and ten units in the last place."""
     ulp = np.spacing(limit)
-    return limit + ulp * np.array([0.0, -1.0, 1.0, -10.0, 10.0])
+    return np.asarray(limit + ulp * np.array([0.0, -1.0, 1.0, -10.0, 10.0]))
 
 
 def held(air: np.ndarray, **more: object) -> Conditions:

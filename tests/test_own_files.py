@@ -32,9 +32,9 @@ def test_every_changed_byte_is_found() -> None:
 
 
 def test_arrays_come_back_with_all_bits() -> None:
-    arrays = {
+    arrays: dict[str, Any] = {
         "numbers": np.array([[1.0 / 3.0, np.nan], [np.inf, -0.0]]),
-        "single": np.float32([0.1]),
+        "single": np.array([0.1], dtype=np.float32),
         "scalar": np.array(3),
         "flags": np.array([True, False]),
         "empty": np.empty((0, 3)),

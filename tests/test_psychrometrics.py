@@ -80,8 +80,9 @@ def room() -> mc.Building:
 def table(column: str, values: Any, air: Any) -> mc.Climate:
     index = pd.date_range("2024-01-01", periods=len(air), freq="1h", tz="UTC")
     frame = pd.DataFrame({"air_temperature": air, column: values, "pressure": 95_000.0}, index=index)
+    names = [str(name) for name in frame]
     return mc.Climate.from_table(
-        frame, timezone="UTC", columns={name: name for name in frame}, instant=list(frame),
+        frame, timezone="UTC", columns={name: name for name in names}, instant=names,
         absent=["radiation", "wind_speed", "wind_direction"],
     )  # fmt: skip
 

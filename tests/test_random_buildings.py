@@ -10,6 +10,7 @@ import pytest
 import random_buildings
 import random_campaign
 from mascarin.building import Building
+from mascarin.errors import InputError
 from random_cases import case
 from random_judges import faults
 
@@ -31,7 +32,7 @@ def drawn() -> list[Building]:
     for seed in range(DRAWN):
         try:
             found.append(case(seed).building())
-        except random_campaign.InputError:
+        except InputError:
             continue
     return found
 

@@ -22,8 +22,9 @@ def shifted(name: str, minutes: float) -> Climate:
     """A shipped year whose stamps are too early."""
     climate = Climate.shipped(name)
     table = climate.to_dataframe()[list(COLUMNS)]
-    table.index = table.index - pd.Timedelta(minutes=minutes)
-    zone = f"UTC{str(table.index.tz)[3:6]}"
+    index = pd.DatetimeIndex(table.index)
+    table.index = index - pd.Timedelta(minutes=minutes)
+    zone = f"UTC{str(index.tz)[3:6]}"
     return Climate.from_table(table, timezone=zone, columns={one: one for one in COLUMNS}, check_sun=False)
 
 

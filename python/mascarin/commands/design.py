@@ -80,12 +80,10 @@ def _print_plan(inputs: DesignInputs, as_json: bool) -> int:
 
 def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     """Print the ranking; the exit code."""
-    from mascarin.simulation.judgement import JUDGED, ensemble_warnings
+    from mascarin.simulation.judgement import all_sound
 
     found = results.summary()
-    tables = (results.sampled, results.nominal)
-    unsound = (ensemble_warnings(*(table[name].to_numpy() for name in JUDGED)) for table in tables)
-    code = 1 if any(unsound) else 0
+    code = 0 if all(all_sound(table) for table in (results.sampled, results.nominal)) else 1
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:

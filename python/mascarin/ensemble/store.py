@@ -24,7 +24,7 @@ from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
-from mascarin.simulation.judgement import JUDGED, OUTSIDE, ensemble_warnings
+from mascarin.simulation.judgement import JUDGED, OUTSIDE, all_sound
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
@@ -323,8 +323,7 @@ class Store:
 
     def sound(self) -> bool:
         """Whether the energy balance of every member closes and every temperature has a cause."""
-        table = self.to_dataframe()
-        return not ensemble_warnings(*(table[name].to_numpy() for name in JUDGED), precision=self.precision)
+        return all_sound(self.to_dataframe(), self.precision)
 
     def _said(self, judged: Sequence[Any], first: int) -> list[str]:
         options: Any = {"step_seconds": float(self.manifest["step_seconds"]), "precision": self.precision}

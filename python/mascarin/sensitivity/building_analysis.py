@@ -333,16 +333,15 @@ def run_samples(
     """
     vectors = simulation.varied(paths, samples)
     run = simulation.ensemble(vectors, record_from=start, record_every=every, precision=precision)
-    records, _, failures = run
     for line in ensemble_warnings(run.residuals, run.outside, first, precision):
         warnings.warn(f"sensitivity analysis: {line}", stacklevel=2)
-    if failures:
-        failed = failures[0]
+    if run.failures:
+        failed = run.failures[0]
         raise SolverError(
             f"sensitivity analysis: run {first + failed.member} failed: {failed.reason} Its parameters: "
             + ", ".join(f"{p}={v:g}" for p, v in zip(paths, samples[failed.member], strict=True))
         )
-    return records
+    return run.records
 
 
 def checked_range(building: Building, path: str, span: tuple[float, float]) -> tuple[float, float]:

@@ -151,6 +151,25 @@ def ensemble_warnings(
     ]
 
 
+def all_sound(table: Mapping[str, Any] | Any, precision: str = "double") -> bool:
+    """Whether every member of an ensemble is sound.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or mapping
+        Columns ``closure`` and ``outside``, as `sweep` has them.
+    precision : str
+        Of the members: ``double`` or ``single``.
+
+    Examples
+    --------
+    >>> all_sound({"closure": np.zeros(2), "outside": np.array([0.0, 3.0])})
+    False
+    """
+    closure, outside = (np.asarray(table[name], dtype=np.float64) for name in JUDGED)
+    return not ensemble_warnings(closure, outside, precision=precision)
+
+
 def _shorter(step_seconds: float) -> float:
     minutes = step_seconds / 60.0 * _SHORTER
     return next((float(step) for step in STEPS if step <= minutes), minutes)
