@@ -130,7 +130,7 @@ def test_only_results_of_the_folder_are_removed(tmp_path: Path) -> None:
     out, precious = tmp_path / "out", tmp_path / "precious"
     precious.mkdir()
     names = ["../precious/a.txt", str(precious / "b.txt"), "tables/old.csv", "notes.txt", "link/c.csv",
-             "tables/../../precious/a.txt", "tables/linked.csv", 5, None, "study.yaml"]  # fmt: skip
+             "tables/../../precious/a.txt", "tables/linked.csv", 5, None, [], {}, "study.yaml"]  # fmt: skip
     with Workspace(out, {"a": 1}) as workspace:
         workspace.record("study", [])
     (out / "tables").mkdir()

@@ -129,6 +129,8 @@ class Workspace:
             found = own_files.read_json(self.path("results.json"))
             for entry in found.values():
                 own_files.require(entry if isinstance(entry, dict) else {}, {"inputs": str, "files": list})
+                # What is no text is no name.
+                entry["files"] = [name for name in entry["files"] if isinstance(name, str)]
         except (OSError, own_files.DamagedError):
             return {}
         return found
