@@ -65,6 +65,7 @@ def test_the_page_shows_each_period_once(tmp_path: Path) -> None:
     [
         ("time,room.measured\n2024-01-01T00:00,1\n", "1 rows; expected at least two"),
         ("time,room.measured\nsoon,1\n2024-01-01,2\n", "soon"),
+        ("time,room.measured\n2004-01-01,1\n2024-01-01,2\n2024-01-02,2\n", "not at equal distances"),
         ("time,room.measured\n2024-01-01T00:00,warm\n2024-01-01T00:15,2\n", "warm"),
     ],
 )

@@ -58,6 +58,10 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
     return study, read_series(_open(table), str(table), study)
 
 
+#: Local clocks may change between the first and the last stamp. [s]
+_CLOCK_CHANGE: Final = 7200.0
+
+
 def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Series:
     """Read the series of a study from the lines of its table.
 
@@ -83,7 +87,7 @@ def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Se
     try:
         with csv_refused(where):
             header, *rows = csv.reader(file)
-        times = [datetime.fromisoformat(row[0]).replace(tzinfo=None) for row in rows[:2]]
+        times = [datetime.fromisoformat(row[0]) for row in rows]
         values = np.array([[_number(cell) for cell in row[1:]] for row in rows], dtype=np.float64)
     except (ValueError, IndexError) as error:
         raise InputError(f"{where}: {error}; expected the series of a study; run it again") from error
@@ -91,8 +95,18 @@ def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Se
         raise InputError(
             f"{where}: {len(rows)} rows; expected at least two, as long as the header; run it again"
         )
-    columns = _columns(header[1:], values, study)
-    return Series(times[0].isoformat(), (times[1] - times[0]).total_seconds(), columns)
+    step = _step(times, where)
+    return Series(times[0].replace(tzinfo=None).isoformat(), step, _columns(header[1:], values, study))
+
+
+def _step(times: list[datetime], where: str) -> float:
+    """The distance of the first stamps, with which all rows end at the last one. [s]"""
+    first, second, last = (time.replace(tzinfo=None) for time in (*times[:2], times[-1]))
+    step = (second - first).total_seconds()
+    off = (last - first).total_seconds() - step * (len(times) - 1)
+    if step <= 0.0 or abs(off) > _CLOCK_CHANGE:
+        raise InputError(f"{where}: the stamps are not at equal distances; run the study again")
+    return step
 
 
 def _open(path: Path) -> list[str]:
