@@ -5,6 +5,7 @@
 mod common;
 
 mod closed_form;
+mod cold_starts;
 mod convergence;
 mod difficult_steps;
 mod empty_ensemble;
@@ -33,6 +34,7 @@ mod slopes_of_stages;
 mod stepwise;
 mod streamed;
 mod tape_memory;
+mod unlike_members;
 mod vents;
 mod wind;
 mod windows;
