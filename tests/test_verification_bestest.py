@@ -213,7 +213,9 @@ def test_a_bin_begins_at_its_label() -> None:
 def test_a_number_on_the_edge_is_inside() -> None:
     edge = ranges()["600", "annual_heating"]
     assert Quantity("600", "annual_heating", "MWh", edge.high, "", edge).passed
-    assert not Quantity("600", "annual_heating", "MWh", np.nextafter(edge.high, 9.0), "", edge).passed
+    # By the rule of all limits: 1e-6 of the unit.
+    assert Quantity("600", "annual_heating", "MWh", np.nextafter(edge.high, 9.0), "", edge).passed
+    assert not Quantity("600", "annual_heating", "MWh", edge.high + 2e-6, "", edge).passed
     assert not Quantity("600", "annual_heating", "MWh", float("nan"), "", edge).passed
     told = Quantity("600", "annual_heating", "MWh", 4.2, "", edge).to_dict()
     assert {"case", "quantity", "unit", "value", "min", "max", "expected", "passed"} <= set(told)

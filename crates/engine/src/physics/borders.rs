@@ -2,14 +2,14 @@
 //! its source has. Convection, gaps, sun, optics and phase change have theirs beside the law.
 
 use super::doors;
-use super::psychrometrics::{humidity_ratio, saturation_pressure, wet_bulb};
+use super::psychrometrics::{condensing_pressure, humidity_ratio, wet_bulb};
 use super::vents::{Coefficients, flow, strength};
 use crate::number::real::Real;
 
 /// Over ice and over water the pressure is the same at the triple point, within 2e-5 (Hyland & Wexler 1983).
 #[test]
 fn saturation_at_the_triple_point() {
-    let [ice, water] = [-1e-9, 1e-9].map(|more| saturation_pressure(0.01_f64 + more));
+    let [ice, water] = [-1e-9, 1e-9].map(|more| condensing_pressure(0.01_f64 + more));
     assert!((ice / water - 1.0).abs() < 2e-5, "{ice} and {water}");
     assert!((water / 611.657 - 1.0).abs() < 2e-5, "{water}");
 }
@@ -20,7 +20,7 @@ fn saturation_at_the_triple_point() {
 fn wet_bulb_of_saturated_air() {
     let pressure = 101_325.0;
     for temperature in [-30.0, -1.0, -0.1, 0.1, 1.0, 30.0] {
-        let ratio = humidity_ratio(saturation_pressure(temperature), pressure);
+        let ratio = humidity_ratio(condensing_pressure(temperature), pressure);
         let wet = wet_bulb(temperature, ratio, pressure);
         assert!((wet - temperature).abs() < 1e-6, "{wet} at {temperature}");
     }

@@ -124,6 +124,7 @@ fn random_buildings(seeds: core::ops::Range<u64>, count: usize) -> impl Iterator
         let mut case = Case::new(seed, Contents::All);
         case.scheme = ALL_SCHEMES[usize::try_from(seed % 4).unwrap()];
         case.dt = [900.0, 3600.0, 10_800.0][usize::try_from(seed / 4 % 3).unwrap()];
+        case.steps = warmup(case.dt).steps + 4;
         let plan = case.plan();
         let rows = case.rows(&plan);
         let warmup = if seed % 3 == 0 { None } else { short_warmup(case.dt) };
@@ -138,7 +139,7 @@ fn made_buildings(count: usize) -> Vec<Building> {
     for scheme in [Scheme::Sdirk2, Scheme::LinearlyImplicit] {
         for dt in [900.0, 10_800.0] {
             let plan = Plan::new(conditioned(0.04)).unwrap();
-            let rows = forcing(&plan, scheme, 24, dt, conditioned_weather);
+            let rows = forcing(&plan, scheme, warmup(dt).steps + 16, dt, conditioned_weather);
             let options = Options { warmup: short_warmup(dt), ..options(scheme, dt, conditioned_probes()) };
             all.push(Building::new(format!("conditioned, {scheme:?}"), plan, (rows, options), count, 0.2));
         }
