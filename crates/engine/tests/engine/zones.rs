@@ -124,23 +124,17 @@ fn duals_are_differences_with_plants() {
         let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
         let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
         let slope: f64 = records.iter().enumerate().map(|(i, r)| weight(i) * r.slope[0]).sum();
-        let difference = |part: f64| {
-            let step = part * numbers[which].abs().max(1e-3);
-            let shifted = |sign: f64| {
-                let mut numbers = numbers.clone();
-                numbers[which] += sign * step;
-                figure(&numbers)
-            };
-            ((shifted(1.0) - shifted(-1.0)) / (2.0 * step), step)
+        let step = 1e-5 * numbers[which].abs().max(1e-3);
+        let shifted = |sign: f64| {
+            let mut numbers = numbers.clone();
+            numbers[which] += sign * step;
+            figure(&numbers)
         };
-        // The loads are found to within 1e-8 K of the air. A law may change its branch within the larger of the two steps.
-        let apart = |part: f64| {
-            let (difference, step) = difference(part);
-            (slope - difference).abs() > 1e-4 * difference.abs() + 1e-7 / step
-        };
-        if apart(1e-5) && apart(2e-6) {
-            let [large, small] = [1e-5, 2e-6].map(|part| difference(part).0);
-            differ.push(format!("{}: dual {slope:e}, differences {large:e}, {small:e}", parameter.path));
+        let difference = (shifted(1.0) - shifted(-1.0)) / (2.0 * step);
+        // The loads are found to within 1e-8 K of the air. At the end of a step they correct all temperatures once more with the last
+        // tangents, by 1e-5 K at most, which is no part of the slopes: over the tenth of a kelvin that a guess is away, some 1e-4.
+        if (slope - difference).abs() > 3e-4 * difference.abs() + 1e-7 / step {
+            differ.push(format!("{}: dual {slope:e}, difference {difference:e}", parameter.path));
         }
     }
     assert!(differ.is_empty(), "{}", differ.join("\n"));
