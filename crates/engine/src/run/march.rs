@@ -7,8 +7,9 @@ use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
 use crate::run::action::Action;
 use crate::run::options::Options;
+use crate::run::output_limits::{beyond_limits, require_limits};
 use crate::run::outputs::Output;
-use crate::run::physical_limits::{Outlier, PhysicalLimits, beyond_limits, require_limits};
+use crate::run::physical_limits::{Outlier, PhysicalLimits};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::newton::Counters;
@@ -105,7 +106,8 @@ pub(crate) fn march_observed<'a, S: Real>(
         control.check()?;
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
         control.count_step();
-        limits.judge(&mut stepper, &state, action.weather_rows(weather, options.scheme), action.step())?;
+        let rows = action.weather_rows(weather, options.scheme);
+        limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
         if action.row(options).is_some() {
             let step = stepper.readings();
             records.extend(options.probes.iter().map(|output| output.read(plan, &step, &state)));
@@ -140,7 +142,7 @@ fn judge_records<S: Real>(
     if beyond.any() {
         if const { S::LANES == 1 } {
             let values: Vec<f64> = row.iter().map(|value| value.lane(0)).collect();
-            require_limits(outputs, &values, step)?;
+            require_limits(stepper.model.plan, outputs, &values, step)?;
         }
         stepper.give_up(beyond);
     }

@@ -6,6 +6,7 @@ pub(crate) mod anderson;
 pub mod ensemble;
 pub mod march;
 pub mod options;
+mod output_limits;
 pub mod outputs;
 pub(crate) mod periodic_start;
 pub mod physical_limits;

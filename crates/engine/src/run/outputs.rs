@@ -276,24 +276,6 @@ impl Output {
         }
     }
 
-    /// Least and largest value that it can have [its unit]; none where any number is possible.
-    #[must_use]
-    pub fn limits(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::LiquidFraction { .. } | Self::SolarTransmittance { .. } | Self::VentOpen { .. } => {
-                Some([0.0, 1.0])
-            }
-            Self::HumidityRatio { .. }
-            | Self::RelativeHumidity { .. }
-            | Self::SurfaceHumidity { .. }
-            | Self::AirChanges { .. }
-            | Self::Convection { .. }
-            | Self::LatentCooling { .. }
-            | Self::LatentHeating { .. } => Some([0.0, f64::INFINITY]),
-            _ => None,
-        }
-    }
-
     /// Whether it is the mean over the step of the sun that surfaces absorb, which is averaged on request only.
     #[must_use]
     pub fn averages_absorbed_sun(&self) -> bool {

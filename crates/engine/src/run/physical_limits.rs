@@ -1,13 +1,13 @@
 //! What no building can do, looked for after every step of a run: an energy balance closes for nonsense, too.
 //!
 //! *Impossible* are temperatures below absolute zero, negative humidity, ideal loads above their capacity, a calculated irradiance above
-//! the extraterrestrial one and what the ground reflects of it, and recorded fractions outside of 0 to 1 ([`Output::limits`]): the run ends with an error that names time and place; a member in lanes is marked as failed and run
+//! the extraterrestrial one and what the ground reflects of it, and recorded fractions outside of 0 to 1 (`run/output_limits.rs`): the run ends with an error that names time and place; a member in lanes is marked as failed and run
 //! again alone, where it ends in the same way.
 //!
 //! *Outside of its causes* is a temperature below the lowest, or above the highest, of the start of the run and of all temperatures that
 //! have acted on the building since (outdoor air, sky, imposed temperatures, supplied air). Sun, gains and heating raise the upper bound to
 //! what the building has reached while they act; cooling lowers the lower bound likewise. In exact arithmetic conduction, convection,
-//! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see [`OVERSHOOT`].
+//! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see `OVERSHOOT`.
 
 use crate::building::coefficients::{Boundary, Imposed};
 use crate::building::ids::SurfaceId;
@@ -17,7 +17,7 @@ use crate::input::forcing::channel;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::constants::KELVIN;
 use crate::physics::solar::greatest_irradiance;
-use crate::run::outputs::Output;
+use crate::run::action::Action;
 use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -40,13 +40,10 @@ const CAPACITY: ByPrecision = ByPrecision { double: 1e-6, single: 1e-2 };
 
 /// What rounding may add to an irradiance, and a change of the extraterrestrial one within a step, as a part of the limit [-].
 const IRRADIANCE: f64 = 1e-3;
-/// What rounding may add to a quantity beyond its limits, in its unit.
-const FRACTION: ByPrecision = ByPrecision { double: 1e-9, single: 1e-3 };
-
-/// A temperature outside of its causes, in a run of one member.
+/// The temperature of a run of one member that is farthest outside of its causes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outlier {
-    /// Step that ends with it; none: it stands at the start.
+    /// Step that ends with it, or begins with it where it is the first.
     pub step: usize,
     /// Name of the part.
     pub place: String,
@@ -84,7 +81,8 @@ impl<S: Real> PhysicalLimits<S> {
         }
     }
 
-    /// Judges the state after a step in the forcing rows of its first and of its last stage.
+    /// Judges the state after an action in the forcing rows of its first and of its last stage; `step` is that of the run. Loads are those
+    /// of a step: a balance of the surfaces keeps those of the step before, of another time.
     ///
     /// # Errors
     /// [`EngineError::Impossible`]; with lanes those that it holds for are marked as failed.
@@ -94,20 +92,22 @@ impl<S: Real> PhysicalLimits<S> {
         stepper: &mut Stepper<'_, S>,
         state: &State<S>,
         rows: [&[f64]; 2],
-        step: usize,
+        (action, step): (Action, usize),
     ) -> Result<(), EngineError> {
         let (coldest, row) = (lowest(state), rows[1]);
         let mut impossible = coldest.lt(S::constant(-KELVIN));
         for &vapour in &state.vapour[..state.vapour.len().min(state.air.len())] {
             impossible = impossible | vapour.lt(S::constant(NO_VAPOUR.of::<S>()));
         }
-        for &zone in &stepper.model.plan.ideal_loads {
-            impossible = impossible | beyond_capacity(stepper, state, row, zone);
+        if action != Action::Balance {
+            for &zone in &stepper.model.plan.ideal_loads {
+                impossible = impossible | beyond_capacity(stepper, state, row, zone);
+            }
         }
         impossible = impossible | too_bright(stepper, row);
         if impossible.any() {
             if const { S::LANES == 1 } {
-                return Err(self.name_impossible(stepper, state, row, step));
+                return Err(name_impossible(stepper, state, row, (action, step)));
             }
             stepper.give_up(impossible);
         }
@@ -130,18 +130,19 @@ impl<S: Real> PhysicalLimits<S> {
         self.bounds[0] = S::select(cooled, self.bounds[0].min(coldest), self.bounds[0]);
         let slack = (self.bounds[1] - self.bounds[0]).scale(self.overshoot) + S::constant(ROUNDING.of::<S>());
         let mut excess = (self.bounds[0] - slack) - coldest;
+        // What follows changes the lanes that are not heated only, so that a lane does not depend on the others.
         if (!heated).any() {
             let hottest = highest(state);
             // The heat that was supplied in the step before is still on its way.
-            let settling = heated | self.supplied;
+            let settling = self.supplied & !heated;
             self.bounds[1] = S::select(settling, self.bounds[1].max(hottest), self.bounds[1]);
-            excess = excess.max(hottest - (self.bounds[1] + slack));
+            excess = S::select(heated, excess, excess.max(hottest - (self.bounds[1] + slack)));
         }
         self.supplied = heated;
-        self.excess = self.excess.max(excess);
-        if const { S::LANES == 1 } && excess.lane(0) > 0.0 && self.outlier.is_none() {
+        if const { S::LANES == 1 } && excess.lane(0) > self.excess.lane(0).max(0.0) {
             self.name_outlier(stepper.model.plan, state, step);
         }
+        self.excess = self.excess.max(excess);
     }
 
     /// Widens the bounds by the temperatures around the building in the stages of the step.
@@ -176,47 +177,7 @@ impl<S: Real> PhysicalLimits<S> {
         }
     }
 
-    /// The error about the first impossible number of a state.
-    #[cold]
-    #[inline(never)]
-    fn name_impossible(
-        &self,
-        stepper: &Stepper<'_, S>,
-        state: &State<S>,
-        row: &[f64],
-        step: usize,
-    ) -> EngineError {
-        let plan = stepper.model.plan;
-        let zone_name = |zone: usize| format!("zone {}", plan.description.zones[zone].name);
-        let impossible = |place: String, what: String| EngineError::Impossible { step, place, what };
-        for zone in 0..state.air.len() {
-            if let Some(vapour) = state.vapour.get(zone).map(|vapour| vapour.lane(0))
-                && vapour < NO_VAPOUR.of::<S>()
-            {
-                let what = format!("a humidity ratio of {vapour:.3e} kg/kg, expected none below zero");
-                return impossible(zone_name(zone), what);
-            }
-        }
-        for &zone in &plan.ideal_loads {
-            if beyond_capacity(stepper, state, row, zone).lane(0) {
-                let load = state.load[zone].lane(0);
-                let [most_heating, most_cooling] = capacities(stepper, row, zone);
-                let most = if load > 0.0 { most_heating } else { most_cooling }.lane(0);
-                let what = format!("an ideal load of {load:.6} W, expected {most:.6} W at most");
-                return impossible(zone_name(zone), what);
-            }
-        }
-        if too_bright(stepper, row).lane(0) {
-            let most = greatest(stepper, row).lane(0);
-            let sun = stepper.weather.sun.irradiances.iter().map(|sun| sun.lane(0)).fold(0.0, f64::max);
-            let what = format!("an irradiance of {sun:.0} W/m2, expected {most:.0} W/m2 at most");
-            return impossible("a surface outdoors".to_owned(), what);
-        }
-        let (place, temperature) = extreme(plan, state, |a, b| a < b);
-        impossible(place, format!("{temperature:.1} degC, expected no temperature below -273.15 degC"))
-    }
-
-    /// Notes the first temperature that is outside of its causes.
+    /// Notes the temperature that is farthest outside of its causes so far.
     #[cold]
     #[inline(never)]
     fn name_outlier(&mut self, plan: &Plan, state: &State<S>, step: usize) {
@@ -252,32 +213,50 @@ fn too_bright<S: Real>(stepper: &Stepper<'_, S>, row: &[f64]) -> S::Mask {
     greatest(stepper, row).scale(1.0 + IRRADIANCE).lt(brightest)
 }
 
-/// Lanes where one of the values of some outputs is beyond its limits.
-#[inline(always)]
-pub(crate) fn beyond_limits<S: Real>(outputs: &[Output], values: &[S]) -> S::Mask {
-    let (mut beyond, slack) = (S::Mask::splat(false), FRACTION.of::<S>());
-    for (output, &value) in outputs.iter().zip(values) {
-        if let Some([least, most]) = output.limits() {
-            beyond = beyond | value.lt(S::constant(least - slack)) | S::constant(most + slack).lt(value);
-        }
-    }
-    beyond
-}
-
-/// As [`beyond_limits`] in a run of one member, with an error that names the first of them.
-///
-/// # Errors
-/// [`EngineError::Impossible`].
-pub(crate) fn require_limits(outputs: &[Output], values: &[f64], step: usize) -> Result<(), EngineError> {
-    for (output, value) in outputs.iter().zip(values) {
-        if let Some([least, most]) = output.limits()
-            && beyond_limits(core::slice::from_ref(output), &[*value])
+/// The error about the first impossible number of a state.
+#[cold]
+#[inline(never)]
+fn name_impossible<S: Real>(
+    stepper: &Stepper<'_, S>,
+    state: &State<S>,
+    row: &[f64],
+    (action, step): (Action, usize),
+) -> EngineError {
+    let plan = stepper.model.plan;
+    let zone_name = |zone: usize| format!("zone {}", plan.description.zones[zone].name);
+    let impossible = |place: String, what: String| EngineError::Impossible { step, place, what };
+    for zone in 0..state.air.len() {
+        if let Some(vapour) = state.vapour.get(zone).map(|vapour| vapour.lane(0))
+            && vapour < NO_VAPOUR.of::<S>()
         {
-            let what = format!("a value of {value:.9}, expected {least} to {most}");
-            return Err(EngineError::Impossible { step, place: format!("the output {output:?}"), what });
+            let what = format!("a humidity ratio of {vapour:.3e} kg/kg, expected none below zero");
+            return impossible(zone_name(zone), what);
         }
     }
-    Ok(())
+    for &zone in &plan.ideal_loads {
+        if action != Action::Balance && beyond_capacity(stepper, state, row, zone).lane(0) {
+            let load = state.load[zone].lane(0);
+            let [most_heating, most_cooling] = capacities(stepper, row, zone);
+            let most = if load > 0.0 { most_heating } else { most_cooling }.lane(0);
+            let what = format!("an ideal load of {load:.6} W, expected {most:.6} W at most");
+            return impossible(zone_name(zone), what);
+        }
+    }
+    if too_bright(stepper, row).lane(0) {
+        let most = greatest(stepper, row).lane(0);
+        let sources = stepper.weather.index.irradiance_sources.iter().zip(&stepper.weather.sun.irradiances);
+        for (source, sun) in sources {
+            if let IrradianceSource::Uniform(.., surface) | IrradianceSource::Varied(.., surface) = source
+                && sun.lane(0) > most
+            {
+                let sun = sun.lane(0);
+                let what = format!("an irradiance of {sun:.0} W/m2, expected {most:.0} W/m2 at most");
+                return impossible(plan.surface_name(*surface), what);
+            }
+        }
+    }
+    let (place, temperature) = extreme(plan, state, |a, b| a < b);
+    impossible(place, format!("{temperature:.1} degC, expected no temperature below -273.15 degC"))
 }
 
 /// Temperatures of a state.
@@ -380,9 +359,9 @@ mod tests {
         let mut limits = PhysicalLimits::new(&state, scheme);
         Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
         let at = Action::Balance.weather_rows(&weather, scheme);
-        limits.judge(&mut stepper, &state, at, 0).unwrap();
+        limits.judge(&mut stepper, &state, at, (Action::Balance, 0)).unwrap();
         change(&mut state, &mut stepper);
-        limits.judge(&mut stepper, &state, at, 7)?;
+        limits.judge(&mut stepper, &state, at, (Action::Step(0), 7))?;
         Ok(limits)
     }
 
@@ -416,6 +395,16 @@ mod tests {
             );
         }
         assert!(judged(&plan, &rows, |state, _| state.load[0] = 300.0).is_ok());
+        // The loads at the start of a run are those of another time.
+        let numbers = values(&plan);
+        let weather = Weather::new(&plan, &Forcing::new(&rows, 2, plan.n_channels()).unwrap());
+        let mut stepper = Stepper::new(&plan, &numbers, Scheme::Sdirk2);
+        let mut state = stepper.begin(&Initial::Everywhere(20.0), weather.row(0, 0));
+        Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
+        state.load[0] = 1e6;
+        let mut limits = PhysicalLimits::new(&state, Scheme::Sdirk2);
+        let at = Action::Balance.weather_rows(&weather, Scheme::Sdirk2);
+        limits.judge(&mut stepper, &state, at, (Action::Balance, 0)).unwrap();
         // 1361 W/m2 and a fifth of it from the ground.
         let bright = text(&|_, stepper| stepper.weather.sun.irradiances.fill(1640.0));
         assert!(bright.contains("an irradiance of 1640 W/m2, expected 1633 W/m2 at most"), "{bright}");

@@ -9,7 +9,8 @@ use crate::input::forcing::Forcing;
 use crate::run::action::Action;
 use crate::run::march::prepare;
 use crate::run::options::Options;
-use crate::run::physical_limits::{Outlier, PhysicalLimits, require_limits};
+use crate::run::output_limits::require_limits;
+use crate::run::physical_limits::{Outlier, PhysicalLimits};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::state::State;
@@ -59,7 +60,8 @@ impl<'a> StepByStep<'a> {
         let (mut ledger, mut limits) = (Ledger::new(), PhysicalLimits::new(&state, options.scheme));
         let first = weather.of(first_step);
         Action::Balance.take(&mut stepper, &mut state, &first, options.dt, &mut ledger)?;
-        limits.judge(&mut stepper, &state, Action::Balance.weather_rows(&first, options.scheme), 0)?;
+        let rows = Action::Balance.weather_rows(&first, options.scheme);
+        limits.judge(&mut stepper, &state, rows, (Action::Balance, 0))?;
         let weather = Weather::for_single_run(plan, &Forcing::none(), 0);
         Ok(Self { plan, options, stepper, weather, state, ledger, limits, steps: 0 })
     }
@@ -81,11 +83,11 @@ impl<'a> StepByStep<'a> {
             other => other,
         })?;
         let rows = action.weather_rows(&weather, self.options.scheme);
-        limits.judge(stepper, state, rows, self.steps)?;
+        limits.judge(stepper, state, rows, (action, self.steps))?;
         self.steps += 1;
         let mut values = Vec::new();
         self.read(&mut values);
-        require_limits(&self.options.probes, &values, self.steps - 1)
+        require_limits(self.plan, &self.options.probes, &values, self.steps - 1)
     }
 
     /// Reads the outputs of the options: the state at the start, or after the last step.

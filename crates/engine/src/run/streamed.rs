@@ -5,8 +5,8 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
+use crate::run::output_limits::require_limits;
 use crate::run::outputs::Output;
-use crate::run::physical_limits::require_limits;
 use crate::step::control::RunControl;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
@@ -44,7 +44,7 @@ pub fn march_streamed(
         block.reserve(if filled == 0 { rows * probes.len() } else { 0 });
         let step = stepper.readings();
         block.extend(probes.iter().map(|output| output.read(plan, &step, state)));
-        require_limits(probes, &block[block.len() - probes.len()..], action.step())?;
+        require_limits(plan, probes, &block[block.len() - probes.len()..], action.step())?;
         filled += 1;
         if filled < rows {
             return Ok(());
