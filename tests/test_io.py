@@ -136,10 +136,16 @@ def test_what_a_killed_process_left_is_removed_by_the_next_command(tmp_path: Pat
     with locks.writing_into(tmp_path):
         assert [file.name for file in tmp_path.glob("*.part")] == ["film.part"]
     # Without a lock another process may still be writing: only what is older than a day is removed.
-    for name in (".a.csv.abcdefgh.part", ".b.csv.abcdefgh.part"):
+    for name in (".a.csv.abcdefgh.mascarin.part", ".b.csv.abcdefgh.mascarin.part", ".c.abcdefgh.part"):
         (tmp_path / name).write_text("half")
     old = time.time() - 2 * atomic.OLD
-    os.utime(tmp_path / ".a.csv.abcdefgh.part", (old, old))
+    os.utime(tmp_path / ".a.csv.abcdefgh.mascarin.part", (old, old))
     atomic._cleaned.clear()
     atomic.write(tmp_path / "c.csv", "whole")
-    assert sorted(file.name for file in tmp_path.glob("*.part")) == [".b.csv.abcdefgh.part", "film.part"]
+    left = [".b.csv.abcdefgh.mascarin.part", ".c.abcdefgh.part", "film.part"]
+    assert sorted(file.name for file in tmp_path.glob("*.part")) == left
+    # What is written under a lock of another process stays; a file of another program, too.
+    with locks.writing(tmp_path / "b.csv"):
+        (tmp_path / left[0]).write_text("half")
+        with locks.writing_into(tmp_path):
+            assert sorted(file.name for file in tmp_path.glob("*.part")) == left

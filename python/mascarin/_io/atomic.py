@@ -24,6 +24,8 @@ PART: Final = ".part"
 What a killed process left is removed by the next command that writes the same file or folder, which it holds
 (`_io.locks`), and by any other writer in that folder after `OLD`: a process may still be writing before.
 """
+#: Ending of the names of temporary files, by which they are known as our own.
+_END: Final = f".mascarin{PART}"
 OLD: Final = 86_400.0
 """Age from which no process is still writing a file. [s]"""
 
@@ -65,7 +67,7 @@ def replacing(path: Path, kind: str = "") -> Iterator[BinaryIO]:
     """
     _require_possible(path, kind)
     _remove_old(path.parent)
-    handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=PART, dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=_END, dir=path.parent)
     draft = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -122,7 +124,7 @@ def drafted(path: Path, kind: str = "") -> Iterator[Path]:
     """
     _require_possible(path, kind)
     _remove_old(path.parent)
-    with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=PART, dir=path.parent) as folder:
+    with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=_END, dir=path.parent) as folder:
         draft = Path(folder) / path.name
         yield draft
         with draft.open("rb+") as file:
@@ -176,14 +178,21 @@ def remove_drafts_of(path: Path) -> None:
 def remove_named_drafts(folder: Path) -> None:
     """Remove what killed processes left in a folder that this process has locked, and that is not its own.
 
-    Only names as `replacing` and `drafted` make them: other programs use the ending, too.
+    Only names as `replacing` and `drafted` make them: other programs use the ending, too. What another
+    process is writing under a lock of its own stays.
     """
-    _remove(draft for draft in folder.glob(f".*{PART}") if _DRAFT.fullmatch(draft.name))
+    _remove(draft for draft in folder.glob(f".*{_END}") if _DRAFT.fullmatch(draft.name) and not _held(draft))
+
+
+def _held(draft: Path) -> bool:
+    """Whether there is a lock on the file of a draft, which its process removes at its end."""
+    named = _DRAFT.fullmatch(draft.name)
+    return named is not None and any(draft.parent.glob(f".{glob.escape(named[1])}*.lock"))
 
 
 #: Folders in which old drafts have been looked for.
 _cleaned: Final[set[Path]] = set()
-_DRAFT: Final = re.compile(rf"\..+\.[a-z0-9_]{{8}}{re.escape(PART)}")
+_DRAFT: Final = re.compile(rf"\.(.+)\.[a-z0-9_]{{8}}{re.escape(_END)}")
 
 
 def _remove_old(folder: Path) -> None:
@@ -193,7 +202,7 @@ def _remove_old(folder: Path) -> None:
     _cleaned.add(folder)
     with contextlib.suppress(OSError):
         before = time.time() - OLD
-        for draft in folder.glob(f".*{PART}"):
+        for draft in folder.glob(f".*{_END}"):
             if _DRAFT.fullmatch(draft.name) and draft.lstat().st_mtime < before:
                 _remove([draft])
 

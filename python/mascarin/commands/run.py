@@ -263,9 +263,10 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
     from mascarin.building import check
 
     lines = check(building, simulation.step_seconds)
-    for line in lines:
-        if line.startswith("warning: "):
-            print(line, file=sys.stderr)
+    warnings = [line for line in lines if line.startswith("warning: ")]
+    warnings += [f"warning: {line}" for line in simulation.building_warnings]
+    for line in dict.fromkeys(warnings):
+        print(line, file=sys.stderr)
     assumed = sum(line.startswith("assumed: ") for line in lines)
     if assumed:
         print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)

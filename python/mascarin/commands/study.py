@@ -54,7 +54,8 @@ def study(
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     _print_warnings(run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants}))
     _print_summary(opened, results, out)
-    return _exit_code([verdict.to_dict() for verdict in results.criteria["fitted"]])
+    verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
+    return _exit_code(verdicts, sound=results.nominal.results.sound and results.fitted.results.sound)
 
 
 def sensitivity(
@@ -139,7 +140,7 @@ def calibrate(
         _print_scores(content)
         for note in content["notes"]:
             print(f"note: {note['text']}", file=sys.stderr)
-    return _exit_code(_verdicts(content, "fitted"))
+    return _exit_code(_verdicts(content, "fitted"), sound=content["sound"])
 
 
 def validate(
@@ -170,7 +171,7 @@ def validate(
         print_json(content)
     else:
         _print_scores(content)
-    return _exit_code(_verdicts(content, "nominal"))
+    return _exit_code(_verdicts(content, "nominal"), sound=content["sound"])
 
 
 def _open(file: str, allow_outside: bool) -> Study:
@@ -217,8 +218,8 @@ def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]
     return [verdict for verdict in content["criteria"] if verdict["model"] == model]
 
 
-def _exit_code(verdicts: Sequence[Mapping[str, Any]]) -> int:
-    """Print the criteria that are missed; return the exit code."""
+def _exit_code(verdicts: Sequence[Mapping[str, Any]], *, sound: bool) -> int:
+    """Print the criteria that are missed; return the exit code, 1 also where a run is not sound."""
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
@@ -229,7 +230,7 @@ def _exit_code(verdicts: Sequence[Mapping[str, Any]]) -> int:
         print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
     if verdicts:
         print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
-    return 1 if missed else 0
+    return 1 if missed or not sound else 0
 
 
 def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:

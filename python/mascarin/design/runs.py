@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io import own_files
 from mascarin.building.ties import spread
 from mascarin.design.layers import LayerFacts
 from mascarin.design.measures import BINS, DaysInBin
@@ -280,7 +281,7 @@ class Runs:
         ]
         name = f"{site.name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
         self.used.add(name)
-        return self.out / FOLDER / name
+        return own_files.require_folder(self.out / FOLDER, name)
 
 
 def modes(objectives: Mapping[str, Objective], only: Sequence[str] | None = None) -> list[Mode]:

@@ -127,7 +127,7 @@ class Store:
         cls.require_usable(path)
         for name in (MANIFEST, RESULTS):
             identity.require_no_input(path / name)
-        identity.require_no_inputs_in(path / "pieces")
+        identity.require_no_inputs_in(own_files.require_folder(path, "pieces"))
         atomic.remove_drafts(path)
         if (path / MANIFEST).exists():
             store = cls(path)
@@ -147,11 +147,12 @@ class Store:
         """Take the entries as they are known, and forget what was damaged: it is run again."""
         own: dict[str, Any] = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
         self.manifest = {**json.loads(json.dumps(manifest)), **own}
-        if self.complete and not self._has_results():
-            self.manifest["complete"] = False
+        self.manifest["complete"] = self.complete and self._has_results()
+        if self.complete:
+            return
         (self.path / "pieces").mkdir(exist_ok=True)
         for file in (self.path / "pieces").glob("*.parquet"):
-            if not self._is_whole(file):
+            if _CHUNK.fullmatch(file.name) and not self._is_whole(file):
                 own_files.remove(file)
 
     def _has_results(self) -> bool:

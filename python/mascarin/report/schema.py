@@ -318,6 +318,8 @@ class Study(TypedDict, total=False):
     """[s]"""
     warnings: list[str]
     """Warnings of the runs, with the models that have them."""
+    sound: bool
+    """Whether every energy balance closes and every temperature has a cause."""
     sources: list[dict[str, str]]
     """Each with ``text`` and perhaps ``doi``."""
     sensor_info: dict[str, SensorInfo]

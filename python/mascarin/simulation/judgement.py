@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: The step that is recommended, as a part of the step that was taken. [-]
 _SHORTER: Final = 0.25
+#: The scheme that does not overshoot.
+_MONOTONE: Final = "backward-euler"
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,7 @@ class Judgement:
         How far a temperature was below the lowest, or above the highest, of the start and of all temperatures
         that acted on the building, beyond what the scheme may overshoot; zero in a sound run. [K]
     place : str
-        Part of the building where that was first; empty in a sound run.
+        Part of the building where that was largest; empty in a sound run.
     when : str
         Step of that, with its time.
     temperature : float
@@ -72,13 +74,15 @@ class Judgement:
         step, place, temperature, bound = raw["outlier"]
         return cls(float(raw["outside"]), place, dated(f"step {step}"), float(temperature), float(bound))
 
-    def warnings(self, step_seconds: float) -> list[str]:
+    def warnings(self, step_seconds: float, scheme: str) -> list[str]:
         """One line where a temperature has no cause, else nothing.
 
         Parameters
         ----------
         step_seconds : float
             Time step of the run. [s]
+        scheme : str
+            Time-stepping scheme of the run.
         """
         if self.sound:
             return []
@@ -87,7 +91,7 @@ class Judgement:
             f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} all that acts on it "
             f"(the {cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping "
             "scheme can overshoot: do not use these results. Take a step of "
-            f"{_shorter(step_seconds):g} min, or the scheme backward-euler"
+            f"{_shorter(step_seconds):g} min{'' if scheme == _MONOTONE else f', or the scheme {_MONOTONE}'}"
         ]
 
     def to_dict(self) -> dict[str, Any]:

@@ -393,7 +393,8 @@ class Simulation(VectorRuns):
         raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        parts = {"building": self.building_warnings, "judged": judgement.warnings(self.step_seconds)}
+        judged = judgement.warnings(self.step_seconds, self.scheme)
+        parts = {"building": self.building_warnings, "judged": judged}
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -446,8 +447,6 @@ class Simulation(VectorRuns):
             A step or the repeated first period did not converge.
         """
         return self._run_through(vector, lambda _rows: None, None).warnings
-
-    # --- times, weather, identity -------------------------------------------------------------------------
 
     @cached_property
     def identity(self) -> str:

@@ -71,7 +71,7 @@ class VapourLedger:
             Time step. [s]
         """
         found = []
-        if self.corrected and step_seconds > SHORTEST:
+        if self.corrected and self.fastest > 0.0 and step_seconds > SHORTEST:
             longest = min(MOST_EXCHANGES / self.fastest, 0.99 * step_seconds) / 60.0
             better = next((step for step in STEPS if step <= longest), STEPS[-1])
             within = 1.0 / self.fastest / 60.0

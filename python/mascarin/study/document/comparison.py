@@ -48,6 +48,7 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
         "start": models[main].results.provenance.start,
         "ledger": _ledger(models[main]),
         "warnings": run_warnings(models),
+        "sound": all(run.results.sound for run in models.values()),
     }
 
 
