@@ -78,6 +78,6 @@ def browser() -> Iterator[Browser]:
 def page(browser: Browser) -> Iterator[Page]:
     """An empty page that reaches nothing but local files."""
     context = browser.new_context(offline=True)
-    context.set_default_timeout(180_000)  # a page with all its curves is drawn by the processor, which may be busy
+    context.set_default_timeout(180_000)  # curves are drawn by the processor, which may be busy
     yield context.new_page()
     context.close()
