@@ -10,6 +10,7 @@ type Given<'py> = PyReadonlyArray1<'py, f64>;
 type Found<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
 
 /// A function of each element of some arrays of one length; NaN where one of them is.
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
 fn each<'py, const N: usize>(
     py: Python<'py>,
     given: [Given<'py>; N],

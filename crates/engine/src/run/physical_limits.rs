@@ -329,7 +329,7 @@ fn name(plan: &Plan, k: usize) -> String {
             Some(zone) => format!("zone {} (air)", plan.description.zones[zone].name),
         };
     }
-    let wall = plan.walls.iter().rposition(|wall| wall.first_cell <= k && wall.len() > 0).unwrap_or(0);
+    let wall = plan.walls.iter().rposition(|wall| wall.first_cell <= k && !wall.is_empty()).unwrap_or(0);
     plan.cell_name(wall, k - plan.walls[wall].first_cell)
 }
 
@@ -451,10 +451,10 @@ mod tests {
     #[test]
     fn negative_weights_of_sdirk2() {
         let root = core::f64::consts::SQRT_2;
-        let closed = (1.0 + root) * f64::exp(root - 2.0) - 1.0;
+        let closed = (1.0 + root) * Real::exp(root - 2.0) - 1.0;
         assert!((OVERSHOOT - closed).abs() < 1e-5, "{closed}");
         let (n, end) = (20_000, 2.0 - root);
-        let weight = |s: f64| (root - (1.0 + root) * s) * f64::exp(-s);
+        let weight = |s: f64| (root - (1.0 + root) * s) * Real::exp(-s);
         let sum: f64 = (0..n).map(|k| weight((f64::from(k) + 0.5) * end / f64::from(n))).sum();
         assert!((sum * end / f64::from(n) - closed).abs() < 1e-8);
     }

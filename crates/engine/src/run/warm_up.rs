@@ -57,7 +57,9 @@ pub(super) fn warm_up<'a, S: Real>(
         }
         if !active.any() {
             state.take(reached, &next);
-            history.iter().for_each(|history| stepper.set_history(history));
+            if let Some(history) = &history {
+                stepper.set_history(history);
+            }
             return Ok((cycle, change_left));
         }
         let start = if let Some(known) = &mut known {
@@ -73,7 +75,9 @@ pub(super) fn warm_up<'a, S: Real>(
     // Lanes that have converged do not depend on the others: these are run again alone.
     if S::LANES > 1 && (!(active | stepper.failed())).any() {
         stepper.give_up(active);
-        history.iter().for_each(|history| stepper.set_history(history));
+        if let Some(history) = &history {
+            stepper.set_history(history);
+        }
         return Ok((warmup.max_cycles, change_left));
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);

@@ -114,8 +114,8 @@ fn differences(
         .collect()
 }
 
-fn short_warmup(dt: f64) -> Option<Warmup> {
-    Some(Warmup { max_cycles: 40, ..warmup(dt) })
+fn short_warmup(dt: f64) -> Warmup {
+    Warmup { max_cycles: 40, ..warmup(dt) }
 }
 
 /// Random buildings, with and without a warm-up.
@@ -127,7 +127,7 @@ fn random_buildings(seeds: core::ops::Range<u64>, count: usize) -> impl Iterator
         case.steps = warmup(case.dt).steps + 4;
         let plan = case.plan();
         let rows = case.rows(&plan);
-        let warmup = if seed % 3 == 0 { None } else { short_warmup(case.dt) };
+        let warmup = if seed % 3 == 0 { None } else { Some(short_warmup(case.dt)) };
         let options = Options { warmup, ..case.options() };
         Building::new(format!("seed {seed}, {:?}", case.scheme), plan, (rows, options), count, 0.03)
     })
@@ -140,19 +140,21 @@ fn made_buildings(count: usize) -> Vec<Building> {
         for dt in [900.0, 10_800.0] {
             let plan = Plan::new(conditioned(0.04)).unwrap();
             let rows = forcing(&plan, scheme, warmup(dt).steps + 16, dt, conditioned_weather);
-            let options = Options { warmup: short_warmup(dt), ..options(scheme, dt, conditioned_probes()) };
+            let options =
+                Options { warmup: Some(short_warmup(dt)), ..options(scheme, dt, conditioned_probes()) };
             all.push(Building::new(format!("conditioned, {scheme:?}"), plan, (rows, options), count, 0.2));
         }
         for description in glazed_rooms() {
             let plan = Plan::new(description).unwrap();
             let rows = forcing(&plan, scheme, 24, 3600.0, weather);
-            let given = Options { warmup: short_warmup(3600.0), ..options(scheme, 3600.0, glazed_probes()) };
+            let given =
+                Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, glazed_probes()) };
             all.push(Building::new(format!("glazed, {scheme:?}"), plan, (rows, given), count, 0.1));
         }
         let plan = row(true, true);
         let rows = forcing(&plan, scheme, 24, 3600.0, weather);
         let probes = probes(&plan.description);
-        let given = Options { warmup: short_warmup(3600.0), ..options(scheme, 3600.0, probes) };
+        let given = Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, probes) };
         all.push(Building::new(format!("row, {scheme:?}"), plan, (rows, given), count, 0.1));
     }
     for (width, nodes, heated) in [(1e-3, 6, true), (0.1, 8, false), (1.0, 4, true)] {
