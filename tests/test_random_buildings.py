@@ -74,7 +74,7 @@ def test_nothing_impossible_comes_out(part: int) -> None:
 
 
 def test_judges_find_what_is_impossible() -> None:
-    one = case(18)
+    one = next(one for one in map(case, range(18, 99)) if one.building().humidity is not None)
     building = one.building()
     outputs = list(building.outputs())
     good = np.full((2, len(outputs)), 0.5)

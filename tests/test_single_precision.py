@@ -230,7 +230,7 @@ def test_members_in_double_precision_are_counted(
     store = sweep_into(
         tmp_path / "swept", building, climate, samples, precision="single", objectives=HOTTEST, **OPTIONS
     )
-    table = store.to_dataframe()
+    table = store._frame()
     table.loc[2, "closure"] = 1e-14
     table.reset_index().to_parquet(tmp_path / "swept" / "members.parquet")
     assert store.single_precision()[1:] == [f"{1 if LANES else 4} of 4 members were run in double precision"]

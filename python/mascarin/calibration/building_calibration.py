@@ -194,7 +194,8 @@ def calibrate(
 
 def _said_of_the_run(simulation: Simulation, found: Calibration) -> list[str]:
     """Warnings of the run at the estimates."""
-    said = of_nominal(simulation, simulation.vector(found.values))
+    estimates = np.array([list(found.values.values())])
+    said = of_nominal(simulation, simulation.varied(list(found.values), estimates)[0])
     return [f"the run at the estimates: {line}" for line in said]
 
 
