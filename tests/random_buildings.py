@@ -292,7 +292,7 @@ def _shares(draw: Draw, faced: list[str]) -> Json:
 # --- what was drawn -----------------------------------------------------------------------------------------
 
 #: Keys that no case needs to have: what reading fills in by itself.
-FILLED = {("Layer", "name"), ("TableLaw", "curve")}
+FILLED = {("Layer", "name"), ("TableLaw", "curve"), ("FractionsLaw", "curve")}
 
 
 def drawn_keys(part: Any) -> set[tuple[str, str]]:
