@@ -194,8 +194,9 @@ def calibrate(
 
 def _said_of_the_run(simulation: Simulation, found: Calibration) -> list[str]:
     """Warnings of the run at the estimates."""
-    estimates = np.array([list(found.values.values())])
-    said = of_nominal(simulation, simulation.varied(list(found.values), estimates)[0])
+    estimates = dict(found.values)
+    vectors = simulation.varied(list(estimates), np.array([[*estimates.values()]]))
+    said = of_nominal(simulation, vectors[0])
     return [f"the run at the estimates: {line}" for line in said]
 
 
