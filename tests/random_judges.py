@@ -69,6 +69,11 @@ class Extremes:
     fractions_outside: int = 0
 
 
+#: Relative humidity in the first row of air that was saturated at the end of the repeated first period: it is
+#: read at the pressure of the start, which differs by some tenths of a percent. [-]
+SATURATED_BEFORE = 1.005
+
+
 def faults(
     case: Case,
     building: Building,
@@ -98,6 +103,8 @@ def faults(
             row = int(np.flatnonzero(~np.isfinite(values))[0])
             found.append(Fault("not finite", f"{output.name} in row {row}: {values[row]}"))
             continue
+        if output.kind == "relative_humidity" and values[0] <= SATURATED_BEFORE:
+            values = np.concatenate([np.minimum(values[:1], 1.0), values[1:]])
         low, high = float(values.min()), float(values.max())
         for kind, at, limit in _outside(case, building, output, low, high, changed or {}):
             where = f"{output.name} in row {_row(values, at)}"
