@@ -57,9 +57,7 @@ pub(super) fn warm_up<'a, S: Real>(
         }
         if !active.any() {
             state.take(reached, &next);
-            if let Some(history) = &history {
-                stepper.set_history(history);
-            }
+            restore(stepper, history.as_ref());
             return Ok((cycle, change_left));
         }
         let start = if let Some(known) = &mut known {
@@ -75,11 +73,16 @@ pub(super) fn warm_up<'a, S: Real>(
     // Lanes that have converged do not depend on the others: these are run again alone.
     if S::LANES > 1 && (!(active | stepper.failed())).any() {
         stepper.give_up(active);
-        if let Some(history) = &history {
-            stepper.set_history(history);
-        }
+        restore(stepper, history.as_ref());
         return Ok((warmup.max_cycles, change_left));
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
     Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance })
+}
+
+/// Sets what guesses are made from.
+fn restore<S: Real>(stepper: &mut Stepper<'_, S>, history: Option<&History<S>>) {
+    if let Some(history) = history {
+        stepper.set_history(history);
+    }
 }
