@@ -69,8 +69,8 @@ class Extremes:
     fractions_outside: int = 0
 
 
-#: Relative humidity in the first row of air that was saturated at the end of the repeated first period: it is
-#: read at the pressure of the start, which differs by some tenths of a percent. [-]
+#: Relative humidity allowed in the first row only. Seed 0 has 1.00125 there. Probable cause, not proven: air
+#: that was saturated at the end of the repeated period is read at the pressure of its start. [-]
 SATURATED_BEFORE = 1.005
 
 
