@@ -69,8 +69,8 @@ class Extremes:
     fractions_outside: int = 0
 
 
-#: Relative humidity allowed in the first row only. Seed 0 has 1.00125 there. Probable cause, not proven: air
-#: that was saturated at the end of the repeated period is read at the pressure of its start. [-]
+#: Relative humidity allowed in the first row only: a fault that is known and open. Seed 0 has 1.00125 there;
+#: the pressure at the start of the repeated period explains 0.0002 of it. [-]
 SATURATED_BEFORE = 1.005
 
 
