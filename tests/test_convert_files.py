@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from conftest import unavailable
+from conftest import DATA, unavailable
 from mascarin.building.reading import parse
 from mascarin.convert import convert, yaml_text
 
@@ -36,7 +36,7 @@ def files(data_dir: Path) -> Path:
     """Folder of the example files, beside that of the data."""
     folder = data_dir.parent / "peers" / "idf"
     if not folder.is_dir():
-        unavailable(f"no example files of EnergyPlus at {folder}")
+        unavailable(f"no example files of EnergyPlus at {folder}", DATA)
     return folder
 
 

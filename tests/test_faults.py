@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import unavailable
+from conftest import DATA, unavailable
 from mascarin.cli import main
 
 
@@ -16,7 +16,7 @@ def faults(data_dir: Path) -> Path:
     """The folder of these inputs; tests of similar ones are in test_refusals."""
     folder = data_dir.parent / "faults"
     if not folder.is_dir():
-        unavailable(f"no folder {folder}")
+        unavailable(f"no folder {folder}", DATA)
     return folder
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import unavailable
+from conftest import DATA, unavailable
 from genopt_support import body, in_process
 from mascarin.errors import MascarinError
 from mascarin.genopt import optimize
@@ -38,7 +38,7 @@ def genopt_traces(data_dir: Path) -> Path:
     """Folder of the recordings, beside the data folder."""
     folder = data_dir.parent / "genopt" / "traces"
     if not folder.is_dir():
-        unavailable(f"no recordings of GenOpt at {folder}")
+        unavailable(f"no recordings of GenOpt at {folder}", DATA)
     return folder
 
 

@@ -140,3 +140,39 @@ def test_the_tests_run_on_every_version_of_python_that_is_declared(
     tests = yaml.safe_load((repository / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8"))
     declared = {text.rpartition(" ")[2] for text in project["classifiers"] if re.search(r":: 3\.\d+$", text)}
     assert set(tests["jobs"]["tests"]["strategy"]["matrix"]["python"]) == declared
+
+
+def test_workflows_pin_actions_by_commit(repository: Path) -> None:
+    uses = [
+        line.split("uses:", 1)[1].strip()
+        for path in sorted((repository / ".github" / "workflows").glob("*.yml"))
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if "uses:" in line
+    ]
+    assert len(uses) > 10
+    floating = [
+        action
+        for action in uses
+        if not action.startswith("./") and not re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action)
+    ]
+    assert floating == []
+
+
+def test_a_release_waits_for_the_tests(repository: Path) -> None:
+    folder = repository / ".github" / "workflows"
+    release = yaml.safe_load((folder / "release.yml").read_text(encoding="utf-8"))["jobs"]
+    assert release["tests"]["uses"] == "./.github/workflows/test.yml"
+    assert set(release["publish"]["needs"]) == {"tests", "wheels", "sdist"}
+    triggers = yaml.safe_load((folder / "test.yml").read_text(encoding="utf-8"))[True]  # YAML reads `on` as true
+    assert "workflow_call" in triggers
+
+
+def test_forms_of_the_repository_are_valid(repository: Path) -> None:
+    for path in sorted((repository / ".github" / "ISSUE_TEMPLATE").glob("*.yml")):
+        form = yaml.safe_load(path.read_text(encoding="utf-8"))
+        for item in form.get("body", []):
+            assert item["type"] in {"markdown", "textarea", "input", "dropdown", "checkboxes"}, path.name
+            assert item["attributes"]["label"], path.name
+    for page in ("CODE_OF_CONDUCT.md", "SECURITY.md", "SUPPORT.md", "RELEASING.md", "CONTRIBUTING.md"):
+        for link in re.findall(r"\]\(([^)#]+)", (repository / page).read_text(encoding="utf-8")):
+            assert link.startswith("https://") or (repository / link).exists(), (page, link)
