@@ -51,7 +51,9 @@ help:
 demo: $(BUILT)
 	$(BIN)/mascarin study lgi -o demo
 
-test: check-rust check-python pytest
+# The library for users and the tests of the engine are compiled side by side; both use one core for most of the time.
+test: | check-tools
+	@$(MAKE) --no-print-directory --jobs=2 pytest
 
 coverage: $(BUILT)
 	$(PY) -m pytest $(PYTEST_FLAGS) --cov=mascarin --cov-report=term-missing:skip-covered
@@ -133,7 +135,7 @@ check-rust: $(ENVIRONMENT)
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --package mascarin-engine --no-deps --document-private-items --locked --quiet
-	cargo test --workspace --release --locked --quiet
+	cargo test --workspace --profile tests --locked --quiet
 
 check-python: $(BUILT)
 	$(PY) -m ruff check --quiet .
