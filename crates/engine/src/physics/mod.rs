@@ -8,6 +8,7 @@ pub mod constants;
 pub mod convection;
 pub mod doors;
 pub mod gains;
+pub mod globe;
 pub mod horizon;
 pub mod leakage;
 pub mod longwave;
