@@ -46,7 +46,9 @@ mod tests {
     /// `((T_g + 273)^4 + 1.4/(e sigma) (|T_g - T_a|/D)^0.25 (T_g - T_a))^0.25 - 273`.
     #[test]
     fn radiant_temperature_comes_back() {
-        for (air, radiant) in [(20.0, 40.0), (30.0, 10.0), (-20.0, 60.0), (20.0, 20.001), (0.0, 200.0), (80.0, -60.0)] {
+        for (air, radiant) in
+            [(20.0, 40.0), (30.0, 10.0), (-20.0, 60.0), (20.0, 20.001), (0.0, 200.0), (80.0, -60.0)]
+        {
             let globe: f64 = globe_temperature(air, radiant, 0.15, 0.95);
             let difference: f64 = globe - air;
             let carried = 1.4 * (difference.abs() / 0.15).powf(0.25) * difference;
@@ -79,7 +81,10 @@ mod tests {
                     (at(air, radiant + 1e-4) - at(air, radiant - 1e-4)) / 2e-4,
                 ];
                 for (found, quotient) in globe.slope.into_iter().zip(quotients) {
-                    assert!((found - quotient).abs() < 1e-8, "{air}, {radiant}: {found}, quotient {quotient}");
+                    assert!(
+                        (found - quotient).abs() < 1e-8,
+                        "{air}, {radiant}: {found}, quotient {quotient}"
+                    );
                 }
             }
         }

@@ -18,5 +18,6 @@ pub mod pcm;
 pub mod psychrometrics;
 pub mod solar;
 pub mod sorption;
+pub mod standard_air;
 pub mod vents;
 pub mod window_gaps;

@@ -14,8 +14,8 @@ use crate::physics::psychrometrics::{dew_point, relative_humidity, wet_bulb};
 use crate::step::readings::Readings;
 use crate::step::state::State;
 
-pub use row::{Entry, Of, Row, Time};
 use row::{At, Place, outputs, require};
+pub use row::{Entry, Of, Row, Time};
 use values::{
     interface_temperature, layer_flux, layer_mean, mean_radiant, sensor_temperature, solar_transmittance,
     transmitted,

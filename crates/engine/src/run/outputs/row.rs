@@ -344,7 +344,12 @@ pub(super) use outputs;
 ///
 /// # Errors
 /// [`EngineError::Input`].
-pub(super) fn require(of: Of, plan: &Plan, at: &Place, what: &impl core::fmt::Debug) -> Result<(), EngineError> {
+pub(super) fn require(
+    of: Of,
+    plan: &Plan,
+    at: &Place,
+    what: &impl core::fmt::Debug,
+) -> Result<(), EngineError> {
     if of.is_at(plan, at) {
         Ok(())
     } else {
