@@ -187,7 +187,7 @@ def _figures(climate: Climate, found: Overview, folder: Path) -> list[Path]:
     from mascarin.comfort.plots import psychrometric
     from mascarin.figures import comfort as figures
     from mascarin.figures.files import save
-    from mascarin.weather.moisture import humidity_of_dew_point
+    from mascarin.physics import humidity_of_dew_point
 
     data, times = climate.data, climate.index
     written = []
