@@ -70,7 +70,7 @@ def main(folder: Path) -> None:
     hours = len(content) - 1
     told = fmpy.simulate_fmu(str(unit), stop_time=3600.0 * hours, output_interval=3600.0, output=[NAME])
     assert np.array_equal(told[NAME], content)
-    print(Path(mc.__file__).parent)
+    sys.stdout.write(f"{Path(mc.__file__).parent}\n")
 
 
 if __name__ == "__main__":

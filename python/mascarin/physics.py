@@ -27,6 +27,26 @@ import numpy.typing as npt
 from mascarin import _engine
 from mascarin.errors import InputError
 
+__all__ = [
+    "AIR_SPECIFIC_HEAT",
+    "GRAVITY",
+    "KELVIN",
+    "STANDARD_PRESSURE",
+    "STEFAN_BOLTZMANN",
+    "MeltingCurve",
+    "condensing_pressure",
+    "dew_point",
+    "globe_temperature",
+    "humidity_of_dew_point",
+    "humidity_ratio",
+    "moist_air",
+    "ratio_of_vapour",
+    "relative_humidity",
+    "saturation_pressure",
+    "standard_density",
+    "vapour_pressure",
+]
+
 Floats = npt.NDArray[np.float64]
 
 STANDARD_PRESSURE: Final = _engine.SEA_LEVEL_PRESSURE

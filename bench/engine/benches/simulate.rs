@@ -29,6 +29,6 @@ criterion_group! {
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(3))
         .without_plots();
-    targets = march
+    targets = simulate
 }
 criterion_main!(benches);
