@@ -32,8 +32,8 @@ from mascarin.building.geometry import Polygon, parents, view_factors
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
 from mascarin.building.surface import Side, Surface
+from mascarin.physics import humidity_of_dew_point
 from mascarin.weather import CHANNELS, Climate
-from mascarin.weather.moisture import humidity_of_dew_point
 
 Array = npt.NDArray[np.float64]
 Objects = dict[str, Any]

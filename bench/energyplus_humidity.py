@@ -36,7 +36,7 @@ from mascarin.building import Building
 from mascarin.building.derived import outlines
 from mascarin.building.geometry import parents
 from mascarin.building.vapour_sides import vapour_sides
-from mascarin.weather.moisture import relative_humidity, saturation_pressure, vapour_pressure
+from mascarin.physics import relative_humidity, saturation_pressure, vapour_pressure
 
 SETTLING = 28  # days left out of the comparison
 PER_HOUR = 60

@@ -48,7 +48,7 @@ def bench(cases: Path) -> None:
     cargo = shutil.which("cargo")
     if cargo is None:
         raise SystemExit("cargo: not found; expected Rust 1.89 or later, see rustup.rs")
-    command = [cargo, "bench", "--bench", "march", "--locked", "--target-dir", str(TARGET)]
+    command = [cargo, "bench", "--bench", "simulate", "--locked", "--target-dir", str(TARGET)]
     command += ["--manifest-path", str(ROOT / "bench/engine/Cargo.toml")]
     environment = {
         **os.environ,

@@ -72,7 +72,7 @@ def _written(
         "description": json.loads(described.json),
         "values": of.values.tolist(),
         "members": members.ravel().tolist(),
-        "probes": [{"kind": output.kind, **output.place} for output in of.outputs],
+        "outputs": [{"kind": output.kind, **output.place} for output in of.outputs],
         "dt": STEP,
         "initial": float(weather[:, -1, 0].mean()) if initial is None else initial,
     }

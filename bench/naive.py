@@ -19,11 +19,12 @@ from scipy.integrate import solve_ivp
 from scipy.sparse import lil_matrix
 
 from mascarin.building import Building
-from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.air import density
 from mascarin.building.derived import enclosure
 from mascarin.building.geometry import view_factors
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
+from mascarin.physics import AIR_SPECIFIC_HEAT
 
 Array = npt.NDArray[np.float64]
 SIGMA = 5.670374419e-8
@@ -71,7 +72,7 @@ class NaiveCell:
         self.zones = {name: len(self.capacity) + k for k, name in enumerate(building.zones)}
         air = density(building.site)
         for zone in building.zones.values():
-            self.capacity.append(air * SPECIFIC_HEAT * float(zone.volume) * float(zone.capacity_factor))
+            self.capacity.append(air * AIR_SPECIFIC_HEAT * float(zone.volume) * float(zone.capacity_factor))
         self.exchange = {name: self._radiosity(name) for name in building.zones}
         self.heat = np.array(self.capacity)
         self.i, self.j = (np.array([link[k] for link in self.links], dtype=int) for k in (0, 1))

@@ -41,7 +41,7 @@ for n in range(40):
         "scheme": SCHEMES.index(scheme),
         "initial": 15.0,
         "warmup_steps": n % 3,
-        "probes": json.loads(compiled.readings.probes),
+        "outputs": json.loads(compiled.readings.outputs),
         "record_from": 0,
         "record_every": 1,
     }

@@ -13,7 +13,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 
 # From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
-    {"errors", "engine_errors", "linear_algebra", "progress", "_engine", "_io"},
+    {"errors", "engine_errors", "linear_algebra", "physics", "progress", "_engine", "_io"},
     {"figures"},
     {"materials"},
     {"building"},

@@ -15,7 +15,7 @@ from mascarin.comfort.adaptive import EN_WEIGHTS, weighted_mean
 from mascarin.comfort.givoni import zone
 from mascarin.comfort.heat_balance import dissatisfied
 from mascarin.examples import box, box_climate
-from mascarin.weather.moisture import humidity_ratio, relative_humidity, saturation_pressure
+from mascarin.physics import humidity_ratio, relative_humidity, saturation_pressure
 
 NAN = float("nan")
 OUTPUTS = ["room.air_temperature", "room.mean_radiant_temperature"]

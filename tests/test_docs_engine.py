@@ -13,6 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "engine.md"
+TARGET = ROOT / "target" / "guide"
 
 _STEP = re.compile(
     r"<!-- (new|before|replace|append): ([^\s:]+)(?:: (.*?))? -->\n```\w+\n(.*?)```\n", re.DOTALL
@@ -42,6 +43,12 @@ def applied(step: re.Match[str], root: Path) -> Path:
     return file
 
 
+def steps_of(page: str, section: str = "") -> list[re.Match[str]]:
+    """Steps of the page, or of a section of it."""
+    text = page if not section else page[page.index(f"## {section}\n") :].split("\n## ", 2)[0]
+    return list(_STEP.finditer(text))
+
+
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the project in which every step of the page is done."""
@@ -50,8 +57,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copy(ROOT / name, root / name)
     shutil.copytree(ROOT / "crates", root / "crates")
     shutil.copytree(ROOT / "python" / "mascarin", root / "python" / "mascarin")
-    steps = list(_STEP.finditer(PAGE.read_text(encoding="utf-8")))
-    assert len(steps) >= 14
+    steps = steps_of(PAGE.read_text(encoding="utf-8"))
+    assert len(steps) >= 12
     done = {applied(step, root) for step in steps}
     for file in (root / "crates" / "engine" / "src").rglob("*.rs"):
         if file not in done:
@@ -60,21 +67,64 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
-def test_a_law_and_an_output_are_added_by_the_page(copy: Path) -> None:
-    cargo = shutil.which("cargo")
-    assert cargo is not None
-    # Unoptimised and without debug information: what counts is that it compiles and that both tests pass.
+def cargo(copy: Path, *words: str, **settings: str) -> str:
+    """What cargo prints in the copy."""
+    program = shutil.which("cargo")
+    assert program is not None
     environment = {
         **os.environ,
-        "CARGO_TARGET_DIR": str(ROOT / "target" / "guide"),
+        "CARGO_TARGET_DIR": str(TARGET),
         "CARGO_PROFILE_DEV_DEBUG": "0",
+        "PYO3_PYTHON": sys.executable,
         "RUST_MIN_STACK": str(256 << 20),
+        **settings,
     }
-    command = [cargo, "test", "--package", "mascarin-engine", "--lib", "--locked", "--offline", "--"]
-    command += ["khalifa_by_hand", "heat_content_of_air"]
+    command = [program, *words[:1], "--locked", "--offline", *words[1:]]
     done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "2 passed" in done.stdout
+    return done.stdout
+
+
+def test_a_law_and_an_output_are_added_by_the_page(copy: Path) -> None:
+    # Unoptimised and without debug information: what counts is that it compiles and that both tests pass.
+    words = ("--package", "mascarin-engine", "--lib", "--", "khalifa_by_hand", "heat_content_of_air")
+    assert "2 passed" in cargo(copy, "test", *words)
+
+
+def test_an_output_is_a_row_of_one_file() -> None:
+    steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add an output")
+    assert {step[2] for step in steps} == {"crates/engine/src/run/outputs/mod.rs"}
+
+
+@pytest.fixture(scope="module")
+def package(copy: Path) -> Path:
+    """The Python package of the copy with its engine; the folder to import from."""
+    # A little optimised: unoptimised, a stage does not fit into the stack of Python's threads.
+    cargo(copy, "build", "--package", "mascarin-python", CARGO_PROFILE_DEV_OPT_LEVEL="1")
+    library = next(
+        TARGET / "debug" / name
+        for name in ("lib_engine.so", "lib_engine.dylib", "_engine.dll")
+        if (TARGET / "debug" / name).exists()
+    )
+    for old in (copy / "python" / "mascarin").glob("_engine.*[!i]"):
+        old.unlink()
+    name = "_engine.pyd" if library.suffix == ".dll" else "_engine.abi3.so"
+    shutil.copy(library, copy / "python" / "mascarin" / name)
+    return copy / "python"
+
+
+def test_the_output_is_in_runs_derivatives_units_and_pages(package: Path, tmp_path: Path) -> None:
+    paths = [package, ROOT / "docs" / "site", ROOT / "tests"]
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "tests" / "guide_output.py"), str(tmp_path)],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1] == str(package / "mascarin")
 
 
 def test_the_law_is_known_to_the_description_language(copy: Path) -> None:

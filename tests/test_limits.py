@@ -18,10 +18,10 @@ from mascarin.comfort.evaluation import Evaluation, discomfort
 from mascarin.design.measures import Beyond, CycleDays, DaysInBin
 from mascarin.ensemble.objectives import Statistic
 from mascarin.examples import box_climate
+from mascarin.physics import humidity_ratio, relative_humidity
 from mascarin.validation.comparison import compare
 from mascarin.validation.criteria import Criterion, judge
 from mascarin.verification.bestest.quantities import COLDEST_BIN, bins
-from mascarin.weather.moisture import humidity_ratio, relative_humidity
 
 PACKAGE = Path(mc.__file__).parent
 

@@ -12,7 +12,7 @@ import pytest
 
 import mascarin as mc
 from mascarin import _engine
-from mascarin.weather.moisture import (
+from mascarin.physics import (
     dew_point,
     humidity_of_dew_point,
     humidity_ratio,

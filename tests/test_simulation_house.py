@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from mascarin.building import Building
-from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.air import density
 from mascarin.errors import InputError
+from mascarin.physics import AIR_SPECIFIC_HEAT
 from mascarin.simulation.objectives import Mean
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
@@ -23,7 +24,7 @@ LEAKS = {"infiltration": 0}
 
 def heat(building: Building) -> float:
     """Heat capacity of a cubic metre of air [J/(m3 K)]."""
-    return density(building.site) * SPECIFIC_HEAT
+    return density(building.site) * AIR_SPECIFIC_HEAT
 
 
 def run(building: Building, outdoor: float = 0.0, days: float = 4, **columns: Any) -> Results:

@@ -11,9 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.building import Building
-from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.air import density
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
+from mascarin.physics import AIR_SPECIFIC_HEAT
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
@@ -103,7 +104,7 @@ def test_the_steady_heating_load_equals_the_losses() -> None:
             }
         }
     )
-    air = density(building.site) * SPECIFIC_HEAT * (0.5 * 50 / 3600 + 0.02)
+    air = density(building.site) * AIR_SPECIFIC_HEAT * (0.5 * 50 / 3600 + 0.02)
     results = run(building)
     assert last(results, "room.air_temperature") == pytest.approx(20.0, abs=1e-8)
     # A part of the radiated heat leaves through the wall, depending on its surface heat transfer coefficient.
@@ -188,7 +189,7 @@ def test_three_zones_in_a_row_by_hand() -> None:
     }
     building = box({"a": {"gains": {"stove": {"power": 400}}}, "b": {}, "c": {}}, air_paths=paths)
     results = run(building, outdoor=5.0, days=10)
-    heat = density(building.site) * SPECIFIC_HEAT
+    heat = density(building.site) * AIR_SPECIFIC_HEAT
     ab, bc, wall = 0.01 * heat, 0.03 * heat, 30 * U
     matrix = [[wall + ab, -ab, 0], [-ab, wall + ab + bc, -bc], [0, -bc, wall + bc]]
     expected = 5.0 + np.linalg.solve(np.array(matrix), np.array([400.0, 0.0, 0.0]))
@@ -205,7 +206,7 @@ def test_an_opening_by_hand() -> None:
     results = run(building, outdoor=10.0, days=3)
     rise = last(results, "room.air_temperature") - 10.0
     flow = 0.2 * np.sqrt((0.25 * 3.0) ** 2 + 0.6**2 * 2 * 9.80665 * 0.4 * rise / (283.15 + rise / 2))
-    heat = density(building.site) * SPECIFIC_HEAT * flow
+    heat = density(building.site) * AIR_SPECIFIC_HEAT * flow
     assert (30 * U + heat) * rise == pytest.approx(1500.0, rel=1e-5)
     assert last(results, "room.air_changes") == pytest.approx(3600 * flow / 50, rel=1e-4)
     assert results.energy.into["ventilation"] < 0.0

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from pvlib.irradiance import erbs, get_extra_radiation
 
+from mascarin.physics import dew_point
 from mascarin.weather import Climate
 from mascarin.weather.derive import cloud_cover, diffuse_erbs
-from mascarin.weather.moisture import dew_point
 from mascarin.weather.radiation import BEAM_CEILING, clear_beam, direct_by_closure
 from mascarin.weather.sun import SunPath
 

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
+from mascarin.physics import dew_point
 from mascarin.weather import CHANNELS, Climate, Place, summary
-from mascarin.weather.moisture import dew_point
 
 GILLOT = Place(-20.892, 55.529, 8.0)
 

@@ -11,8 +11,8 @@ import pytest
 
 import mascarin as mc
 from mascarin import cli
+from mascarin.physics import humidity_of_dew_point
 from mascarin.weather import SHIPPED, MonthlyChanges, morphed, overview, write_epw
-from mascarin.weather.moisture import humidity_of_dew_point
 from mascarin.weather.shipped import content
 
 

@@ -5,12 +5,12 @@
 use mascarin_engine::derivatives::{self, Trajectory};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Scheme, Warmup, Watch};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::ratings::window_ratings;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::ratings::window_ratings;
+use mascarin_engine::run::{self, Options, Warmup};
 use mascarin_engine::state::Initial;
-use mascarin_engine::{batch, march, state_space as linear};
+use mascarin_engine::{RunControl, Scheme, linear_model};
 use serde::Deserialize;
 
 /// Longest forcing: longer runs only take longer.
@@ -30,7 +30,7 @@ struct Call {
     scheme: u8,
     initial: f64,
     warmup_steps: usize,
-    probes: Vec<Probe>,
+    outputs: Vec<Output>,
     record_from: usize,
     record_every: usize,
 }
@@ -47,7 +47,7 @@ struct Ready {
 impl Ready {
     fn read(data: &[u8]) -> Option<Self> {
         let call: Call = serde_json::from_slice(data).ok()?;
-        if call.forcing.len() > MOST_VALUES || call.values.len() > MOST_VALUES || call.probes.len() > 100 {
+        if call.forcing.len() > MOST_VALUES || call.values.len() > MOST_VALUES || call.outputs.len() > 100 {
             return None;
         }
         let plan = Plan::new(call.description).ok()?;
@@ -61,11 +61,15 @@ impl Ready {
         });
         let options = Options {
             dt: call.dt,
-            scheme: [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler, Scheme::ApparentCapacity]
-                [usize::from(call.scheme % 4)],
+            scheme: [
+                Scheme::Sdirk2,
+                Scheme::LinearlyImplicit,
+                Scheme::BackwardEuler,
+                Scheme::ApparentCapacity,
+            ][usize::from(call.scheme % 4)],
             initial: Initial::Everywhere(call.initial),
             warmup,
-            probes: call.probes,
+            outputs: call.outputs,
             record_from: call.record_from,
             record_every: call.record_every,
             residuals: false,
@@ -94,10 +98,10 @@ pub fn plan(data: &[u8]) -> bool {
 }
 
 /// `Plan.simulate_into`.
-pub fn march(data: &[u8]) -> bool {
+pub fn simulate(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     let Some(forcing) = ready.forcing() else { return false };
-    let found = march::march(&ready.plan, &ready.values, &forcing, &ready.options, &Watch::default());
+    let found = run::simulate(&ready.plan, &ready.values, &forcing, &ready.options, &RunControl::default());
     let taken = found.is_ok();
     if let Ok(run) = found {
         assert!(
@@ -113,7 +117,7 @@ pub fn ensemble(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     let Some(forcing) = ready.forcing() else { return false };
     let members = [ready.values.clone(), ready.values.clone()].concat();
-    batch::ensemble(&ready.plan, &members, &forcing, &ready.options, &Watch::default()).is_ok()
+    run::ensemble::ensemble(&ready.plan, &members, &forcing, &ready.options, &RunControl::default()).is_ok()
 }
 
 /// `Plan.jacobian`, by the first and the last parameter.
@@ -121,15 +125,22 @@ pub fn jacobian(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     let Some(forcing) = ready.forcing() else { return false };
     let which = [0, ready.values.len().saturating_sub(1)];
-    derivatives::jacobian(&ready.plan, &ready.values, &which, &forcing, &ready.options, &Watch::default())
-        .is_ok()
+    derivatives::jacobian(
+        &ready.plan,
+        &ready.values,
+        &which,
+        &forcing,
+        &ready.options,
+        &RunControl::default(),
+    )
+    .is_ok()
 }
 
 /// `Trajectory` and `Trajectory.pull`.
 pub fn reverse(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     let Some(forcing) = ready.forcing() else { return false };
-    let watch = Watch::default();
+    let watch = RunControl::default();
     let kept = Trajectory::new(&ready.plan, &ready.values, &forcing, &ready.options, &watch, 1 << 20);
     if let Ok(kept) = kept {
         let weights = vec![1.0; kept.run.records.len()];
@@ -142,7 +153,7 @@ pub fn reverse(data: &[u8]) -> bool {
 pub fn state_space(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     if ready.values.len() == ready.plan.description.parameters.len() {
-        return linear::state_space(&ready.plan, &ready.values, &Watch::default()).is_ok();
+        return linear_model::state_space(&ready.plan, &ready.values, &RunControl::default()).is_ok();
     }
     false
 }
@@ -154,13 +165,13 @@ pub fn ratings(data: &[u8]) -> bool {
         return false;
     }
     window_ratings(&ready.plan, &ready.values);
-    batch::stage_bytes(&ready.plan) > 0
+    run::ensemble::stage_bytes(&ready.plan) > 0
 }
 
 /// Every function by its name.
 pub const TARGETS: [(&str, fn(&[u8]) -> bool); 7] = [
     ("plan", plan),
-    ("march", march),
+    ("simulate", simulate),
     ("ensemble", ensemble),
     ("jacobian", jacobian),
     ("reverse", reverse),

@@ -4,6 +4,7 @@ from . import comfort as comfort
 from . import ensemble as ensemble
 from . import materials as materials
 from . import optimization as optimization
+from . import physics as physics
 from . import sensitivity as sensitivity
 from . import simulation as simulation
 from . import validation as validation

@@ -7,7 +7,16 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "AIR_GAS_CONSTANT",
+    "AIR_SPECIFIC_HEAT",
     "CLIMATE_CHANNELS",
+    "GRAVITY",
+    "KELVIN",
+    "LATENT_HEAT",
+    "SEA_LEVEL_PRESSURE",
+    "STEFAN_BOLTZMANN",
+    "VAPOUR_GAS_CONSTANT",
+    "VAPOUR_SPECIFIC_HEAT",
     "EngineDefect",
     "EngineInputError",
     "EngineSolverError",
@@ -17,9 +26,16 @@ __all__ = [
     "condensing_pressure",
     "dew_point",
     "fmu_library",
+    "globe_temperature",
     "humidity_ratio",
     "interrupt",
+    "liquid_fraction",
+    "melting_reach",
+    "moist_air",
+    "output_table",
     "saturation_pressure",
+    "standard_density",
+    "standard_pressure",
     "vapour_pressure",
     "wet_bulb",
 ]
@@ -28,6 +44,25 @@ _Array = npt.NDArray[np.float64]
 
 CLIMATE_CHANNELS: Final[int]
 """Number of climate channels at the head of every forcing row."""
+
+STEFAN_BOLTZMANN: Final[float]
+"""Stefan-Boltzmann constant [W/(m2 K4)]."""
+KELVIN: Final[float]
+"""0 degC [K]."""
+GRAVITY: Final[float]
+"""Standard gravity [m/s2]."""
+AIR_GAS_CONSTANT: Final[float]
+"""Gas constant of dry air [J/(kg K)]."""
+AIR_SPECIFIC_HEAT: Final[float]
+"""Specific heat of dry air [J/(kg K)]."""
+VAPOUR_SPECIFIC_HEAT: Final[float]
+"""Specific heat of water vapour [J/(kg K)]."""
+VAPOUR_GAS_CONSTANT: Final[float]
+"""Gas constant of water vapour [J/(kg K)]."""
+LATENT_HEAT: Final[float]
+"""Latent heat of vapour in the air of rooms [J/kg]."""
+SEA_LEVEL_PRESSURE: Final[float]
+"""Pressure of the standard atmosphere at sea level [Pa]."""
 
 class EngineInputError(Exception):
     """Arrays, options or descriptions the engine refuses."""
@@ -61,6 +96,27 @@ def dew_point(vapour: _Array) -> _Array:
 
 def wet_bulb(temperature: _Array, ratio: _Array, pressure: _Array) -> _Array:
     """Wet-bulb temperatures [degC] at temperatures [degC], humidity ratios [kg/kg] and pressures [Pa]."""
+
+def globe_temperature(air: _Array, radiant: _Array, diameter: _Array, emissivity: _Array) -> _Array:
+    """Globe temperatures [degC] at air and mean radiant temperatures, by diameter [m] and emissivity."""
+
+def standard_pressure(altitude: _Array) -> _Array:
+    """Pressures of the standard atmosphere at altitudes [m]: [Pa]."""
+
+def standard_density(altitude: float) -> float:
+    """Density of dry air of 15 degC at an altitude [m]: [kg/m3]."""
+
+def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[float, float]:
+    """Density [kg/m3] and specific heat [J/(kg K)] at [degC], humidity [-] and [Pa]."""
+
+def liquid_fraction(curve: str, values: _Array, temperature: _Array) -> _Array:
+    """Liquid fractions of a melting curve (JSON; its parameters are positions in `values`) [-]."""
+
+def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
+    """Temperatures where melting starts and is complete, without tails [degC]."""
+
+def output_table() -> str:
+    """The table of outputs, a JSON list of rows."""
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""
@@ -102,7 +158,7 @@ class Plan:
     ) -> dict[str, Any]:
         """One run: ledger [J] and counters; the entry `records` is empty.
 
-        `take` gets the records (rows x probes) in blocks of `rows` rows while the run goes on: the engine
+        `take` gets the records (rows x outputs) in blocks of `rows` rows while the run goes on: the engine
         goes on while `take` works, by one block at most. What `take` raises ends the run and is raised.
         `report` gets the number of steps done.
 
@@ -121,7 +177,7 @@ class Plan:
         report: Callable[[int], object] | None = None,
         single: bool = False,
     ) -> tuple[_Array, _Array, _Array, list[tuple[int, str]]]:
-        """Members (rows of values): records (members x rows x probes), closures, distances, failures.
+        """Members (rows of values): records (members x rows x outputs), closures, distances, failures.
 
         A distance is how far temperatures are outside of their causes, beyond the scheme's overshoot. [K]
 
@@ -136,7 +192,7 @@ class Plan:
         options: dict[str, Any],
         report: Callable[[int], object] | None = None,
     ) -> tuple[_Array, _Array]:
-        """Records (rows x probes) and their slopes (directions x rows x probes).
+        """Records (rows x outputs) and their slopes (directions x rows x outputs).
 
         A direction names parameters that change together, and how much each changes.
         """
@@ -157,4 +213,4 @@ class Trajectory:
         """The result of `Plan.simulate_into`, with the records."""
 
     def pull(self, weights: _Array) -> _Array:
-        """Slopes by all parameters of the sum of weights (rows x probes) times records."""
+        """Slopes by all parameters of the sum of weights (rows x outputs) times records."""

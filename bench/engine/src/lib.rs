@@ -3,17 +3,19 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Watch, march};
+use mascarin_engine::number::simd;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, simulate};
 use mascarin_engine::state::Initial;
-use mascarin_engine::{batch, dispatch};
 use serde::Deserialize;
 
 /// Stages of a step of the scheme that all cases use.
@@ -32,7 +34,7 @@ struct Written {
     values: Vec<f64>,
     /// Members x parameters: one pack.
     members: Vec<f64>,
-    probes: Vec<Probe>,
+    outputs: Vec<Output>,
     dt: f64,
     initial: f64,
 }
@@ -70,7 +72,7 @@ impl Case {
                 scheme: Scheme::Sdirk2,
                 initial: Initial::Everywhere(written.initial),
                 warmup: None,
-                probes: written.probes,
+                outputs: written.outputs,
                 record_from: 0,
                 record_every: 1,
                 residuals: false,
@@ -106,7 +108,8 @@ impl Case {
     /// # Panics
     /// When its energy does not close.
     pub fn run(&self, steps: Option<usize>) -> Result<(), EngineError> {
-        let run = march(&self.plan, &self.values, &self.forcing(steps), &self.options, &Watch::default())?;
+        let run =
+            simulate(&self.plan, &self.values, &self.forcing(steps), &self.options, &RunControl::default())?;
         assert!(run.ledger.closure() < 1e-10, "energy closes");
         Ok(())
     }
@@ -120,10 +123,15 @@ impl Case {
     /// When a member failed.
     pub fn pack(&self, steps: Option<usize>) -> Result<(), EngineError> {
         let options = Options { record_every: 96, ..self.options.clone() };
-        let done =
-            batch::ensemble(&self.plan, &self.members, &self.forcing(steps), &options, &Watch::default())?;
+        let done = ensemble::ensemble(
+            &self.plan,
+            &self.members,
+            &self.forcing(steps),
+            &options,
+            &RunControl::default(),
+        )?;
         assert!(done.failures.is_empty(), "{:?}", done.failures);
-        assert_eq!(done.closure.len(), dispatch::WIDTH);
+        assert_eq!(done.closure.len(), simd::WIDTH);
         Ok(())
     }
 
@@ -138,7 +146,8 @@ impl Case {
         let count = self.values.len();
         let which: Vec<usize> = (0..SLOPES).map(|k| k * count / SLOPES).collect();
         let forcing = self.forcing(steps);
-        let done = jacobian(&self.plan, &self.values, &which, &forcing, &self.options, &Watch::default())?;
+        let done =
+            jacobian(&self.plan, &self.values, &which, &forcing, &self.options, &RunControl::default())?;
         assert_eq!(done.slopes.len(), SLOPES * done.records.len());
         assert!(done.slopes.iter().all(|slope| slope.is_finite()), "slopes are finite");
         Ok(())
@@ -152,7 +161,7 @@ impl Case {
     /// # Panics
     /// When a slope is not finite.
     pub fn gradient(&self, steps: Option<usize>) -> Result<(), EngineError> {
-        let (forcing, watch) = (self.forcing(steps), Watch::default());
+        let (forcing, watch) = (self.forcing(steps), RunControl::default());
         let trajectory = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
         let weights = vec![1.0; trajectory.run.records.len()];
         let slopes = trajectory.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;

@@ -3,16 +3,17 @@
 use std::fs;
 use std::path::Path;
 
+use mascarin_engine::Scheme;
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::march::{Options, Scheme, Warmup};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Warmup};
 use mascarin_engine::state::Initial;
 use serde::Deserialize;
 
 /// Number of the format that this library reads.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// First bytes of the file with the weather.
 const MAGIC: &[u8; 8] = b"MASCARIN";
 
@@ -39,8 +40,8 @@ pub struct Variable {
 pub enum Role {
     /// A channel of the forcing.
     Input(usize),
-    /// The mean of some records of the engine.
-    Output(Vec<usize>),
+    /// A record of the engine.
+    Output(usize),
     /// A number of the parameter vector.
     Parameter(usize),
 }
@@ -89,7 +90,7 @@ struct Header {
     format: u32,
     token: String,
     settings: Settings,
-    probes: Vec<Probe>,
+    outputs: Vec<Output>,
     variables: Vec<Variable>,
     conditioned: Vec<Conditioned>,
     global_follows: bool,
@@ -139,7 +140,8 @@ impl Contents {
             .map_err(|error| damaged("building.json", &error))?;
         let parameters = description.parameters.iter().map(|parameter| parameter.value).collect();
         let plan = Plan::new(description).map_err(|error| damaged("building.json", &error))?;
-        let options = options(header.settings, header.probes).map_err(|error| damaged("run.json", &error))?;
+        let options =
+            options(header.settings, header.outputs).map_err(|error| damaged("run.json", &error))?;
         let stages = options.scheme.weights().len();
         let bytes = fs::read(folder.join("forcing.bin")).map_err(|error| damaged("forcing.bin", &error))?;
         let forcing = unpack(&bytes, stages, plan.n_channels())
@@ -162,13 +164,13 @@ impl Contents {
 
     /// Positions that are not those of this building would otherwise be noticed in a step only.
     fn check(&self) -> Result<(), String> {
-        let (channels, parameters, probes) =
-            (self.plan.n_channels(), self.parameters.len(), self.options.probes.len());
+        let (channels, parameters, outputs) =
+            (self.plan.n_channels(), self.parameters.len(), self.options.outputs.len());
         for variable in &self.variables {
             let fits = match &variable.role {
                 Role::Input(channel) => *channel < channels,
                 Role::Parameter(parameter) => *parameter < parameters,
-                Role::Output(columns) => !columns.is_empty() && columns.iter().all(|&column| column < probes),
+                Role::Output(output) => *output < outputs,
             };
             if !fits {
                 return Err(format!("the variable '{}' is not one of the building", variable.name));
@@ -181,7 +183,7 @@ impl Contents {
         if self.conditioned.iter().any(|zone| !(known(zone.heating) && known(zone.cooling))) {
             return Err("a set point is not one of the building".to_owned());
         }
-        self.options.probes.iter().try_for_each(|probe| probe.check(&self.plan)).map_err(|e| e.to_string())
+        self.options.outputs.iter().try_for_each(|output| output.check(&self.plan)).map_err(|e| e.to_string())
     }
 
     /// Steps that there is weather for.
@@ -229,7 +231,7 @@ impl Contents {
     }
 }
 
-fn options(settings: Settings, probes: Vec<Probe>) -> Result<Options, String> {
+fn options(settings: Settings, outputs: Vec<Output>) -> Result<Options, String> {
     let scheme = match settings.scheme.as_str() {
         "sdirk2" => Scheme::Sdirk2,
         "linearly-implicit" => Scheme::LinearlyImplicit,
@@ -253,7 +255,7 @@ fn options(settings: Settings, probes: Vec<Probe>) -> Result<Options, String> {
             tolerance: settings.warmup_tolerance,
             max_cycles: settings.warmup_max_cycles,
         }),
-        probes,
+        outputs,
         record_from: 0,
         record_every: 1,
         residuals: false,

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use mascarin_engine::error::EngineError;
-use mascarin_engine::physical_limits::Outlier;
-use mascarin_engine::stepwise::StepByStep;
+use mascarin_engine::run::physical_limits::Outlier;
+use mascarin_engine::run::stepwise::StepByStep;
 use self_cell::self_cell;
 
 use crate::contents::Contents;

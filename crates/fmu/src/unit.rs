@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use mascarin_engine::error::EngineError;
-use mascarin_engine::physical_limits::Outlier;
+use mascarin_engine::run::physical_limits::Outlier;
 
 use crate::contents::{Contents, Role, SetPoint};
 use crate::running::Running;
@@ -80,7 +80,7 @@ pub struct Unit {
     /// Channels and values of the inputs.
     driven: Vec<(usize, f64)>,
     /// Columns of the records that each output is the mean of.
-    columns: Vec<Vec<usize>>,
+    columns: Vec<usize>,
     rows: Vec<f64>,
     records: Vec<f64>,
 }
@@ -105,7 +105,7 @@ impl Unit {
             _ => None,
         });
         let columns = contents.variables.iter().filter_map(|variable| match &variable.role {
-            Role::Output(columns) => Some(columns.clone()),
+            Role::Output(column) => Some(*column),
             _ => None,
         });
         let mut unit = Self {
@@ -360,13 +360,8 @@ impl Unit {
         let Self { running, records, outputs, columns, .. } = self;
         let Some(running) = running else { return };
         running.read(records);
-        for (output, columns) in outputs.iter_mut().zip(columns) {
-            *output = match columns[..] {
-                [column] => records[column],
-                // As Python calculates an operative temperature: with the same bits.
-                [first, second] => 0.5 * (records[first] + records[second]),
-                _ => columns.iter().map(|&column| records[column]).sum::<f64>() / columns.len() as f64,
-            };
+        for (output, &mut column) in outputs.iter_mut().zip(columns) {
+            *output = records[column];
         }
     }
 

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
+use mascarin_engine::RunControl;
 use mascarin_engine::error::EngineError;
-use mascarin_engine::march::Watch;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
@@ -97,15 +97,15 @@ pub fn abandonable<T: Send + 'static>(
 }
 
 /// What is called with the number of units done, and which number of a run that is.
-pub type Report<'a, 'py> = (&'a Bound<'py, PyAny>, fn(&Watch) -> usize);
+pub type Report<'a, 'py> = (&'a Bound<'py, PyAny>, fn(&RunControl) -> usize);
 
 /// Members done.
-pub fn done_members(watch: &Watch) -> usize {
+pub fn done_members(watch: &RunControl) -> usize {
     watch.done.load(Ordering::Relaxed)
 }
 
 /// Steps done, without those of the warm-up.
-pub fn done_steps(watch: &Watch) -> usize {
+pub fn done_steps(watch: &RunControl) -> usize {
     watch.steps.load(Ordering::Relaxed)
 }
 
@@ -122,7 +122,7 @@ pub type Give<'a> = &'a dyn Fn(Vec<f64>) -> Result<(), EngineError>;
 pub fn attended<T: Send>(
     py: Python<'_>,
     report: Option<Report<'_, '_>>,
-    work: impl FnOnce(&Watch) -> Result<T, EngineError> + Send,
+    work: impl FnOnce(&RunControl) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
     attended_blocks(py, report, |_| Ok(()), |watch, _| work(watch))
 }
@@ -132,9 +132,9 @@ pub fn attended_blocks<T: Send>(
     py: Python<'_>,
     report: Option<Report<'_, '_>>,
     mut take: impl FnMut(Vec<f64>) -> PyResult<()>,
-    work: impl FnOnce(&Watch, Give<'_>) -> Result<T, EngineError> + Send,
+    work: impl FnOnce(&RunControl, Give<'_>) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
-    let watch = Watch::default();
+    let watch = RunControl::default();
     // A block is handed over, not kept: one is filled while one is taken.
     let (sender, receiver) = sync_channel(0);
     let receiver = Mutex::new(receiver);

@@ -2,11 +2,12 @@
 
 mod errors;
 mod options;
+mod physics;
 mod plan;
-mod psychrometrics;
 mod trajectory;
 
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
+use mascarin_engine::run::outputs::Output;
 use mascarin_packed::packed_file;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -27,6 +28,12 @@ fn fmu_library(py: Python<'_>) -> (Bound<'_, PyBytes>, &'static str, &'static st
     (PyBytes::new(py, LIBRARY), env!("MASCARIN_FMU_SUFFIX"), std::env::consts::ARCH, std::env::consts::OS)
 }
 
+/// The table of outputs as JSON: a list of rows.
+#[pyfunction]
+fn output_table() -> PyResult<String> {
+    serde_json::to_string(&Output::table()).map_err(|error| errors::EngineDefect::new_err(error.to_string()))
+}
+
 /// Compiled part of mascarin.
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -35,12 +42,8 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(fmu_library, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::saturation_pressure, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::condensing_pressure, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::humidity_ratio, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::vapour_pressure, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::dew_point, module)?)?;
-    module.add_function(wrap_pyfunction!(psychrometrics::wet_bulb, module)?)?;
+    module.add_function(wrap_pyfunction!(output_table, module)?)?;
+    physics::add(module)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<errors::EngineSolverError>())?;
     module.add("EngineDefect", module.py().get_type::<errors::EngineDefect>())?;

@@ -1,8 +1,8 @@
 //! Options of a run as they come from Python.
 
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Warmup};
-use mascarin_engine::probe::Probe;
+use mascarin_engine::Scheme;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Warmup};
 use mascarin_engine::state::Initial;
 use pyo3::prelude::*;
 
@@ -51,7 +51,7 @@ pub struct RunOptions {
     warmup_steps: usize,
     warmup_tolerance: f64,
     warmup_max_cycles: usize,
-    probes: String,
+    outputs: String,
     record_from: usize,
     record_every: usize,
     /// Whether residuals are evaluated; not where it is left out.
@@ -62,8 +62,8 @@ pub struct RunOptions {
 impl RunOptions {
     /// The options as the engine takes them.
     pub fn read(self) -> PyResult<Options> {
-        let probes: Vec<Probe> = serde_json::from_str(&self.probes)
-            .map_err(|error| EngineInputError::new_err(format!("unreadable probes: {error}")))?;
+        let outputs: Vec<Output> = serde_json::from_str(&self.outputs)
+            .map_err(|error| EngineInputError::new_err(format!("unreadable outputs: {error}")))?;
         let warmup = (self.warmup_steps > 0).then_some(Warmup {
             steps: self.warmup_steps,
             tolerance: self.warmup_tolerance,
@@ -74,7 +74,7 @@ impl RunOptions {
             scheme: scheme_named(&self.scheme)?,
             initial: self.initial.into(),
             warmup,
-            probes,
+            outputs,
             record_from: self.record_from,
             record_every: self.record_every,
             residuals: self.residuals,

@@ -1,15 +1,17 @@
 //! A compiled building and its runs.
 
+use mascarin_engine::RunControl;
 use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::{Run, Watch, march_streamed};
-use mascarin_engine::physical_limits::Outlier;
+use mascarin_engine::linear_model;
 use mascarin_engine::plan::Plan as EnginePlan;
-use mascarin_engine::ratings::window_ratings;
+use mascarin_engine::run::ensemble;
+use mascarin_engine::run::physical_limits::Outlier;
+use mascarin_engine::run::ratings::window_ratings;
+use mascarin_engine::run::{Run, simulate_in_blocks};
 use mascarin_engine::vapour::VapourFlow;
-use mascarin_engine::{batch, state_space};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
 };
@@ -64,7 +66,7 @@ impl Plan {
     /// Memory of the weather of one stage that an ensemble keeps [B].
     #[getter]
     fn stage_bytes(&self) -> usize {
-        batch::stage_bytes(&self.plan)
+        ensemble::stage_bytes(&self.plan)
     }
 
     /// Ratings of the windows (windows x 4): U value, solar heat gain, normal and hemispherical solar transmittance.
@@ -89,7 +91,7 @@ impl Plan {
         })
     }
 
-    /// One run: a dictionary of ledger and counters, whose records are empty. `take` is called with the records (rows x probes) in blocks of
+    /// One run: a dictionary of ledger and counters, whose records are empty. `take` is called with the records (rows x outputs) in blocks of
     /// `rows` rows while the run goes on, `report` with the number of steps done.
     #[pyo3(signature = (values, forcing, options, rows, take, report=None))]
     #[allow(clippy::too_many_arguments, reason = "what a run needs, and where the records go")]
@@ -108,20 +110,20 @@ impl Plan {
             let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
-            let (plan, probes) = (&self.plan, options.probes.len());
-            let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
+            let (plan, outputs) = (&self.plan, options.outputs.len());
+            let report = report.map(|report| (report, done_steps as fn(&RunControl) -> usize));
             let hand_over = |block: Vec<f64>| {
-                let shape = [block.len() / probes.max(1), probes];
+                let shape = [block.len() / outputs.max(1), outputs];
                 take.call1((PyArray1::from_vec(py, block).reshape(shape)?,)).map(drop)
             };
             let run = attended_blocks(py, report, hand_over, |watch, give| {
-                march_streamed(plan, values, &drive, &options, watch, rows, give)
+                simulate_in_blocks(plan, values, &drive, &options, watch, rows, give)
             })?;
-            describe_run(py, &run, PyArray2::zeros(py, [0, probes], false))
+            describe_run(py, &run, PyArray2::zeros(py, [0, outputs], false))
         })
     }
 
-    /// Members (rows of `values`), in single precision to screen many: records (members x rows x probes), closures, how far
+    /// Members (rows of `values`), in single precision to screen many: records (members x rows x outputs), closures, how far
     /// temperatures are outside of their causes [K], failures.
     #[pyo3(signature = (values, forcing, options, report=None, single=false))]
     fn ensemble<'py>(
@@ -140,12 +142,12 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
-            let run = if single { batch::screening } else { batch::ensemble };
+            let report = report.map(|report| (report, done_members as fn(&RunControl) -> usize));
+            let run = if single { ensemble::screening } else { ensemble::ensemble };
             let result = attended(py, report, |watch| run(plan, numbers, &drive, &options, watch))?;
             let rows = options.rows(drive.steps());
             let records =
-                PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
+                PyArray1::from_vec(py, result.records).reshape([members, rows, options.outputs.len()])?;
             let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
             let [closure, outside] =
                 [result.closure, result.outside].map(|numbers| PyArray1::from_vec(py, numbers));
@@ -153,7 +155,7 @@ impl Plan {
         })
     }
 
-    /// Records (rows x probes) and their slopes (directions x rows x probes) along parameters that change together.
+    /// Records (rows x outputs) and their slopes (directions x rows x outputs) along parameters that change together.
     #[pyo3(signature = (values, directions, forcing, options, report=None))]
     fn jacobian<'py>(
         &self,
@@ -170,13 +172,13 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
+            let report = report.map(|report| (report, done_members as fn(&RunControl) -> usize));
             let result = attended(py, report, |watch| {
                 slopes_along(plan, numbers, &directions, &drive, &options, watch)
             })?;
-            let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
-            let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
-            Ok((records, PyArray1::from_vec(py, result.slopes).reshape([directions.len(), rows, probes])?))
+            let (rows, outputs) = (options.rows(drive.steps()), options.outputs.len());
+            let records = PyArray1::from_vec(py, result.records).reshape([rows, outputs])?;
+            Ok((records, PyArray1::from_vec(py, result.slopes).reshape([directions.len(), rows, outputs])?))
         })
     }
 
@@ -189,7 +191,7 @@ impl Plan {
         caught(|| {
             let values = contiguous(values.as_slice())?;
             let plan = &self.plan;
-            let system = attended(py, None, |watch| state_space::state_space(plan, values, watch))?;
+            let system = attended(py, None, |watch| linear_model::state_space(plan, values, watch))?;
             let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
             let result = PyDict::new(py);
             let matrix = |values: Vec<f64>, shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -212,7 +214,7 @@ pub fn contiguous<T>(slice: Result<&[T], numpy::AsSliceError>) -> PyResult<&[T]>
     slice.map_err(|_| EngineInputError::new_err("arrays must be C-contiguous float64"))
 }
 
-/// Records (rows x probes), ledger and counters of a run.
+/// Records (rows x outputs), ledger and counters of a run.
 pub fn describe_run<'py>(
     py: Python<'py>,
     run: &Run<f64>,

@@ -2,7 +2,7 @@
 
 use mascarin_engine::derivatives;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Options;
+use mascarin_engine::run::Options;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -55,12 +55,12 @@ impl Trajectory {
         caught(|| {
             let steps = self.forcing.len() / (self.stages * self.channels);
             let run = &self.kept.run;
-            let shape = [self.options.rows(steps), self.options.probes.len()];
+            let shape = [self.options.rows(steps), self.options.outputs.len()];
             describe_run(py, run, PyArray1::from_slice(py, &run.records).reshape(shape)?)
         })
     }
 
-    /// Slopes by all parameters of the sum of weights (rows x probes) times records.
+    /// Slopes by all parameters of the sum of weights (rows x outputs) times records.
     fn pull<'py>(
         &self,
         py: Python<'py>,

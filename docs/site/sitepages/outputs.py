@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from mascarin.building.output_kinds import KINDS
-from mascarin.building.outputs import Output
-from mascarin.simulation.compiling import USUAL
 
 
 def page() -> str:
@@ -23,9 +21,9 @@ def page() -> str:
         "| name | unit | meaning | exists for | value | recorded |",
         "|---|---|---|---|---|---|",
     ]
-    for kind, one in KINDS.items():
-        names = ", ".join(f"`{name}`" for name in one.pattern.replace(" or ", " ").split(", "))
-        value = "mean" if Output("", one.unit, kind).mean else "state"
-        recorded = "yes" if kind in USUAL else ""
+    for one in KINDS.values():
+        names = ", ".join(f"`{name}`" for name in one.patterns)
+        value = "mean" if one.mean else "state"
+        recorded = "yes" if one.usual else ""
         lines.append(f"| {names} | {one.unit} | {one.meaning} | {one.exists} | {value} | {recorded} |")
     return "\n".join(lines) + "\n"

@@ -6,7 +6,6 @@ other by name.
 
 from __future__ import annotations
 
-from mascarin.building.air import moist_air
 from mascarin.building.blind import Blind
 from mascarin.building.bridge import ThermalBridge
 from mascarin.building.building import Building
@@ -117,6 +116,7 @@ from mascarin.building.zone import (
     Ventilation,
     Zone,
 )
+from mascarin.physics import moist_air
 
 __all__ = [
     "AirPath",

@@ -11,6 +11,7 @@ from pydantic_core import InitErrorDetails
 from mascarin.building import quantities as q
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Pair, Part, derived_number, fault, insist
+from mascarin.physics import STANDARD_PRESSURE
 
 ISO_15099 = "ISO 15099:2003, 5.3 and annex B"
 _FIT = "Karlsson & Roos 2000, doi:10.1016/S0038-092X(00)00083-9"
@@ -127,7 +128,7 @@ class FilledGap(Part):
 
     thickness: q.GapThickness
     gas: Literal["air", "argon", "krypton", "xenon"] = Field("air", description="Gas in the gap")
-    pressure: q.GapPressure = Number(101325.0, source=f"{ISO_15099}: sealed at sea level")
+    pressure: q.GapPressure = Number(STANDARD_PRESSURE, source=f"{ISO_15099}: sealed at sea level")
 
 
 class GivenGap(Part):

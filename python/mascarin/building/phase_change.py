@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Final, Literal
 
+import numpy as np
+import numpy.typing as npt
 from pydantic import Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
 from mascarin.building.curves import as_many, monotone, rising
 from mascarin.building.number import Number, Remark, problem
-from mascarin.building.part import Part, fault, insist
+from mascarin.building.part import Part, fault, insist, worked_out
+from mascarin.physics import MeltingCurve
 
 #: Fraction of the transition cut off at each end of a curve with tails, where hysteresis needs an end.
 CUT: Final = 1e-3
+
+Floats = npt.NDArray[np.float64]
 
 
 class ClosedLaw(Part):
@@ -23,6 +27,8 @@ class ClosedLaw(Part):
 
     #: Whether the fraction reaches 0 and 1 only at infinity.
     tails: ClassVar[bool] = False
+    #: Its name in the descriptions of the engine.
+    _KIND: ClassVar[str]
 
     @property
     def half_width(self) -> float:
@@ -32,11 +38,23 @@ class ClosedLaw(Part):
     @property
     def reach(self) -> tuple[float, float]:
         """Where melting starts and is complete, relative to the melting temperature, without tails [K]."""
-        raise TypeError("each law defines its reach")
+        return self._curve().reach
 
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        raise TypeError("each law defines its fraction")
+    def fraction(self, above: npt.ArrayLike) -> Floats:
+        """Liquid fraction at distances above the melting temperature [K], with their shape. [-]"""
+        return self._curve()(above)
+
+    def _curve(self) -> MeltingCurve:
+        return worked_out(self, "_curve_of_engine", lambda: self._as_engine(0.0))
+
+    def _as_engine(self, centre: float) -> MeltingCurve:
+        """The curve of the engine about a temperature [degC]."""
+        numbers = {"melting_temperature": centre, "width": self.half_width}
+        return MeltingCurve(self._KIND, numbers, self._shape())
+
+    def _shape(self) -> dict[str, Any]:
+        """What the curve of the engine has beside numbers."""
+        return {}
 
 
 class TanhLaw(ClosedLaw):
@@ -48,11 +66,12 @@ class TanhLaw(ClosedLaw):
     Examples
     --------
     >>> law = TanhLaw(gamma=0.04, delta_t=0.01)
-    >>> law.half_width, law.fraction(0.0)
+    >>> law.half_width, float(law.fraction(0.0))
     (1.0, 0.5)
     """
 
     tails: ClassVar[bool] = True
+    _KIND: ClassVar[str] = "tanh_width"
     kind: Literal["tanh"] = "tanh"
     width: q.MeltingWidth | None = None
     gamma: q.Gamma | None = None
@@ -76,16 +95,6 @@ class TanhLaw(ClosedLaw):
             return float(self.width or 0.0)
         return 4.0 * self.delta_t / self.gamma
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, without tails [K]."""
-        end = self.half_width * math.atanh(1.0 - 2.0 * CUT)
-        return (-end, end)
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        return 0.5 + 0.5 * math.tanh(above / self.half_width)
-
 
 class SmoothStepLaw(ClosedLaw):
     """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives.
@@ -96,6 +105,7 @@ class SmoothStepLaw(ClosedLaw):
     SmoothStepLaw(width=1 K, continuity=2)
     """
 
+    _KIND: ClassVar[str] = "smooth_step"
     kind: Literal["smooth_step"] = "smooth_step"
     width: q.EndToMiddle
     continuity: q.Continuity = Number(1.0, source=Remark("the enthalpy has a continuous derivative"))
@@ -105,19 +115,8 @@ class SmoothStepLaw(ClosedLaw):
         """Half-width w [K]."""
         return float(self.width)
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete [K]."""
-        return (-self.half_width, self.half_width)
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        v = _held(0.5 + 0.5 * above / self.width)
-        return (
-            v * v * (3.0 - 2.0 * v)
-            if float(self.continuity) < 2.0
-            else v**3 * (10.0 - 15.0 * v + 6.0 * v * v)
-        )
+    def _shape(self) -> dict[str, Any]:
+        return {"continuity": int(self.continuity)}
 
 
 class GaussianLaw(ClosedLaw):
@@ -130,6 +129,7 @@ class GaussianLaw(ClosedLaw):
     """
 
     tails: ClassVar[bool] = True
+    _KIND: ClassVar[str] = "gaussian"
     kind: Literal["gaussian"] = "gaussian"
     width: q.Deviation
 
@@ -137,18 +137,6 @@ class GaussianLaw(ClosedLaw):
     def half_width(self) -> float:
         """Standard deviation [K]."""
         return float(self.width)
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, without tails [K]."""
-        from statistics import NormalDist
-
-        end = self.width * NormalDist().inv_cdf(1.0 - CUT)
-        return (-end, end)
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        return 0.5 * math.erfc(-above / self.width / math.sqrt(2.0))
 
 
 class GumbelLaw(ClosedLaw):
@@ -163,6 +151,7 @@ class GumbelLaw(ClosedLaw):
     """
 
     tails: ClassVar[bool] = True
+    _KIND: ClassVar[str] = "gumbel"
     kind: Literal["gumbel"] = "gumbel"
     width: q.GumbelScale
     tail: Literal["low", "high"] = Field(
@@ -174,17 +163,8 @@ class GumbelLaw(ClosedLaw):
         """Scale of the distribution [K]."""
         return float(self.width)
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, without tails [K]."""
-        ends = sorted(-self.width * math.log(-math.log(share)) for share in (CUT, 1.0 - CUT))
-        return (ends[0], ends[1]) if self.tail == "high" else (-ends[1], -ends[0])
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the peak [K]."""
-        sign = 1.0 if self.tail == "low" else -1.0
-        left = math.exp(-math.exp(max(min(sign * above / self.width, 30.0), -30.0)))
-        return 1.0 - left if self.tail == "low" else left
+    def _shape(self) -> dict[str, Any]:
+        return {"tail": self.tail}
 
 
 class LinearLaw(ClosedLaw):
@@ -196,6 +176,7 @@ class LinearLaw(ClosedLaw):
     LinearLaw(width=1 K)
     """
 
+    _KIND: ClassVar[str] = "linear"
     kind: Literal["linear"] = "linear"
     width: q.EndToMiddle
 
@@ -203,15 +184,6 @@ class LinearLaw(ClosedLaw):
     def half_width(self) -> float:
         """Half-width w [K]."""
         return float(self.width)
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete [K]."""
-        return (-self.half_width, self.half_width)
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        return _held(0.5 + 0.5 * above / self.width)
 
 
 class TriangleLaw(ClosedLaw):
@@ -223,6 +195,7 @@ class TriangleLaw(ClosedLaw):
     TriangleLaw(below=2 K, above=1 K)
     """
 
+    _KIND: ClassVar[str] = "triangle"
     kind: Literal["triangle"] = "triangle"
     below: q.Flank
     above: q.Flank
@@ -232,20 +205,11 @@ class TriangleLaw(ClosedLaw):
         """Half of the melting range [K]."""
         return 0.5 * (self.below + self.above)
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete [K]."""
-        return (-float(self.below), float(self.above))
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the peak [K]."""
-        rising, falling = _held(1.0 + above / self.below), _held(1.0 - above / self.above)
-        total = self.below + self.above
-        return (self.below * rising**2 + self.above * (1.0 - falling**2)) / total
-
-
-def _held(value: float) -> float:
-    return min(max(float(value), 0.0), 1.0)
+    def _as_engine(self, centre: float) -> MeltingCurve:
+        numbers = {
+            "melting_temperature": centre, "below": float(self.below), "above": float(self.above)
+        }  # fmt: skip
+        return MeltingCurve(self._KIND, numbers)
 
 
 class FractionsLaw(Part):
@@ -294,9 +258,11 @@ class FractionsLaw(Part):
         """Where melting starts and is complete, before the shift [degC]."""
         return (float(self.temperatures[0]), float(self.temperatures[-1]))
 
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a temperature of the table, by monotone cubics as in the engine [degC]."""
-        return monotone(self.temperatures, self.fractions)(above)
+    def fraction(self, above: npt.ArrayLike) -> Floats:
+        """Liquid fraction at temperatures of the table, before the shift [degC], with their shape. [-]"""
+        table = {"temperatures": self.temperatures, "fractions": self.fractions}
+        points = {name: [float(number) for number in column] for name, column in table.items()}
+        return MeltingCurve("fractions", {"temperature_shift": 0.0}, points)(above)
 
 
 class _Table(Part):

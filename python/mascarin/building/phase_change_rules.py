@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import pairwise
 from typing import Any, Final
 
+import numpy as np
+import numpy.typing as npt
 from pydantic_core import InitErrorDetails
 
 from mascarin.building.melting import Melting
@@ -13,6 +14,10 @@ from mascarin.building.number import Number
 from mascarin.building.part import Location, fault
 from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
 from mascarin.building.phases import phase
+from mascarin.physics import KELVIN
+
+Floats = npt.NDArray[np.float64]
+_Curve = Callable[[Floats], Floats]
 
 #: Largest relative difference of a latent heat from that of its table [-].
 AGREEMENT: Final = 0.10
@@ -107,7 +112,7 @@ def unit_errors(material: Melting) -> list[InitErrorDetails]:
             path,
             f"{value:g}",
             "a temperature in degC below 200",
-            f"{value:g} K are {value - 273.15:.2f} degC.",
+            f"{value:g} K are {value - KELVIN:.2f} degC.",
         )
         for path, value in _temperatures(material)
         if value > 200.0
@@ -171,24 +176,26 @@ def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
     latent = solid_density(material) * (material.latent_heat or 0.0)
     for key, (curve, low, high) in curves.items():
         small = (high - low) * 1e-5
-        for i in range(_POINTS + 1):
-            at = low + (high - low) * i / _POINTS
-            fraction = curve(at)
-            slope = max(curve(at + small) - curve(at - small), 0.0) / (2.0 * small)
-            jump = latent + difference * (at - material.reference)
-            capacity = solid + difference * fraction + slope * jump
-            if capacity > 0.0 and (jump > 0.0 or len(curves) == 1):
-                continue
-            found = f"dH/dT = {capacity:.3g} J/(m3 K)" if capacity <= 0.0 else f"{jump:.3g} J/m3 to melt it"
-            return [
-                fault(
-                    key,
-                    f"{found} at {at:.2f} degC",
-                    "an enthalpy that rises with temperature and with the liquid fraction",
-                    "The difference of the heat capacities exceeds the latent heat over this width: "
-                    "check specific_heat of both phases, latent_heat and the width.",
-                )
-            ]
+        at = np.linspace(low, high, _POINTS + 1)
+        slope = np.maximum(curve(at + small) - curve(at - small), 0.0) / (2.0 * small)
+        jump = latent + difference * (at - material.reference)
+        capacity = solid + difference * curve(at) + slope * jump
+        falls = (capacity <= 0.0) | ((jump <= 0.0) & (len(curves) > 1))
+        if not falls.any():
+            continue
+        k = int(np.argmax(falls))
+        found = (
+            f"dH/dT = {capacity[k]:.3g} J/(m3 K)" if capacity[k] <= 0.0 else f"{jump[k]:.3g} J/m3 to melt it"
+        )
+        return [
+            fault(
+                key,
+                f"{found} at {at[k]:.2f} degC",
+                "an enthalpy that rises with temperature and with the liquid fraction",
+                "The difference of the heat capacities exceeds the latent heat over this width: "
+                "check specific_heat of both phases, latent_heat and the width.",
+            )
+        ]
     return []
 
 
@@ -223,7 +230,7 @@ def contradicted_latent_heat(material: Melting) -> list[InitErrorDetails]:
 
 def _curves(
     material: Melting,
-) -> dict[Location, tuple[Callable[[float], float], float, float]]:
+) -> dict[Location, tuple[_Curve, float, float]]:
     """Heating curve, and the cooling curve if there is one, with the range in which each rises [degC]."""
     if isinstance(material.law, TableLaw | CapacityLaw):
         return {}
@@ -240,13 +247,13 @@ def _curves(
     }
 
 
-def _compact(law: FractionLaw, centre: float) -> tuple[Callable[[float], float], float, float]:
+def _compact(law: FractionLaw, centre: float) -> tuple[_Curve, float, float]:
     """A curve without its tails, the rest scaled to 0..1, as hysteresis uses it."""
     low, high = law.reach
 
-    def curve(at: float) -> float:
+    def curve(at: Floats) -> Floats:
         fraction = law.fraction(at - centre)
-        return min(max((fraction - CUT) / (1.0 - 2.0 * CUT), 0.0), 1.0) if law.tails else fraction
+        return np.clip((fraction - CUT) / (1.0 - 2.0 * CUT), 0.0, 1.0) if law.tails else fraction
 
     return curve, centre + low, centre + high
 
@@ -256,10 +263,12 @@ def crossing_curves(material: Melting) -> list[InitErrorDetails]:
     if material.cooling is None:
         return []
     (heating, *_), (cooling, *_) = _curves(material).values()
-    excess, at = max((heating(t) - cooling(t), t) for t in _grid(material))
-    if excess <= _EPSILON:
+    grid = _grid(material)
+    hot, cold = heating(grid), cooling(grid)
+    k = int(np.argmax(hot - cold))
+    if hot[k] - cold[k] <= _EPSILON:
         return []
-    melted, left = 100.0 * heating(at), 100.0 * cooling(at)
+    at, melted, left = grid[k], 100.0 * hot[k], 100.0 * cold[k]
     return [
         fault(
             ("hysteresis",),
@@ -287,16 +296,15 @@ def unordered_slopes(material: Melting) -> tuple[float, float] | None:
         return None
     (heating, *_), (cooling, *_) = _curves(material).values()
     grid = _grid(material)
-    rises = [(b, heating(b) - heating(a), cooling(b) - cooling(a)) for a, b in pairwise(grid)]
-    falling = [
-        at
-        for (_, h0, c0), (at, h1, c1) in pairwise(rises)
-        if h1 * c0 - h0 * c1 < -1e-6 * max(h1 * c0, h0 * c1) and min(c0, c1, h0) > _EPSILON
-    ]
-    return (falling[0], falling[-1]) if falling else None
+    melts, freezes = np.diff(heating(grid)), np.diff(cooling(grid))
+    (h0, h1), (c0, c1) = ((rises[:-1], rises[1:]) for rises in (melts, freezes))
+    falls = h1 * c0 - h0 * c1 < -1e-6 * np.maximum(h1 * c0, h0 * c1)
+    falls &= np.minimum(np.minimum(c0, c1), h0) > _EPSILON
+    at = grid[2:][falls]
+    return (float(at[0]), float(at[-1])) if len(at) else None
 
 
-def _grid(material: Melting) -> list[float]:
+def _grid(material: Melting) -> Floats:
     ends = [end for _, *both in _curves(material).values() for end in both]
     low, high = min(ends), max(ends)
-    return [low + (high - low) * i / _POINTS for i in range(_POINTS + 1)]
+    return np.linspace(low, high, _POINTS + 1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.weather.moisture import STANDARD_PRESSURE
+from mascarin.physics import STANDARD_PRESSURE
 
 Floats = npt.NDArray[np.float64]
 

@@ -25,7 +25,7 @@ import numpy.typing as npt
 from mascarin._io.limits import above, below
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation, Floats
-from mascarin.weather.moisture import humidity_ratio, relative_humidity
+from mascarin.physics import humidity_ratio, relative_humidity
 
 LOWEST: Final = 18.0
 """Lowest temperature of the zones [degC]."""

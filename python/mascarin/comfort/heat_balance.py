@@ -23,7 +23,7 @@ from mascarin._io.limits import above, below
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation, Flags, Floats
 from mascarin.errors import InputError
-from mascarin.weather.moisture import saturation_pressure
+from mascarin.physics import saturation_pressure
 
 PMV_CATEGORIES: Final = {"A": (-0.2, 0.2), "B": (-0.5, 0.5), "C": (-0.7, 0.7)}
 """Limits of the PMV, ISO 7730 table A.1. [-]"""

@@ -10,6 +10,7 @@ from mascarin.comfort import adaptive, givoni, heat_balance
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Evaluation
 from mascarin.errors import InputError, did_you_mean
+from mascarin.physics import KELVIN
 
 Band = tuple[float, float]
 Need = Literal["humidity", "outdoor temperature"]
@@ -165,7 +166,7 @@ _ALL: Final = (
         "heat-index", "the heat index", "degC", "K h", ("humidity",),
         "air from 26.7 to 45 degC with a relative humidity from 40 %; people in the shade in light wind",
         "Rothfusz 1990, NWS SR 90-23; above 32.2 degC: extreme caution",
-        usual=(-273.15, 32.2), rate_band=heat_balance.heat_index,
+        usual=(-KELVIN, 32.2), rate_band=heat_balance.heat_index,
     ),
     Index(
         "utci", "the UTCI", "degC", "K h", ("humidity",),

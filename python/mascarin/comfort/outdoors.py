@@ -9,7 +9,7 @@ import numpy as np
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import discomfort
 from mascarin.comfort.givoni import givoni
-from mascarin.weather.moisture import STANDARD_PRESSURE, humidity_of_dew_point
+from mascarin.physics import STANDARD_PRESSURE, humidity_of_dew_point
 
 if TYPE_CHECKING:
     from mascarin.weather import Climate

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from mascarin.comfort.evaluation import Evaluation, Floats
 from mascarin.comfort.givoni import zone as givoni_zone
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.moisture import STANDARD_PRESSURE, humidity_ratio
+from mascarin.physics import STANDARD_PRESSURE, humidity_ratio
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,6 +13,7 @@ from mascarin.building.geometry import Polygon, open_edges, parents, plane_facto
 from mascarin.building.geometry.flat import inside
 from mascarin.building.window import emissivities as emissivities_of_glass
 from mascarin.errors import InputError
+from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -34,9 +35,9 @@ _PROJECTED: Final[dict[str, tuple[float, float, float]]] = {
 _NEAR: Final = 0.01
 #: Part of all directions that may be without a surface. [-]
 _OPEN: Final = 1e-3
-_KELVIN: Final = 273.15
+_KELVIN: Final = KELVIN
 #: Stefan-Boltzmann constant. [W/(m2 K4)]
-_SIGMA: Final = 5.670374419e-8
+_SIGMA: Final = STEFAN_BOLTZMANN
 #: Names in one line of text at most.
 _NAMED: Final = 6
 

@@ -18,7 +18,7 @@ from mascarin.comfort.indices import INDICES, Band, Index, index_named, require_
 from mascarin.comfort.seat import Point, Posture, SeatView, seen_from
 from mascarin.comfort.surroundings import Surroundings
 from mascarin.errors import InputError
-from mascarin.weather.moisture import relative_humidity
+from mascarin.physics import relative_humidity
 
 if TYPE_CHECKING:
     from typing import Self

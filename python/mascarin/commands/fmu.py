@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -16,7 +15,7 @@ from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.building import Building
+    pass
 
 
 def fmu(
@@ -103,23 +102,10 @@ def fmu(
         )
         simulation = Simulation(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,
-            scheme=scheme, outputs=_given(described, outputs),
+            scheme=scheme, outputs=matching_outputs(described, outputs),
         )  # fmt: skip
         for line in of_short_run(simulation):
             print(f"warning: {line}", file=sys.stderr)
         export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
     size = out.stat().st_size / 2**20
     print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)
-
-
-def _given(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
-    """Names of the outputs that fit patterns, without those that a unit cannot give, unless named in full."""
-    from mascarin.fmu import gives
-
-    names = matching_outputs(building, patterns)
-    if names is None:
-        return None
-    left = [name for name in names if not gives(building.output(name)) and name not in (patterns or ())]
-    if left:
-        print(f"warning: left out, a unit cannot give: {', '.join(left)}", file=sys.stderr)
-    return [name for name in names if name not in left]

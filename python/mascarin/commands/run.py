@@ -224,12 +224,10 @@ def _only(results: Results, names: Sequence[str] | None) -> Results:
     """The results with these outputs alone, or with the usual ones."""
     from dataclasses import replace
 
-    from mascarin.simulation.compiling import USUAL
-
     kept = [
         k
         for k, output in enumerate(results.outputs)
-        if (output.kind in USUAL if names is None else output.name in names)
+        if (output.usual if names is None else output.name in names)
     ]
     outputs = [results.outputs[k] for k in kept]
     return replace(results, outputs=outputs, records=results.records[:, kept])

@@ -187,7 +187,7 @@ def _figures(climate: Climate, found: Overview, folder: Path) -> list[Path]:
     from mascarin.comfort.plots import psychrometric
     from mascarin.figures import comfort as figures
     from mascarin.figures.files import save
-    from mascarin.weather.moisture import humidity_of_dew_point
+    from mascarin.physics import STANDARD_PRESSURE, humidity_of_dew_point
 
     data, times = climate.data, climate.index
     written = []
@@ -209,7 +209,7 @@ def _figures(climate: Climate, found: Overview, folder: Path) -> list[Path]:
     if "dew_point" in data:
         air = data["air_temperature"].to_numpy(dtype=float)
         humid = humidity_of_dew_point(air, data["dew_point"].to_numpy(dtype=float))
-        pressure = data["pressure"].to_numpy(dtype=float) if "pressure" in data else 101325.0
+        pressure = data["pressure"].to_numpy(dtype=float) if "pressure" in data else STANDARD_PRESSURE
         add("comfort_chart", lambda ax: psychrometric(ax, air, humid, pressure), 5.0)
     written.append(atomic.write(folder / "months.csv", found.months.round(3).to_csv()))
     return written

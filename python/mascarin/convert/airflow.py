@@ -12,6 +12,7 @@ from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import Year, combined
 from mascarin.convert.zones import Zone
+from mascarin.physics import GRAVITY
 
 _ZONE_KEYS: Final = (
     "zone_or_zonelist_or_space_or_spacelist_name", "zone_or_zonelist_name", "zone_or_space_name",
@@ -38,7 +39,7 @@ _IDLE: Final = {
     "maximum_outdoor_temperature": 100.0,
     "maximum_wind_speed": 40.0,
 }
-_GRAVITY, _ROOM = 9.81, 293.15
+_ROOM = 293.15
 _DISCHARGE, _CW = 0.65, 0.3
 
 
@@ -286,7 +287,7 @@ def _leakage(work: Work, item: Item, zone: Zone) -> None:
     free = area * math.sqrt(wind) * zone.wind / _CW
     if area <= 0.0 or free <= 0.0:
         return
-    height = stack * area**2 * _ROOM / (free**2 * _DISCHARGE**2 * 2.0 * _GRAVITY)
+    height = stack * area**2 * _ROOM / (free**2 * _DISCHARGE**2 * 2.0 * GRAVITY)
     work.findings.approximated(
         item, "a leakage area", "an opening with the same flow by wind, and by buoyancy at 20 degC"
     )

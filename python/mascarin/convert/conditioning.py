@@ -13,6 +13,7 @@ from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import Year, combined, constant
 from mascarin.convert.zones import Zone
+from mascarin.physics import AIR_SPECIFIC_HEAT
 
 #: Control types: 1 heating, 2 cooling, 3 one set point for both, 4 two set points.
 _TYPES: Final = {
@@ -30,7 +31,7 @@ _COOL: Final = ("cooling_setpoint_temperature_schedule_name", "setpoint_temperat
 IDEAL: Final = "ZoneHVAC:IdealLoadsAirSystem"
 _TEMPLATE: Final = "HVACTemplate:Zone:IdealLoadsAirSystem"
 #: Specific heat of dry air, for limits of flow [J/(kg K)].
-_AIR_HEAT: Final = 1006.0
+_AIR_HEAT: Final = AIR_SPECIFIC_HEAT
 _AIR_DENSITY: Final = 1.2
 #: Temperatures of the zone at which a limit of flow is a limit of power [degC].
 #: Air temperature of a zone that its set points allow [degC].

@@ -3,6 +3,5 @@
 from __future__ import annotations
 
 from mascarin.fmu.export import VERSIONS, Version, export
-from mascarin.fmu.variables import gives
 
-__all__ = ["VERSIONS", "Version", "export", "gives"]
+__all__ = ["VERSIONS", "Version", "export"]

@@ -32,7 +32,7 @@ VERSIONS: Final[tuple[Version, ...]] = ("3.0", "2.0")
 """Versions of the Functional Mock-up Interface."""
 
 #: Number of the format of the files in `resources`, as in `crates/fmu/src/contents.rs`.
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 _MAGIC: Final = b"MASCARIN"
 #: Folders of the libraries by architecture and system of Rust: that of version 3.0, and that of version 2.0.
 _PLATFORMS: Final = {
@@ -174,7 +174,7 @@ def _run(
         "mascarin_version": __version__,
         "token": token,
         "settings": dict(compiled.settings),
-        "probes": json.loads(compiled.readings.probes),
+        "outputs": json.loads(compiled.readings.outputs),
         "variables": [variable.plain() for variable in variables],
         "conditioned": _conditioned(simulation),
         "global_follows": global_follows(channels),

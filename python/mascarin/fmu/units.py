@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
+from mascarin.physics import KELVIN
+
 _SIGNS: Final = re.compile(r"\s*([A-Za-z%]+|[0-9]+|[()/ ])")
 
 
@@ -78,7 +80,7 @@ def base_unit(unit: str) -> BaseUnit | None:
     True
     """
     if unit == "degC":
-        return BaseUnit({"K": 1}, offset=273.15)
+        return BaseUnit({"K": 1}, offset=KELVIN)
     signs = [match[1] for match in _SIGNS.finditer(unit)]
     if "".join(signs).replace(" ", "") != unit.replace(" ", ""):
         return None

@@ -13,12 +13,9 @@ from mascarin.building.output_kinds import meaning
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
-    from mascarin.building import Output
     from mascarin.fmu.inputs import Channel
     from mascarin.simulation import Simulation
 
-#: Outputs that Python calculates by an iteration, which the library of a unit does not have.
-_NOT_HERE: Final = "globe_temperature"
 _CONTROL: Final = re.compile(r"[\x00-\x1f]")
 
 
@@ -37,7 +34,7 @@ class Variable:
     description : str
         What it is.
     role : dict
-        What it is to the library: the channel, the columns of the records or the position of the parameter.
+        What it is to the library: the channel, the record or the position of the parameter.
     start : float
         Start value; 0 for an output. [unit]
     low, high : float or None
@@ -65,11 +62,6 @@ class Variable:
         }
 
 
-def gives(output: Output) -> bool:
-    """Whether a unit can give an output."""
-    return output.kind != _NOT_HERE
-
-
 def variables_of(
     simulation: Simulation, inputs: Sequence[Channel], patterns: Sequence[str] | None
 ) -> list[Variable]:
@@ -87,7 +79,7 @@ def variables_of(
     Raises
     ------
     InputError
-        An output that a unit cannot give, a pattern that fits no parameter, or a name that occurs twice.
+        A pattern that fits no parameter, or a name that occurs twice.
     """
     found = [
         *(_input(simulation, channel) for channel in inputs),
@@ -107,17 +99,11 @@ def _input(simulation: Simulation, channel: Channel) -> Variable:
 
 
 def _outputs(simulation: Simulation) -> list[Variable]:
-    pairs = zip(simulation.outputs, simulation.compiled.readings.recipes, strict=True)
-    found = []
-    for output, (_, columns) in pairs:
-        if not gives(output):
-            raise InputError(
-                f"--output: found '{output.name}', which the library of a unit does not calculate; expected "
-                "other outputs: take the air_temperature and the mean_radiant_temperature of the zone"
-            )
-        role = {"output": list(columns)}
-        found.append(Variable(output.name, "output", output.unit, meaning(output), role))
-    return found
+    columns = simulation.compiled.readings.columns
+    return [
+        Variable(output.name, "output", output.unit, meaning(output), {"output": column})
+        for output, column in zip(simulation.outputs, columns, strict=True)
+    ]
 
 
 def _parameters(simulation: Simulation, patterns: Sequence[str] | None) -> list[Variable]:

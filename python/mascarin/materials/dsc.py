@@ -483,7 +483,7 @@ def _curves(number: int, run: Melting) -> Iterator[Curve]:
     best = run.fits[0]
     for fraction, style, label in (
         (run.fraction, "-", run.direction),
-        (best.law.shape(run.temperature, (best.melting_temperature, *best.widths)), ":", best.law.name),
+        (best.law.fraction(run.temperature, best.melting_temperature, best.widths), ":", best.law.name),
     ):
         solid, liquid = run.specific_heat
         over = run.temperature - run.half

@@ -3,80 +3,58 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+
+from mascarin.physics import MeltingCurve
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     Array = npt.NDArray[np.float64]
 
-Shape = Callable[["Array", tuple[float, ...]], "Array"]
-
-
-def tanh(t: Array, p: tuple[float, ...]) -> Array:
-    """Liquid fraction ``(1 + tanh((T - Tm)/w))/2``."""
-    return np.asarray(0.5 + 0.5 * np.tanh((t - p[0]) / p[1]))
-
-
-def smooth_step(t: Array, p: tuple[float, ...]) -> Array:
-    """Cubic between ``Tm - w`` and ``Tm + w``, flat at both ends."""
-    u = np.clip((t - p[0] + p[1]) / (2.0 * p[1]), 0.0, 1.0)
-    return np.asarray(u * u * (3.0 - 2.0 * u))
-
-
-def gaussian(t: Array, p: tuple[float, ...]) -> Array:
-    """Normal distribution of standard deviation ``w`` about ``Tm``."""
-    from scipy.special import ndtr
-
-    return np.asarray(ndtr((t - p[0]) / p[1]))
-
-
-def gumbel_low(t: Array, p: tuple[float, ...]) -> Array:
-    """Gumbel distribution of scale ``w``: peak at ``Tm``, long tail towards low temperatures."""
-    return np.asarray(-np.expm1(-np.exp(np.clip((t - p[0]) / p[1], -700.0, 700.0))))
-
-
-def gumbel_high(t: Array, p: tuple[float, ...]) -> Array:
-    """Gumbel distribution with the long tail towards high temperatures."""
-    return np.asarray(np.exp(-np.exp(np.clip(-(t - p[0]) / p[1], -700.0, 700.0))))
-
-
-def linear(t: Array, p: tuple[float, ...]) -> Array:
-    """Linear between ``Tm - w`` and ``Tm + w``."""
-    return np.asarray(np.clip((t - p[0] + p[1]) / (2.0 * p[1]), 0.0, 1.0))
-
-
-def triangle(t: Array, p: tuple[float, ...]) -> Array:
-    """Latent capacity as a triangle: from ``Tm - below`` to its peak at ``Tm`` and down to ``Tm + above``."""
-    centre, below, above = p
-    whole = below + above
-    rising = np.clip(t - centre + below, 0.0, below) ** 2 / (below * whole)
-    falling = np.clip(centre + above - t, 0.0, above) ** 2 / (above * whole)
-    return np.asarray(np.where(t <= centre, rising, 1.0 - falling))
-
 
 @dataclass(frozen=True)
 class Law:
-    """A shape, and how it is written in a building file."""
+    """A law of the engine, and how it is written in a building file.
+
+    Attributes
+    ----------
+    name : str
+        Its name in tables.
+    curve : str
+        Its name in the engine.
+    kind : dict
+        What it is in a building file.
+    keys : tuple of str
+        Its widths.
+    """
 
     name: str
-    shape: Shape
+    curve: str
     kind: dict[str, Any]
     keys: tuple[str, ...]
 
+    def fraction(self, temperature: Array, melting_temperature: float, widths: Sequence[float]) -> Array:
+        """Liquid fraction at temperatures [degC] about a melting temperature [degC], by widths [K]. [-]"""
+        numbers = {"melting_temperature": melting_temperature, **dict(zip(self.keys, widths, strict=True))}
+        shape = {key: value for key, value in self.kind.items() if key != "kind"}
+        if self.curve == "smooth_step":
+            shape["continuity"] = 1
+        return MeltingCurve(self.curve, numbers, shape)(temperature)
+
 
 LAWS: Final = (
-    Law("tanh", tanh, {"kind": "tanh"}, ("width",)),
-    Law("smooth step", smooth_step, {"kind": "smooth_step"}, ("width",)),
-    Law("gaussian", gaussian, {"kind": "gaussian"}, ("width",)),
-    Law("gumbel, tail low", gumbel_low, {"kind": "gumbel", "tail": "low"}, ("width",)),
-    Law("gumbel, tail high", gumbel_high, {"kind": "gumbel", "tail": "high"}, ("width",)),
-    Law("linear", linear, {"kind": "linear"}, ("width",)),
-    Law("triangle", triangle, {"kind": "triangle"}, ("below", "above")),
+    Law("tanh", "tanh_width", {"kind": "tanh"}, ("width",)),
+    Law("smooth step", "smooth_step", {"kind": "smooth_step"}, ("width",)),
+    Law("gaussian", "gaussian", {"kind": "gaussian"}, ("width",)),
+    Law("gumbel, tail low", "gumbel", {"kind": "gumbel", "tail": "low"}, ("width",)),
+    Law("gumbel, tail high", "gumbel", {"kind": "gumbel", "tail": "high"}, ("width",)),
+    Law("linear", "linear", {"kind": "linear"}, ("width",)),
+    Law("triangle", "triangle", {"kind": "triangle"}, ("below", "above")),
 )
 
 
@@ -131,7 +109,7 @@ def fit(law: Law, temperature: Array, fraction: Array) -> LawFit:
     widths = [width] if len(law.keys) == 1 else [max(middle - low, 1e-3), max(high - middle, 1e-3)]
 
     def error(p: Array) -> Array:
-        return np.asarray(law.shape(t, (float(p[0]), *(math.exp(q) for q in p[1:]))) - measured)
+        return np.asarray(law.fraction(t, float(p[0]), [math.exp(q) for q in p[1:]]) - measured)
 
     found = least_squares(error, [middle, *np.log(widths)], x_scale=[width, *[1.0] * len(widths)])
     left, moving = error(found.x), (measured > 1e-3) & (measured < 1.0 - 1e-3)

@@ -6,7 +6,6 @@ the user had given it.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.physics import MeltingCurve
 
 FILE: Final = Path(__file__).with_name("products.yaml")
 STEP: Final = 0.5
@@ -347,7 +347,8 @@ def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tupl
     if one.heating is None and one.cooling is None and "law" in one.raw:
         width, centre = _bare(one.raw["law"]["width"]), one.melting_temperature
         points = tuple(centre + 0.1 * k * width for k in range(-40, 41))
-        fractions = [0.5 + 0.5 * math.tanh((t - centre) / width) for t in points]
+        law = MeltingCurve("tanh_width", {"melting_temperature": centre, "width": width})
+        fractions = law(points).tolist()
         yield f"tanh law, half-width {width:g} K", points, one.enthalpies(points, fractions)
 
 

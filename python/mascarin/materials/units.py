@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from mascarin.errors import InputError
+from mascarin.physics import KELVIN
 
 #: Quantity -> unit without blanks, brackets and dots -> factor to SI. Heat flow is per kilogram.
 UNITS: Final[dict[str, dict[str, float]]] = {
@@ -171,4 +172,4 @@ def to_celsius(values: list[float], column: Column, where: str) -> list[float]:
             f"{where}: column '{column.name}': found {low:g} to {high:g} degC; expected a phase change of a "
             "building material. They look like kelvins: write K in the column's name"
         )
-    return [value - 273.15 for value in values] if kelvin else values
+    return [value - KELVIN for value in values] if kelvin else values

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from mascarin._io import atomic, units
+from mascarin.building.output_kinds import KINDS
 from mascarin.report import text
 from mascarin.report.drawn import short_day, time_axis
 from mascarin.report.sections.energy import ledger_bars
@@ -22,15 +23,15 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.simulation.results import Results
 
-#: Kinds of outputs with a figure, in its order, and the title of the figure.
-_FIGURES: Final = {
-    "air_temperature": "Air temperature",
-    "operative_temperature": "Operative temperature",
-    "relative_humidity": "Relative humidity",
-    "liquid_fraction": "Liquid fraction",
-    "heating_load": "Heating",
-    "cooling_load": "Cooling",
-}
+#: Kinds of outputs that are shown without being asked for, in their order.
+_FIGURES: Final = (
+    "air_temperature",
+    "operative_temperature",
+    "relative_humidity",
+    "liquid_fraction",
+    "heating_load",
+    "cooling_load",
+)
 #: Curves in one figure, and intervals of a curve: more of them are averaged.
 _CURVES, _POINTS = 8, 700
 _KINDS_OF_LOADS: Final = ("heating_load", "cooling_load")
@@ -172,7 +173,8 @@ def _facts(results: Results) -> list[dict[str, str]]:
 
 def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
     found = []
-    for kind, title in _FIGURES.items():
+    others = [o.kind for o in results.outputs if o.kind not in _FIGURES and not o.usual]
+    for kind in dict.fromkeys((*_FIGURES, *others)):  # those that were asked for follow
         curves = [
             (output.name.rpartition(".")[0], results.records[:, k], output.mean)
             for k, output in enumerate(results.outputs)
@@ -180,7 +182,7 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
         ]
         if not curves or (kind in _KINDS_OF_LOADS and not any(values.any() for _, values, _ in curves)):
             continue
-        unit = next(output.unit for output in results.outputs if output.kind == kind)
+        title, unit = KINDS[kind].label, KINDS[kind].unit
         left_out = len(curves) - _CURVES
         shown = curves[:_CURVES]
         if kind == "air_temperature" and notes.outdoors is not None:

@@ -12,7 +12,6 @@ from .objectives import Mean as Mean
 from .objectives import SquaredResiduals as SquaredResiduals
 from .options import RunOptions as RunOptions
 from .provenance import Provenance as Provenance
-from .readings import globe_temperature as globe_temperature
 from .results import Results as Results
 from .run import simulate as simulate
 from .simulation import Simulation as Simulation

@@ -161,7 +161,7 @@ class CompiledRun:
         """
         return {
             **self.settings,
-            "probes": (readings or self.readings).probes,
+            "outputs": (readings or self.readings).outputs,
             "record_from": record_from,
             "record_every": record_every,
         }
@@ -193,7 +193,7 @@ class CompiledRun:
             A step or the repeated first period did not converge.
         """
         recorded = readings or self.readings
-        whole = InMemory(self._rows(0, 1), len(recorded.recipes))
+        whole = InMemory(self._rows(0, 1), len(recorded.columns))
         raw = self.run_into(vector, whole.take, recorded, kept=True, progress=progress)
         return whole.records, raw
 
@@ -239,7 +239,7 @@ class CompiledRun:
                 vector,
                 self.forcing,
                 self.options(recorded),
-                rows_of(len(recorded.recipes), kept=kept),
+                rows_of(len(recorded.columns), kept=kept),
                 lambda rows: take(recorded.values(rows)),
                 _of_total(progress, len(self.forcing)),
             )
@@ -334,7 +334,7 @@ class CompiledRun:
             raw, slopes = self.plan.jacobian(
                 vector, [list(one) for one in directions], self.forcing, options, report
             )
-        return self.readings.values(raw), self.readings.slopes(raw, slopes)
+        return self.readings.values(raw), self.readings.values(slopes)
 
     def trajectory(
         self, vector: Array, *, record_from: int = 0, record_every: int = 1, memory: int = MEMORY
@@ -370,7 +370,7 @@ class CompiledRun:
 
     def _require_room(self, times: int, rows: int, what: str, advice: str, more: float = 0.0) -> None:
         """Refuse results that memory does not hold, with `more` bytes; the engine would end the process."""
-        columns = len(self.readings.recipes)
+        columns = len(self.readings.columns)
         # As the engine records them, and as outputs.
         memory.require(
             2.0 * 8.0 * times * rows * columns + more,
@@ -403,8 +403,8 @@ class CompiledRun:
             "description": self.description,
             "paths": list(self.paths),
             "settings": dict(self.settings),
-            "probes": self.readings.probes,
-            "recipes": [[kind, list(columns)] for kind, columns in self.readings.recipes],
+            "outputs": self.readings.outputs,
+            "columns": list(self.readings.columns),
             "start": self.start,
             "timezone": self.timezone,
         }
@@ -422,14 +422,13 @@ class CompiledRun:
         values : ndarray, shape (P,)
             Parameter vector of the building. [unit of each]
         """
-        recipes = tuple((kind, tuple(columns)) for kind, columns in header["recipes"])
         return cls(
             description=header["description"],
             forcing=forcing,
             paths=tuple(header["paths"]),
             values=values,
             settings=header["settings"],
-            readings=Readings(header["probes"], recipes),
+            readings=Readings(header["outputs"], tuple(header["columns"])),
             start=header["start"],
             timezone=header["timezone"],
         )

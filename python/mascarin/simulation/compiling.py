@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 __all__ = [
-    "USUAL",
     "changed_parameters",
     "chosen_outputs",
     "forcing_of",
@@ -63,8 +62,6 @@ __all__ = [
 REPEATED_WITHIN: Final = 0.01
 #: Repetitions after which the first period counts as not converged.
 MAX_REPETITIONS: Final = 1000
-#: Kinds of outputs that a run records where none are named.
-USUAL: Final = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
 
 
 def require_inputs(building: object, climate: object, measurements: object = None) -> None:
@@ -183,7 +180,7 @@ def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Outp
     """Outputs by name, or the usual ones."""
     if names is not None:
         return named(building, names)
-    return [output for output in building.outputs() if output.kind in USUAL]
+    return [output for output in building.outputs() if output.usual]
 
 
 def forcing_of(

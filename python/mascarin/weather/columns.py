@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from mascarin.errors import InputError
+from mascarin.physics import KELVIN
 from mascarin.weather.arrays import Array
 
 FACTORS: Mapping[str, tuple[str, float, float]] = {
     "degC": ("degC", 1.0, 0.0),
-    "K": ("degC", 1.0, -273.15),
+    "K": ("degC", 1.0, -KELVIN),
     "degF": ("degC", 5.0 / 9.0, -160.0 / 9.0),
     "W/m2": ("W/m2", 1.0, 0.0),
     "kW/m2": ("W/m2", 1000.0, 0.0),

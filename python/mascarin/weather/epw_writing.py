@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin._io import atomic
 from mascarin.errors import InputError
-from mascarin.weather.moisture import humidity_of_dew_point
+from mascarin.physics import humidity_of_dew_point
 
 if TYPE_CHECKING:
     from mascarin.weather.climate import Climate

@@ -10,10 +10,10 @@ import numpy as np
 
 from mascarin._io.arguments import names_of
 from mascarin.errors import InputError, did_you_mean
+from mascarin.physics import dew_point
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS, Kind
 from mascarin.weather.columns import Column
-from mascarin.weather.moisture import dew_point
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.starts import knot_lines, to_starts
 from mascarin.weather.table import Table

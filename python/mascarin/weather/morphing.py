@@ -26,9 +26,9 @@ from mascarin._io.arguments import require_type
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError, did_you_mean
+from mascarin.physics import KELVIN, dew_point, humidity_of_dew_point
 from mascarin.weather.channels import RADIATION
 from mascarin.weather.climate import Climate
-from mascarin.weather.moisture import dew_point, humidity_of_dew_point
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 Monthly = float | Sequence[float]
 
-_KELVIN: Final = 273.15
+_KELVIN: Final = KELVIN
 #: Lowest and highest change that is believed, and its unit.
 _LIMITS: Final = {
     "temperature": (-20.0, 20.0, "K"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.weather.moisture import humidity_of_dew_point
+from mascarin.physics import humidity_of_dew_point
 
 if TYPE_CHECKING:
     import pandas as pd

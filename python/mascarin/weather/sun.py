@@ -23,6 +23,7 @@ from typing import Final
 
 import numpy as np
 
+from mascarin.physics import STANDARD_PRESSURE
 from mascarin.weather.arrays import Array
 
 SOLAR_CONSTANT: Final = 1361.0
@@ -76,7 +77,7 @@ class SunPath:
         seconds = first + _NODE_STEP * np.arange(count)
         # At sea level; pressure and temperature only change the refraction, which is not used.
         _, zenith, _, _, azimuth, _ = spa.solar_position(
-            seconds, latitude, longitude, 0.0, 1013.25, 12.0, _DELTA_T, 0.5667, 1
+            seconds, latitude, longitude, 0.0, STANDARD_PRESSURE / 100.0, 12.0, _DELTA_T, 0.5667, 1
         )
         distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
         vector = _direction(np.radians(zenith), np.radians(azimuth))

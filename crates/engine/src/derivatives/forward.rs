@@ -9,9 +9,9 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
-use crate::run::march::march_observed;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
+use crate::run::simulate::simulate_observed;
 use crate::step::Stepper;
 use crate::step::control::RunControl;
 use crate::step::state::State;
@@ -24,9 +24,9 @@ use super::periodic_slopes::settle;
 /// Records of a run and their slopes.
 #[derive(Debug)]
 pub struct Jacobian {
-    /// Rows x probes.
+    /// Rows x outputs.
     pub records: Vec<f64>,
-    /// Chosen parameters or directions x rows x probes [unit of the record / unit of the parameter].
+    /// Chosen parameters or directions x rows x outputs [unit of the record / unit of the parameter].
     pub slopes: Vec<f64>,
 }
 
@@ -52,7 +52,7 @@ pub fn jacobian(
 /// Runs a plan and computes the slopes of all its records along directions of the parameters, on all threads.
 ///
 /// # Errors
-/// As [`march`](crate::run::march::march); [`EngineError::Input`] also for a parameter that does not exist.
+/// As [`simulate`](crate::run::simulate::simulate); [`EngineError::Input`] also for a parameter that does not exist.
 pub fn slopes_along(
     plan: &Plan,
     numbers: &[f64],
@@ -132,7 +132,7 @@ fn run_with_slopes(
         .iter()
         .map(|(numbers, parameters)| {
             let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
-            if options.probes.iter().any(Output::averages_absorbed_sun) {
+            if options.outputs.iter().any(Output::averages_absorbed_sun) {
                 stepper.follower.average_absorbed_sun();
             }
             let state = stepper.follower.begin(&options.initial, weather.row(0, 0));
@@ -143,7 +143,7 @@ fn run_with_slopes(
     plain.known.start();
     let run = KeptRun { plan, numbers, weather, options };
     let mut period: Option<StepKeeper> = None;
-    march_observed(plain, weather, options, watch, |plain, reached, action| {
+    simulate_observed(plain, weather, options, watch, |plain, reached, action| {
         if keep_period(&mut period, action, plain, reached, options) {
             return Ok(());
         }
@@ -160,7 +160,7 @@ fn run_with_slopes(
             state.change_by(reached, |number, value| number.value = value);
             if action.row(options).is_some() {
                 let step = stepper.follower.readings();
-                slopes.records.extend(options.probes.iter().map(|probe| probe.read(plan, &step, state)));
+                slopes.records.extend(options.outputs.iter().map(|output| output.read(plan, &step, state)));
             }
         }
         Ok(())

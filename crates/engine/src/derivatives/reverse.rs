@@ -12,9 +12,9 @@ use crate::input::forcing::Forcing;
 use crate::linear::unknowns::Unknowns;
 use crate::number::tape::{Tape, Taped};
 use crate::run::Action;
-use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
 use crate::run::outputs::Output;
+use crate::run::simulate::{Run, simulate_observed};
 use crate::step::Stepper;
 use crate::step::control::RunControl;
 use crate::step::halving::Part;
@@ -41,7 +41,7 @@ impl Trajectory {
     /// Runs a plan, keeping about as many bytes as given of the run, and of its repeated first period.
     ///
     /// # Errors
-    /// As [`march`](crate::run::march::march).
+    /// As [`simulate`](crate::run::simulate::simulate).
     pub fn new(
         plan: &Plan,
         numbers: &[f64],
@@ -59,7 +59,7 @@ impl Trajectory {
         let mut kept =
             keep(&stepper.begin(&options.initial, weather.row(0, 0)), stepper.history(), weather.steps() + 1);
         let mut period = None;
-        let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
+        let run = simulate_observed(stepper, &weather, options, watch, |stepper, reached, action| {
             match (action, options.warmup) {
                 (Action::BeginPeriod, Some(warmup)) => {
                     kept = keep(reached, stepper.history(), warmup.steps);
@@ -78,7 +78,7 @@ impl Trajectory {
         Ok(Self { run, period, steps: kept.finish().0 })
     }
 
-    /// Slopes by all parameters of the sum of weights (rows x probes) times records.
+    /// Slopes by all parameters of the sum of weights (rows x outputs) times records.
     ///
     /// # Errors
     /// [`EngineError::Input`] when the weights or numbers do not fit, [`EngineError::Interrupted`].
@@ -141,7 +141,7 @@ impl<'a> ReversePass<'a> {
         (reached, records): (&State<f64>, &'a [f64]),
     ) -> Self {
         let mut stepper = DerivativeStepper::new(plan, leaves, options.scheme.converged());
-        if options.probes.iter().any(Output::averages_absorbed_sun) {
+        if options.outputs.iter().any(Output::averages_absorbed_sun) {
             stepper.follower.average_absorbed_sun();
         }
         let length = Tape::len();
@@ -222,9 +222,9 @@ impl<'a> ReversePass<'a> {
         let weights = &mut self.weights;
         state.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
         if let Some(row) = action.row(self.options) {
-            let (probes, step) = (&self.options.probes, stepper.follower.readings());
-            for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(step.model.plan, &step, state);
+            let (outputs, step) = (&self.options.outputs, stepper.follower.readings());
+            for (output, weight) in outputs.iter().zip(&self.records[row * outputs.len()..]) {
+                let record = output.read(step.model.plan, &step, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }

@@ -1,14 +1,14 @@
 //! Buildings whose walls between zones are treated as thick, beside the same buildings with all surfaces coupled at once.
 
 use crate::building::plan::Plan;
-use crate::common::random::{Case, Contents, probes};
+use crate::common::random::{Case, Contents, outputs};
 use crate::common::values;
 use crate::derivatives::forward::jacobian;
 use crate::derivatives::reverse::Trajectory;
 use crate::input::forcing::Forcing;
 use crate::number::lanes::Lanes;
-use crate::run::march::march;
 use crate::run::outputs::Output;
+use crate::run::simulate::simulate;
 use crate::step::control::RunControl;
 
 /// Walls of at least this depth count as thick here: a third of what happens at one surface reaches the other.
@@ -38,19 +38,19 @@ fn thick_walls_change_the_way_and_not_the_result() {
         let (numbers, rows) = (values(&coupled), case.rows(&coupled));
         let forcing = Forcing::new(&rows, case.scheme.weights().len(), coupled.n_channels()).unwrap();
         let (options, watch) = (case.options(), RunControl::default());
-        let run = |plan: &Plan| march(plan, &numbers, &forcing, &options, &watch).unwrap();
+        let run = |plan: &Plan| simulate(plan, &numbers, &forcing, &options, &watch).unwrap();
         let (expected, found) = (run(&coupled), run(&thick));
         assert!(found.ledger.closure() < 1e-11, "seed {seed}: closure {:e}", found.ledger.closure());
-        let probes = probes(&case.description);
+        let outputs = outputs(&case.description);
         for (k, (&a, &b)) in expected.records.iter().zip(&found.records).enumerate() {
             // Loads are as precise as the airs that they hold.
             let load =
-                matches!(probes[k % probes.len()], Output::HeatingLoad { .. } | Output::CoolingLoad { .. });
+                matches!(outputs[k % outputs.len()], Output::HeatingLoad { .. } | Output::CoolingLoad { .. });
             let apart = if load { 1e-5 * a.abs().max(1.0) } else { 1e-7 };
             assert!((a - b).abs() < apart, "seed {seed}: {a} and {b}");
         }
         let lanes: Vec<Lanes<4>> = numbers.iter().map(|&number| Lanes([number; 4])).collect();
-        let in_lanes = march(&thick, &lanes, &forcing, &options, &watch).unwrap();
+        let in_lanes = simulate(&thick, &lanes, &forcing, &options, &watch).unwrap();
         for (&alone, lanes) in found.records.iter().zip(&in_lanes.records) {
             assert!(lanes.0.iter().all(|lane| lane.to_bits() == alone.to_bits()), "seed {seed}");
         }

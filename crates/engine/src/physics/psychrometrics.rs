@@ -21,6 +21,9 @@ pub const VAPOUR_GAS_CONSTANT: f64 = 461.524;
 /// 10 degC (ASHRAE Handbook of Fundamentals 2017, ch. 18, eq. 11: 3010 W for 1 m3/s of 1.204 kg/m3 and 1 kg/kg per thousand).
 pub const LATENT_HEAT: f64 = 2.5e6;
 
+/// Specific heat of water vapour [J/(kg K)] (ASHRAE 2017, ch. 1, eq. 30).
+pub const VAPOUR_SPECIFIC_HEAT: f64 = 1860.0;
+
 /// Triple point of water [K]: ice below it.
 const TRIPLE_POINT: f64 = 273.16;
 /// Pressures of vapour below this have no dew point of use [Pa]: -116 degC.

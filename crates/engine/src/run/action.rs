@@ -102,7 +102,7 @@ mod tests {
                 scheme: Scheme::BackwardEuler,
                 initial: Initial::Everywhere(20.0),
                 warmup: None,
-                probes: Vec::new(),
+                outputs: Vec::new(),
                 record_from,
                 record_every,
                 residuals: false,

@@ -11,8 +11,8 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
 use crate::number::simd::{LaneTask, Level, SINGLE_WIDTH, WIDTH, run, run_single};
-use crate::run::march::march_in;
 use crate::run::options::Options;
+use crate::run::simulate::simulate_in;
 use crate::step::control::RunControl;
 use crate::weather::conditions::Weather;
 
@@ -106,7 +106,7 @@ fn run_all(
     let level = options.check(plan, width, forcing)?;
     let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
-    let row = options.rows(forcing.steps()) * options.probes.len();
+    let row = options.rows(forcing.steps()) * options.outputs.len();
     let mut result = Ensemble {
         records: vec![f64::NAN; members * row],
         closure: vec![f64::NAN; members],
@@ -193,7 +193,7 @@ impl LaneTask for InLanes<'_, '_, '_> {
         // A short pack repeats its last member.
         let of = |p: usize| (0..S::LANES).map(move |lane| numbers[lane.min(members - 1) * width + p]);
         let lanes: Vec<S> = (0..width).map(|p| pack(&of(p).collect::<Vec<_>>())).collect();
-        let run = march_in(plan, &lanes, weather, options, control)?;
+        let run = simulate_in(plan, &lanes, weather, options, control)?;
         let closure = run.ledger.worst_closure();
         self.target.write(&run.records, closure, run.outside);
         let closed = closure.lt(S::constant(CLOSES)) | S::Mask::splat(!S::SINGLE);
@@ -253,7 +253,7 @@ impl<'a> Pack<'a, '_> {
     fn run_alone(self, member: usize, target: &mut Target<'_>) -> Result<(), EngineError> {
         let width = self.plan.description.parameters.len();
         let numbers = &self.numbers[member * width..(member + 1) * width];
-        let found = march_in(self.plan, numbers, self.weather, self.options, self.control);
+        let found = simulate_in(self.plan, numbers, self.weather, self.options, self.control);
         let records = &mut target.records[member * target.row..(member + 1) * target.row];
         let (closure, outside) = (&mut target.closure[member], &mut target.outside[member]);
         match found {

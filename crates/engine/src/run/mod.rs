@@ -4,15 +4,18 @@ mod action;
 pub(crate) mod anderson;
 
 pub mod ensemble;
-pub mod march;
 pub mod options;
 mod output_limits;
 pub mod outputs;
 pub(crate) mod periodic_start;
 pub mod physical_limits;
 pub mod ratings;
+pub mod simulate;
+pub mod simulate_in_blocks;
 pub mod stepwise;
-pub mod streamed;
 mod warm_up;
 
 pub(crate) use action::Action;
+pub use options::{Options, Warmup};
+pub use simulate::{Run, simulate};
+pub use simulate_in_blocks::simulate_in_blocks;

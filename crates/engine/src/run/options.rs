@@ -20,7 +20,7 @@ pub struct Options {
     /// The first period, repeated until the state at its end is periodic. None: the run starts from `initial`.
     pub warmup: Option<Warmup>,
     /// What to record.
-    pub probes: Vec<Output>,
+    pub outputs: Vec<Output>,
     /// First step whose end is recorded; with 0 the initial state is recorded before it.
     pub record_from: usize,
     /// One step of this number is recorded.
@@ -73,7 +73,7 @@ impl Options {
             return fail("the repeated first period is longer than the run".to_owned());
         }
         self.initial.check(plan)?;
-        self.probes.iter().try_for_each(|output| output.check(plan))?;
+        self.outputs.iter().try_for_each(|output| output.check(plan))?;
         Level::widest()
     }
 

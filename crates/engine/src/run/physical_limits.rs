@@ -338,7 +338,7 @@ mod tests {
     use super::*;
     use crate::balance::ledger::Ledger;
     use crate::common::conditioned::{conditioned, conditioned_weather};
-    use crate::common::{ALL_SCHEMES, cell, cell_probes, forcing, options, run, set, values};
+    use crate::common::{ALL_SCHEMES, cell, cell_outputs, forcing, options, run, set, values};
     use crate::input::forcing::Forcing;
     use crate::run::action::Action;
     use crate::step::state::Initial;
@@ -442,7 +442,7 @@ mod tests {
                 row[channel::AIR_TEMPERATURE] = air;
                 set(row, 0, air);
             });
-            let run = run(&plan, &rows, &options(scheme, step, cell_probes()));
+            let run = run(&plan, &rows, &options(scheme, step, cell_outputs()));
             assert!(run.outside <= 0.0 && run.outlier.is_none(), "{scheme:?}: {:?}", run.outlier);
         }
     }

@@ -1,16 +1,16 @@
 //! A run that its caller takes on step by step, with the weather of each step: for programs that exchange values with it meanwhile.
 //!
-//! The actions are those of [`march`](crate::run::march::march), so that the same weather gives the same bits.
+//! The actions are those of [`simulate`](crate::run::simulate::simulate), so that the same weather gives the same bits.
 
 use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::run::action::Action;
-use crate::run::march::prepare;
 use crate::run::options::Options;
 use crate::run::output_limits::require_limits;
 use crate::run::physical_limits::{Outlier, PhysicalLimits};
+use crate::run::simulate::prepare;
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::state::State;
@@ -87,14 +87,14 @@ impl<'a> StepByStep<'a> {
         self.steps += 1;
         let mut values = Vec::new();
         self.read(&mut values);
-        require_limits(self.plan, &self.options.probes, &values, self.steps - 1)
+        require_limits(self.plan, &self.options.outputs, &values, self.steps - 1)
     }
 
     /// Reads the outputs of the options: the state at the start, or after the last step.
     pub fn read(&self, values: &mut Vec<f64>) {
         values.clear();
         let step = self.stepper.readings();
-        values.extend(self.options.probes.iter().map(|output| output.read(self.plan, &step, &self.state)));
+        values.extend(self.options.outputs.iter().map(|output| output.read(self.plan, &step, &self.state)));
     }
 
     /// The first temperature that was outside of its causes by more than the scheme's overshoot, if any; see

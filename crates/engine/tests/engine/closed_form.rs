@@ -7,12 +7,12 @@
 
 use crate::common::{Builder, facing, forcing, options, relative, run, set};
 use core::f64::consts::TAU;
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Convection, Facing, ZoneLongwave};
 use mascarin_engine::forcing::channel;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::Warmup;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::Warmup;
+use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
 
 const DAY: f64 = 86400.0;
@@ -59,11 +59,11 @@ fn sinusoid_in_a_thick_solid() {
     let solid = b.solid("solid", k, rho, c);
     wall(&mut b, solid, 1.2, 240);
     let depths = [0.05, 0.1, 0.2];
-    let probes = depths.map(|depth| Probe::Sensor { sensor: b.sensor(0, depth) });
+    let outputs = depths.map(|depth| Output::Sensor { sensor: b.sensor(0, depth) });
     let plan = b.plan();
     let rows =
         forcing(&plan, Scheme::Sdirk2, 288, dt, |time, row| set(row, 0, 20.0 + amplitude * (w * time).cos()));
-    let mut options = options(Scheme::Sdirk2, dt, probes.to_vec());
+    let mut options = options(Scheme::Sdirk2, dt, outputs.to_vec());
     options.warmup = Some(Warmup { steps: 288, tolerance: 1e-4, max_cycles: 500 });
     let result = run(&plan, &rows, &options);
     for (row, record) in result.records.chunks(depths.len()).enumerate() {
@@ -95,7 +95,7 @@ impl Melting {
         wall(&mut b, pcm, self.thickness, nodes);
         let plan = b.plan();
         let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| set(row, 0, self.hot));
-        let mut options = options(Scheme::Sdirk2, dt, vec![Probe::LiquidFraction { surface: 0, layer: 0 }]);
+        let mut options = options(Scheme::Sdirk2, dt, vec![Output::LiquidFraction { surface: 0, layer: 0 }]);
         options.initial = Initial::Everywhere(self.initial);
         let result = run(&plan, &rows, &options);
         assert!(result.ledger.closure() < 1e-10);
@@ -194,7 +194,7 @@ fn step_response(law: impl Fn(&mut Builder) -> Convection) {
         row[channel::AIR_TEMPERATURE] = 10.0;
         row[channel::WIND_SPEED] = 7.0;
     });
-    let result = run(&plan, &rows, &options(Scheme::Sdirk2, dt, vec![Probe::AirTemperature { zone: 0 }]));
+    let result = run(&plan, &rows, &options(Scheme::Sdirk2, dt, vec![Output::AirTemperature { zone: 0 }]));
     let pressure = 101_325.0 * (1.0 - 2.25577e-5 * 55.0_f64).powf(5.25588);
     let air = 30.0 * 1006.0 * pressure / (287.055 * 288.15);
     let through = 12.0 / (1.0 / 20.0 + 0.5 + 1.0 / 4.0);
@@ -232,8 +232,8 @@ fn two_zones_at_rest() {
         set(row, 1, 10.0);
         row[channel::AIR_TEMPERATURE] = 5.0;
     });
-    let probes = vec![Probe::AirTemperature { zone: 0 }, Probe::AirTemperature { zone: 1 }];
-    let result = run(&plan, &rows, &options(Scheme::BackwardEuler, 36000.0, probes));
+    let outputs = vec![Output::AirTemperature { zone: 0 }, Output::AirTemperature { zone: 1 }];
+    let result = run(&plan, &rows, &options(Scheme::BackwardEuler, 36000.0, outputs));
     // Walls: 0.14/0.7 = 0.2 m2K/W; with one surface resistance 0.4, with two 0.6: 25 and 16.667 W/K.
     let (outer, middle) = (25.0, 10.0 / 0.6);
     let pressure = 101_325.0 * (1.0 - 2.25577e-5 * 55.0_f64).powf(5.25588);
@@ -270,7 +270,7 @@ fn swing(nodes: usize, dt: f64, scheme: Scheme) -> f64 {
         set(row, 0, 20.0 + 10.0 * (TAU * time / DAY).sin().powi(2));
     });
     let result =
-        run(&plan, &rows, &options(scheme, dt, vec![Probe::FaceTemperature { surface: 0, side: 1 }]));
+        run(&plan, &rows, &options(scheme, dt, vec![Output::FaceTemperature { surface: 0, side: 1 }]));
     result.records[result.records.len() - 1]
 }
 
@@ -317,9 +317,9 @@ fn maximum_principle() {
             // Jumps between 10 and 40 degC.
             set(row, 0, if (time / 7200.0) % 2.0 < 1.0 { 10.0 } else { 40.0 });
         });
-        let mut probes = vec![Probe::AirTemperature { zone: 0 }];
-        probes.extend((1..3).map(|interface| Probe::InterfaceTemperature { surface: 0, interface }));
-        let result = run(&plan, &rows, &options(Scheme::BackwardEuler, dt, probes));
+        let mut outputs = vec![Output::AirTemperature { zone: 0 }];
+        outputs.extend((1..3).map(|interface| Output::InterfaceTemperature { surface: 0, interface }));
+        let result = run(&plan, &rows, &options(Scheme::BackwardEuler, dt, outputs));
         for t in result.records.iter().chain(&result.state.cells) {
             assert!((10.0 - 1e-9..=40.0 + 1e-9).contains(t), "{t} degC at steps of {dt} s");
         }

@@ -2,11 +2,12 @@
 
 use crate::common::random::of_surface;
 use crate::common::{ALL_SCHEMES, Builder, forcing, options, try_run, values, weather};
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Convection, Description, IdealLoad, SetPoint, ZoneLongwave};
 use mascarin_engine::forcing::channel;
-use mascarin_engine::march::{Options, Scheme};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::Options;
+use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
 
 /// A room of light surfaces, some of them massless, with heating that is radiated.
@@ -60,11 +61,11 @@ fn radiant_heating_of_a_cold_room_freezes_nothing() {
                 .map(|(dt, start)| (scheme, dt, start))
         }) {
             let rows = forcing(&plan, scheme, 48, dt, cold);
-            let probes = (0..4).flat_map(of_surface).chain([Probe::AirTemperature { zone: 0 }]).collect();
+            let outputs = (0..4).flat_map(of_surface).chain([Output::AirTemperature { zone: 0 }]).collect();
             let options = Options {
                 initial: Initial::Everywhere(start),
                 residuals: true,
-                ..options(scheme, dt, probes)
+                ..options(scheme, dt, outputs)
             };
             let name = format!("{area} m2, {radiative}, {film:?}, {scheme:?}, {dt} s from {start} degC");
             let run = try_run(&plan, &values(&plan), &rows, &options);

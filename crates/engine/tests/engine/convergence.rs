@@ -2,11 +2,11 @@
 
 use crate::common::melting::ceiling_weather;
 use crate::common::{ALL_SCHEMES, Builder, SCHEMES, facing, forcing, options, run};
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Description, Facing, ZoneLongwave};
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Run};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Run};
 
 const STEP: f64 = 900.0;
 
@@ -28,10 +28,10 @@ fn copies(count: usize) -> Description {
     b.describe()
 }
 
-fn march(count: usize, scheme: Scheme) -> Run<f64> {
+fn simulate(count: usize, scheme: Scheme) -> Run<f64> {
     let plan = Plan::new(copies(count)).unwrap();
     let rows = forcing(&plan, scheme, 192, STEP, ceiling_weather);
-    run(&plan, &rows, &options(scheme, STEP, vec![Probe::AirTemperature { zone: 0 }]))
+    run(&plan, &rows, &options(scheme, STEP, vec![Output::AirTemperature { zone: 0 }]))
 }
 
 /// The criterion of convergence does not depend on the size of the building: many copies of a zone take the iterations of
@@ -39,7 +39,7 @@ fn march(count: usize, scheme: Scheme) -> Run<f64> {
 #[test]
 fn copies_converge_as_one() {
     for scheme in ALL_SCHEMES {
-        let (one, many) = (march(1, scheme), march(49, scheme));
+        let (one, many) = (simulate(1, scheme), simulate(49, scheme));
         assert_eq!(one.counters.iterations, many.counters.iterations, "{scheme:?}");
         assert_eq!(one.counters.largest_change.to_bits(), many.counters.largest_change.to_bits());
         for (a, b) in one.records.iter().zip(&many.records) {
@@ -52,7 +52,7 @@ fn copies_converge_as_one() {
 #[test]
 fn the_largest_last_change_is_small() {
     for scheme in SCHEMES {
-        let change = march(1, scheme).counters.largest_change;
+        let change = simulate(1, scheme).counters.largest_change;
         assert!(change > 1e-9 && change < 0.05, "{change} K with {scheme:?}");
     }
 }
@@ -64,7 +64,7 @@ fn residuals_are_reported_on_demand() {
     let plan = Plan::new(copies(1)).unwrap();
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 192, STEP, ceiling_weather);
-        let without = options(scheme, STEP, vec![Probe::AirTemperature { zone: 0 }]);
+        let without = options(scheme, STEP, vec![Output::AirTemperature { zone: 0 }]);
         let with = Options { residuals: true, ..without.clone() };
         let (without, with) = (run(&plan, &rows, &without), run(&plan, &rows, &with));
         assert!(without.counters.largest_residual.is_none());

@@ -1,14 +1,15 @@
 //! Halved steps and the nested iteration: what they find, and slopes along them.
 
-use crate::common::difficult::{jumps, probes, sharp, steps};
+use crate::common::difficult::{jumps, outputs, sharp, steps};
 use crate::common::{forcing, options, position, try_run, values};
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::simulate;
 
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
 /// Parameters of the slopes.
@@ -77,9 +78,9 @@ fn slopes_forward_are_slopes_in_reverse() {
     for scheme in SCHEMES {
         // Some of them are enough.
         for step in [false, true].into_iter().flat_map(|heated| steps(scheme, heated).into_iter().take(2)) {
-            let (plan, numbers, watch) = (&step.plan, values(&step.plan), Watch::default());
+            let (plan, numbers, watch) = (&step.plan, values(&step.plan), RunControl::default());
             let which = PARAMETERS.map(|path| position(plan, path));
-            let (options, width) = (step.options(1), probes().len());
+            let (options, width) = (step.options(1), outputs().len());
             let drive = Forcing::new(&step.rows, scheme.weights().len(), plan.n_channels()).unwrap();
             let forward = jacobian(plan, &numbers, &which, &drive, &options, &watch).unwrap();
             let trajectory = Trajectory::new(plan, &numbers, &drive, &options, &watch, 1 << 30).unwrap();
@@ -112,9 +113,9 @@ fn slopes_across_halved_steps_are_differences() {
         let mut compared = 0;
         let halved = steps(scheme, false).into_iter().filter(|step| step.run.counters.nested == 0);
         for step in halved.take(6) {
-            let (plan, numbers, watch) = (&step.plan, values(&step.plan), Watch::default());
+            let (plan, numbers, watch) = (&step.plan, values(&step.plan), RunControl::default());
             let which = PARAMETERS.map(|path| position(plan, path));
-            let (options, width) = (step.options(1), probes().len());
+            let (options, width) = (step.options(1), outputs().len());
             let drive = Forcing::new(&step.rows, scheme.weights().len(), plan.n_channels()).unwrap();
             let slopes = jacobian(plan, &numbers, &which, &drive, &options, &watch).unwrap().slopes;
             for (k, &parameter) in which.iter().enumerate() {
@@ -162,13 +163,13 @@ fn members_with_difficult_steps_have_the_bits_of_single_runs() {
         }
         for scheme in SCHEMES {
             let rows = forcing(&plan, scheme, 30, dt, |time, row| jumps(time, dt, row));
-            let (options, watch) = (options(scheme, dt, probes()), Watch::default());
+            let (options, watch) = (options(scheme, dt, outputs()), RunControl::default());
             let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
             let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
             assert!(together.failures.is_empty(), "{:?}", together.failures);
             let row = together.records.len() / 11;
             for (member, numbers) in numbers.chunks(count).enumerate() {
-                let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+                let alone = simulate(&plan, numbers, &drive, &options, &watch).unwrap();
                 difficult += usize::from(alone.counters.halvings + alone.counters.nested > 0);
                 for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
                     assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}, record {i}");

@@ -1,10 +1,10 @@
 //! The energy balance where conductances and heat capacities are far apart, and where nothing happens.
 
 use crate::common::{Builder, facing, forcing, options, run, weather};
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Facing, ZoneLongwave};
-use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
 
 const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::LinearlyImplicit, Scheme::BackwardEuler];
 
@@ -74,7 +74,7 @@ fn a_building_at_rest_has_no_residual() {
         b.surface("wall", construction, [11.0, 180.0, 0.0], facing(Facing::Adiabatic, None), inside);
         let plan = b.plan();
         let rows = forcing(&plan, Scheme::Sdirk2, 144, 600.0, weather);
-        let mut options = options(Scheme::Sdirk2, 600.0, vec![Probe::AirTemperature { zone: 0 }]);
+        let mut options = options(Scheme::Sdirk2, 600.0, vec![Output::AirTemperature { zone: 0 }]);
         options.initial = mascarin_engine::state::Initial::Everywhere(temperature);
         let run = run(&plan, &rows, &options);
         assert_eq!(

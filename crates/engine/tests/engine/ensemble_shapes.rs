@@ -1,19 +1,20 @@
 //! Ensembles of unusual shapes: without outputs, without members, without recorded rows.
 
-use crate::common::{cell, cell_probes, cell_weather, forcing, options, run, values};
-use mascarin_engine::batch::{Ensemble, ensemble};
+use crate::common::{cell, cell_outputs, cell_weather, forcing, options, run, values};
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Watch};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::Options;
+use mascarin_engine::run::ensemble::{Ensemble, ensemble};
+use mascarin_engine::run::outputs::Output;
 
 const STEP: f64 = 900.0;
 const STEPS: usize = 6;
 
 fn alike(
     count: usize,
-    outputs: Vec<Probe>,
+    outputs: Vec<Output>,
     record_from: usize,
 ) -> (Ensemble, Plan, Vec<f64>, Options, usize) {
     let plan = Plan::new(cell(0.04)).unwrap();
@@ -22,7 +23,7 @@ fn alike(
     let options = Options { record_from, ..options(scheme, STEP, outputs) };
     let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
     let members = values(&plan).repeat(count);
-    let watch = Watch::default();
+    let watch = RunControl::default();
     let result = ensemble(&plan, &members, &drive, &options, &watch).unwrap();
     let done = watch.done.into_inner();
     (result, plan, rows, options, done)
@@ -46,7 +47,7 @@ fn members_run_without_outputs() {
 /// No member gives empty arrays.
 #[test]
 fn no_member_is_an_empty_ensemble() {
-    let (result, .., done) = alike(0, cell_probes(), 0);
+    let (result, .., done) = alike(0, cell_outputs(), 0);
     assert_eq!((result.records.len(), result.closure.len(), result.failures.len(), done), (0, 0, 0, 0));
 }
 
@@ -54,10 +55,10 @@ fn no_member_is_an_empty_ensemble() {
 #[test]
 fn a_record_after_the_end_has_no_rows() {
     for (record_from, expected) in [(STEPS, 1), (STEPS + 1, 0)] {
-        let (result, plan, rows, options, _) = alike(3, cell_probes(), record_from);
+        let (result, plan, rows, options, _) = alike(3, cell_outputs(), record_from);
         assert_eq!(options.rows(STEPS), expected);
-        assert_eq!(result.records.len(), 3 * expected * cell_probes().len());
-        assert_eq!(run(&plan, &rows, &options).records.len(), expected * cell_probes().len());
+        assert_eq!(result.records.len(), 3 * expected * cell_outputs().len());
+        assert_eq!(run(&plan, &rows, &options).records.len(), expected * cell_outputs().len());
         assert!(result.failures.is_empty() && result.closure.iter().all(|closure| *closure < 1e-12));
     }
 }

@@ -1,17 +1,18 @@
 //! Ventilation units, air from zone to zone, doors, thermal bridges, pressure tests and sun to the air.
 
 use crate::common::{Builder, facing, forcing, options, relative, run, try_run, values};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{
     Description, DirectedFlow, Door, Facing, Leakage, SetPoint, ThermalBridge, UnitFlow, VentilationUnit,
     ZoneLongwave,
 };
 use mascarin_engine::forcing::{Forcing, channel};
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::{Scheme, Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
+use mascarin_engine::{RunControl, Scheme};
 
 const STEP: f64 = 900.0;
 /// Density at 15 degC and the pressure of the standard atmosphere at 55 m, times 1006 J/(kg K) [J/(m3 K)].
@@ -79,9 +80,9 @@ fn steady(description: Description) -> (Vec<f64>, mascarin_engine::ledger::Ledge
         row[channel::AIR_TEMPERATURE] = OUTDOOR;
         row[channel::WIND_SPEED] = 0.0;
     });
-    let probes: Vec<_> = (0..plan.zones.len()).map(|zone| Probe::AirTemperature { zone }).collect();
-    let count = probes.len();
-    let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes));
+    let outputs: Vec<_> = (0..plan.zones.len()).map(|zone| Output::AirTemperature { zone }).collect();
+    let count = outputs.len();
+    let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs));
     assert!(result.ledger.closure() < 1e-12, "{}", result.ledger.closure());
     (result.records[result.records.len() - count..].to_vec(), result.ledger)
 }
@@ -235,7 +236,7 @@ fn residuals_are_rounding() {
     let plan = all_at_once();
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
         let rows = forcing(&plan, scheme, 96, STEP, weather);
-        let mut options = options(scheme, STEP, vec![Probe::AirTemperature { zone: 0 }]);
+        let mut options = options(scheme, STEP, vec![Output::AirTemperature { zone: 0 }]);
         options.residuals = true;
         let result = run(&plan, &rows, &options);
         let largest = result.counters.largest_residual.unwrap();
@@ -249,9 +250,9 @@ fn residuals_are_rounding() {
 fn slopes_are_differences() {
     let plan = all_at_once();
     let numbers = values(&plan);
-    let probes: Vec<_> = (0..3).map(|zone| Probe::AirTemperature { zone }).collect();
+    let outputs: Vec<_> = (0..3).map(|zone| Output::AirTemperature { zone }).collect();
     let (rows, options) =
-        (forcing(&plan, Scheme::Sdirk2, 48, STEP, weather), options(Scheme::Sdirk2, STEP, probes));
+        (forcing(&plan, Scheme::Sdirk2, 48, STEP, weather), options(Scheme::Sdirk2, STEP, outputs));
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let figure = |numbers: &[f64]| -> f64 {
         let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
@@ -265,7 +266,7 @@ fn slopes_are_differences() {
         }
         let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
         let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
-        let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+        let records = simulate(&plan, &duals, &drive, &options, &RunControl::default()).unwrap().records;
         let slope: f64 = records
             .iter()
             .enumerate()
@@ -300,13 +301,13 @@ fn lanes_are_scalars_with_fans() {
         one[unit] *= 0.6 + 0.1 * f64::from(member);
         numbers.extend(one);
     }
-    let options = options(Scheme::Sdirk2, STEP, vec![Probe::AirTemperature { zone: 2 }]);
+    let options = options(Scheme::Sdirk2, STEP, vec![Output::AirTemperature { zone: 2 }]);
     let rows = forcing(&plan, Scheme::Sdirk2, 48, STEP, weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let together = ensemble(&plan, &numbers, &drive, &options, &Watch::default()).unwrap();
+    let together = ensemble(&plan, &numbers, &drive, &options, &RunControl::default()).unwrap();
     let row = together.records.len() / 9;
     for (member, numbers) in numbers.chunks(width).enumerate() {
-        let alone = march(&plan, numbers, &drive, &options, &Watch::default()).unwrap();
+        let alone = simulate(&plan, numbers, &drive, &options, &RunControl::default()).unwrap();
         for (a, b) in alone.records.iter().zip(&together.records[member * row..]) {
             assert_eq!(a.to_bits(), b.to_bits(), "member {member}");
         }

@@ -8,13 +8,14 @@
 use core::f64::consts::TAU;
 
 use crate::common::{Builder, facing, forcing, options, run, set};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::Facing;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Scheme, Warmup, Watch};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::Warmup;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::{RunControl, Scheme};
 
 use crate::common::{position, values};
 
@@ -30,7 +31,7 @@ fn slab(conductivity: f64, thickness: f64, nodes: usize, coefficient: f64) -> Pl
     b.plan()
 }
 
-const OUTER: Probe = Probe::FaceTemperature { surface: 0, side: 0 };
+const OUTER: Output = Output::FaceTemperature { surface: 0, side: 0 };
 
 /// Temperatures of the outer surface after a jump of the air from 20 to 0 degC.
 fn jump(plan: &Plan, scheme: Scheme, dt: f64, steps: usize) -> Vec<f64> {
@@ -137,7 +138,7 @@ fn lanes_and_slopes_go_through_the_parts() {
     let plan = slab(0.8, 0.2, 6, 8.0);
     let (dt, steps) = (900.0, 3);
     let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| set(row, 0, 0.0));
-    let (options, watch) = (options(Scheme::Sdirk2, dt, vec![OUTER]), Watch::default());
+    let (options, watch) = (options(Scheme::Sdirk2, dt, vec![OUTER]), RunControl::default());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let alone = run(&plan, &rows, &options);
     let together = ensemble(&plan, &values(&plan).repeat(9), &drive, &options, &watch).unwrap();

@@ -9,27 +9,28 @@ use core::fmt::Write as _;
 use std::process::Command;
 
 use crate::common::assorted::{assorted_cell, assorted_weather, assorted_windows};
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, ideal_load};
-use crate::common::glazed::{glazed_probes, glazed_rooms};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather, ideal_load};
+use crate::common::glazed::{glazed_outputs, glazed_rooms};
 use crate::common::linear::{cell_of_linear_laws, linear_cell};
 use crate::common::melting::{ceiling_weather, fine_ceiling, melting, melting_weather};
 use crate::common::{
-    SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, values, weather,
+    SCHEMES, cell, cell_members, cell_outputs, cell_weather, forcing, options, values, weather,
 };
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{Description, HysteresisModel};
-use mascarin_engine::dispatch::Level;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
+use mascarin_engine::linear_model::state_space;
+use mascarin_engine::number::simd::Level;
+use mascarin_engine::number::{Dual, Lanes, Mask, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Lanes, Mask, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Run, Warmup, simulate};
 use mascarin_engine::state::Initial;
-use mascarin_engine::state_space::state_space;
 use rayon::prelude::*;
 
 #[rustfmt::skip]
@@ -304,35 +305,35 @@ struct Sample {
     /// Time of the weather at the start [h].
     start: f64,
     steps: usize,
-    probes: Vec<Probe>,
+    outputs: Vec<Output>,
     /// Whether the first hours are repeated until their end is their start.
     warm_up: bool,
 }
 
 impl Sample {
     /// From the morning to the evening.
-    fn new(name: &str, description: Description, weather: fn(f64, &mut [f64]), probes: Vec<Probe>) -> Self {
+    fn new(name: &str, description: Description, weather: fn(f64, &mut [f64]), outputs: Vec<Output>) -> Self {
         let plan = Plan::new(description).unwrap();
-        Self { name: name.to_owned(), plan, weather, start: 7.0, steps: 40, probes, warm_up: false }
+        Self { name: name.to_owned(), plan, weather, start: 7.0, steps: 40, outputs, warm_up: false }
     }
 
     fn cell() -> Self {
-        Self { warm_up: true, ..Self::new("cell", cell(0.04), cell_weather, every(cell_probes())) }
+        Self { warm_up: true, ..Self::new("cell", cell(0.04), cell_weather, every(cell_outputs())) }
     }
 
     fn linear_laws() -> Self {
-        Self::new("cell of linear laws", cell_of_linear_laws(false), cell_weather, cell_probes())
+        Self::new("cell of linear laws", cell_of_linear_laws(false), cell_weather, cell_outputs())
     }
 
     fn linear() -> Self {
-        let probes = [0, 1].map(|zone| Probe::AirTemperature { zone }).to_vec();
-        Self::new("linear cell", linear_cell(), cell_weather, probes)
+        let outputs = [0, 1].map(|zone| Output::AirTemperature { zone }).to_vec();
+        Self::new("linear cell", linear_cell(), cell_weather, outputs)
     }
 
     /// From the night to the afternoon: heating and cooling both run.
     fn conditioned() -> Self {
         let sample =
-            Self::new("conditioned cell", conditioned(0.04), conditioned_weather, conditioned_probes());
+            Self::new("conditioned cell", conditioned(0.04), conditioned_weather, conditioned_outputs());
         Self { start: 2.0, steps: 56, ..sample }
     }
 
@@ -341,7 +342,7 @@ impl Sample {
         let names = ["sun by area", "sun by shares", "sun by geometry"];
         let mut rooms = glazed_rooms().into_iter();
         names.map(|name| {
-            Self::new(&format!("glazed room, {name}"), rooms.next().unwrap(), weather, glazed_probes())
+            Self::new(&format!("glazed room, {name}"), rooms.next().unwrap(), weather, glazed_outputs())
         })
     }
 
@@ -355,12 +356,12 @@ impl Sample {
         ]
         .map(|(name, model)| {
             let description = melting(model);
-            let mut probes = vec![Probe::AirTemperature { zone: 0 }];
+            let mut outputs = vec![Output::AirTemperature { zone: 0 }];
             for surface in 0..description.surfaces.len() {
-                probes.push(Probe::LiquidFraction { surface, layer: 0 });
-                probes.push(Probe::LayerEnthalpy { surface, layer: 0 });
+                outputs.push(Output::LiquidFraction { surface, layer: 0 });
+                outputs.push(Output::LayerEnthalpy { surface, layer: 0 });
             }
-            Self { start: 0.0, steps: 48, ..Self::new(name, description, melting_weather, probes) }
+            Self { start: 0.0, steps: 48, ..Self::new(name, description, melting_weather, outputs) }
         })
     }
 
@@ -372,34 +373,34 @@ impl Sample {
             d.zones[0].heating = Some(ideal_load(&mut d, "room.heating", 22.0, 300.0));
             d.zones[0].cooling = Some(ideal_load(&mut d, "room.cooling", 24.0, 80.0));
         }
-        let probes = vec![
-            Probe::AirTemperature { zone: 0 },
-            Probe::LiquidFraction { surface: 0, layer: 0 },
-            Probe::FaceFlux { surface: 0, side: 1 },
-            Probe::CoolingLoad { zone: 0 },
+        let outputs = vec![
+            Output::AirTemperature { zone: 0 },
+            Output::LiquidFraction { surface: 0, layer: 0 },
+            Output::FaceFlux { surface: 0, side: 1 },
+            Output::CoolingLoad { zone: 0 },
         ];
         let loads = if ideal_loads { " with ideal loads" } else { "" };
         let name = format!("ceiling of gamma {gamma} in {nodes} nodes{loads}");
-        Self { start, steps, ..Self::new(&name, d, ceiling_weather, probes) }
+        Self { start, steps, ..Self::new(&name, d, ceiling_weather, outputs) }
     }
 
     fn assorted() -> [Self; 5] {
         let cell = |sky: &str, which| {
             let name = format!("assorted cell, {sky}");
-            Self::new(&name, assorted_cell(which), assorted_weather, every(conditioned_probes()))
+            Self::new(&name, assorted_cell(which), assorted_weather, every(conditioned_outputs()))
         };
         [
             cell("measured sky", 0),
             cell("Clark and Allen", 1),
             cell("Brunt", 2),
             cell("offset", 3),
-            Self::new("assorted windows", assorted_windows(), weather, glazed_probes()),
+            Self::new("assorted windows", assorted_windows(), weather, glazed_outputs()),
         ]
     }
 
     fn options(&self, scheme: Scheme) -> Options {
         let warmup = self.warm_up.then_some(Warmup { steps: 12, tolerance: 0.2, max_cycles: 200 });
-        Options { warmup, ..options(scheme, STEP, self.probes.clone()) }
+        Options { warmup, ..options(scheme, STEP, self.outputs.clone()) }
     }
 
     fn rows(&self, scheme: Scheme) -> Vec<f64> {
@@ -415,7 +416,7 @@ impl Sample {
     fn run<S: Sloped>(&self, numbers: &[S], options: &Options) -> Run<S> {
         let rows = self.rows(options.scheme);
         let drive = self.drive(&rows, options.scheme);
-        march(&self.plan, numbers, &drive, options, &Watch::default()).unwrap()
+        simulate(&self.plan, numbers, &drive, options, &RunControl::default()).unwrap()
     }
 
     /// Whether it is small enough for what takes long.
@@ -465,11 +466,11 @@ impl Sample {
 }
 
 /// Readings, and those that no other sample has.
-fn every(mut probes: Vec<Probe>) -> Vec<Probe> {
-    probes.push(Probe::LayerTemperature { surface: 4, layer: 0 });
-    probes.push(Probe::IncidentSolar { surface: 0 });
-    probes.push(Probe::SkyTemperature);
-    probes
+fn every(mut outputs: Vec<Output>) -> Vec<Output> {
+    outputs.push(Output::LayerTemperature { surface: 4, layer: 0 });
+    outputs.push(Output::IncidentSolar { surface: 0 });
+    outputs.push(Output::SkyTemperature);
+    outputs
 }
 
 // ---------------------------------------------------------------- groups of cases
@@ -582,7 +583,8 @@ fn ensembles() -> Vec<Row> {
         let drive = sample.rows(*scheme);
         let drive = sample.drive(&drive, *scheme);
         let options = sample.options(*scheme);
-        let done = ensemble(&sample.plan, &members.concat(), &drive, &options, &Watch::default()).unwrap();
+        let done =
+            ensemble(&sample.plan, &members.concat(), &drive, &options, &RunControl::default()).unwrap();
         let failed: Vec<usize> = done.failures.iter().map(|(member, _)| *member).collect();
         assert_eq!(failed, lost, "{}", sample.name);
         let (mut answers, mut rest) = (Hash::new(), Hash::new());
@@ -604,7 +606,7 @@ fn slopes_of(sample: &Sample, scheme: Scheme) -> Vec<Row> {
     if sample.small() {
         rows.push(hashed(&format!("{name}, 8 slopes"), &sample.run(&sample.sloped::<8>(), &options)));
     }
-    let (numbers, watch) = (values(&sample.plan), Watch::default());
+    let (numbers, watch) = (values(&sample.plan), RunControl::default());
     let drive = sample.rows(scheme);
     let drive = sample.drive(&drive, scheme);
 
@@ -657,7 +659,7 @@ fn slopes() -> Vec<Row> {
     let mut rows: Vec<Row> =
         all.par_iter().flat_map_iter(|(sample, scheme)| slopes_of(sample, *scheme)).collect();
     let linear = Sample::linear();
-    let matrices = state_space(&linear.plan, &values(&linear.plan), &Watch::default()).unwrap();
+    let matrices = state_space(&linear.plan, &values(&linear.plan), &RunControl::default()).unwrap();
     let (mut answers, mut rest) = (Hash::new(), Hash::new());
     for matrix in [&matrices.a, &matrices.b, &matrices.c, &matrices.d] {
         answers.numbers(matrix);

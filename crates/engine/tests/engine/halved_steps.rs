@@ -3,10 +3,10 @@
 use crate::common::conditioned::ideal_load;
 use crate::common::melting::{ceiling_weather, fine_ceiling};
 use crate::common::{forcing, options, run};
+use mascarin_engine::Scheme;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
 
 const STEP: f64 = 900.0;
 
@@ -22,7 +22,7 @@ fn loads_are_means_over_halved_steps() {
     let weather = |time, row: &mut [f64]| ceiling_weather(20.0 * 3600.0 + time, row);
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
         let rows = forcing(&plan, scheme, 60, STEP, weather);
-        let outputs = vec![Probe::HeatingLoad { zone: 0 }, Probe::CoolingLoad { zone: 0 }];
+        let outputs = vec![Output::HeatingLoad { zone: 0 }, Output::CoolingLoad { zone: 0 }];
         let run = run(&plan, &rows, &options(scheme, STEP, outputs));
         assert!(run.counters.halvings > 0, "{:?}", run.counters);
         let loads = run.records.chunks(2).skip(1);

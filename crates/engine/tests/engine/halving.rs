@@ -2,8 +2,8 @@
 
 use crate::common::difficult::steps;
 use crate::common::relative;
+use mascarin_engine::Scheme;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Scheme;
 
 /// The heating load over a step is the mean over the whole step, however often it was halved.
 #[test]

@@ -3,12 +3,13 @@
 
 use crate::common::random::{Case, Contents};
 use crate::common::{Builder, SCHEMES, facing, forcing, options, run, set, values};
+use mascarin_engine::RunControl;
 use mascarin_engine::description::{AirPath, Facing, IdealLoad, SetPoint, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
 
 const OUTDOORS: f64 = 5.0;
 /// Heat capacity of a cubic metre of air [J/(m3 K)].
@@ -108,10 +109,10 @@ fn loads_at_rest_are_those_of_the_balances() {
         for scheme in SCHEMES {
             let row = row(11, flow);
             let rows = forcing(&row.plan, scheme, 120, 3600.0, |_, row| set(row, 0, OUTDOORS));
-            let probes = (0..11)
-                .flat_map(|zone| [Probe::AirTemperature { zone }, Probe::HeatingLoad { zone }])
+            let outputs = (0..11)
+                .flat_map(|zone| [Output::AirTemperature { zone }, Output::HeatingLoad { zone }])
                 .collect();
-            let result = run(&row.plan, &rows, &options(scheme, 3600.0, probes));
+            let result = run(&row.plan, &rows, &options(scheme, 3600.0, outputs));
             let last = &result.records[result.records.len() - 22..];
             let expected = row.at_rest();
             assert!(
@@ -151,16 +152,16 @@ fn loads_are_those_of_the_responses() {
         {
             continue;
         }
-        let probes = zones.iter().flat_map(|&zone| {
-            [Probe::AirTemperature { zone }, Probe::HeatingLoad { zone }, Probe::CoolingLoad { zone }]
+        let outputs = zones.iter().flat_map(|&zone| {
+            [Output::AirTemperature { zone }, Output::HeatingLoad { zone }, Output::CoolingLoad { zone }]
         });
-        let options = mascarin_engine::march::Options { probes: probes.collect(), ..case.options() };
+        let options = mascarin_engine::run::Options { outputs: outputs.collect(), ..case.options() };
         let rows = case.rows(&plan);
         let drive = Forcing::new(&rows, case.scheme.weights().len(), plan.n_channels()).unwrap();
         let numbers = values(&plan);
-        let held = march(&plan, &numbers, &drive, &options, &Watch::default()).unwrap();
+        let held = simulate(&plan, &numbers, &drive, &options, &RunControl::default()).unwrap();
         let duals: Vec<Dual<1>> = numbers.iter().map(|&number| Dual::constant(number)).collect();
-        let direct = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap();
+        let direct = simulate(&plan, &duals, &drive, &options, &RunControl::default()).unwrap();
         if held.counters.halvings + direct.counters.halvings > 0 {
             continue;
         }

@@ -1,9 +1,9 @@
 //! Random partial cycles through every model of hysteresis and every pair of curves.
 
 use mascarin_engine::description::{HysteresisModel, MeltingCurve, ParamId, PcmLaw, Tail};
-use mascarin_engine::parameters::Values;
+use mascarin_engine::number::{Lanes, Real};
 use mascarin_engine::pcm::{PcmCoefficients, PcmMemory};
-use mascarin_engine::real::{Lanes, Real};
+use mascarin_engine::values::Values;
 
 const MODELS: [HysteresisModel; 3] =
     [HysteresisModel::CurveTrack, HysteresisModel::CurveSwitch, HysteresisModel::CurveScale];

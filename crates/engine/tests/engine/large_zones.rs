@@ -3,13 +3,13 @@
 
 use crate::common::conditioned::ideal_load;
 use crate::common::{Builder, facing, forcing, options, position, run, try_run, values, weather};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{Convection, Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Scheme, Watch};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::{RunControl, Scheme};
 
 const STEP: f64 = 900.0;
 /// Tilt, azimuth and area of the walls of a room; the last one is between it and a second room.
@@ -62,9 +62,9 @@ fn room(parts: usize, heated: bool) -> Plan {
 }
 
 /// Airs, load, and a surface of each wall of the room.
-fn probes(parts: usize) -> Vec<Probe> {
-    let surface = |wall: usize| Probe::FaceTemperature { surface: wall * parts, side: 1 };
-    let zones = (0..2).flat_map(|zone| [Probe::AirTemperature { zone }, Probe::NetLoad { zone }]);
+fn outputs(parts: usize) -> Vec<Output> {
+    let surface = |wall: usize| Output::FaceTemperature { surface: wall * parts, side: 1 };
+    let zones = (0..2).flat_map(|zone| [Output::AirTemperature { zone }, Output::NetLoad { zone }]);
     zones.chain((0..WALLS.len()).map(surface)).collect()
 }
 
@@ -77,7 +77,7 @@ fn walls_that_are_cut_into_parts_stay_as_they_are() {
             let [whole, cut] = [1, PARTS].map(|parts| {
                 let plan = room(parts, heated);
                 let rows = forcing(&plan, scheme, 24, STEP, weather);
-                let mut options = options(scheme, STEP, probes(parts));
+                let mut options = options(scheme, STEP, outputs(parts));
                 options.residuals = scheme == Scheme::Sdirk2;
                 run(&plan, &rows, &options)
             });
@@ -99,7 +99,7 @@ fn walls_that_are_cut_into_parts_stay_as_they_are() {
 fn a_large_zone_has_the_same_bits_in_lanes() {
     let plan = room(25, true);
     let rows = forcing(&plan, Scheme::Sdirk2, 8, STEP, weather);
-    let options = options(Scheme::Sdirk2, STEP, probes(25));
+    let options = options(Scheme::Sdirk2, STEP, outputs(25));
     let mut members = Vec::new();
     for member in 0..8 {
         let scale = 1.0 + 0.2 * f64::from(member);
@@ -107,7 +107,7 @@ fn a_large_zone_has_the_same_bits_in_lanes() {
         members.extend(paths.map(|one| if one.path == "factor" { one.value * scale } else { one.value }));
     }
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let pack = ensemble(&plan, &members, &drive, &options, &Watch::default()).unwrap();
+    let pack = ensemble(&plan, &members, &drive, &options, &RunControl::default()).unwrap();
     assert!(pack.failures.is_empty(), "{:?}", pack.failures);
     let count = values(&plan).len();
     for (numbers, records) in members.chunks(count).zip(pack.records.chunks(pack.records.len() / 8)) {
@@ -123,11 +123,11 @@ fn a_large_zone_has_the_same_bits_in_lanes() {
 fn derivatives_of_a_large_zone_are_those_of_its_run() {
     let plan = room(22, false);
     let rows = forcing(&plan, Scheme::Sdirk2, 6, STEP, weather);
-    let options = options(Scheme::Sdirk2, STEP, vec![Probe::AirTemperature { zone: 0 }]);
+    let options = options(Scheme::Sdirk2, STEP, vec![Output::AirTemperature { zone: 0 }]);
     let nominal = values(&plan);
     let which = ["factor", "zones.room.infiltration.constant"].map(|path| position(&plan, path));
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let found = jacobian(&plan, &nominal, &which, &drive, &options, &Watch::default()).unwrap();
+    let found = jacobian(&plan, &nominal, &which, &drive, &options, &RunControl::default()).unwrap();
     let last = found.records.len() - 1;
     for (k, &parameter) in which.iter().enumerate() {
         let step = 1e-4 * nominal[parameter];

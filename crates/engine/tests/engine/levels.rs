@@ -2,14 +2,15 @@
 
 use std::process::Command;
 
-use crate::common::{cell, cell_members, cell_probes, cell_weather, forcing, options, values};
-use mascarin_engine::batch::screening;
+use crate::common::{cell, cell_members, cell_outputs, cell_weather, forcing, options, values};
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
 use mascarin_engine::number::simd::Level;
 use mascarin_engine::plan::Plan;
+use mascarin_engine::run::ensemble::screening;
+use mascarin_engine::run::simulate;
 
 /// Says in which process the test below runs.
 const CHILD: &str = "MASCARIN_TEST_CHILD";
@@ -19,8 +20,8 @@ fn records() -> Result<Vec<u64>, EngineError> {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 24, 900.0, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let options = options(Scheme::Sdirk2, 900.0, cell_probes());
-    let run = march(&plan, &values(&plan), &drive, &options, &Watch::default())?;
+    let options = options(Scheme::Sdirk2, 900.0, cell_outputs());
+    let run = simulate(&plan, &values(&plan), &drive, &options, &RunControl::default())?;
     Ok(run.records.iter().map(|record| record.to_bits()).collect())
 }
 
@@ -29,8 +30,8 @@ fn screened() -> Result<Vec<u64>, EngineError> {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 24, 900.0, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let options = options(Scheme::Sdirk2, 900.0, cell_probes());
-    let found = screening(&plan, &cell_members(&plan, 5), &drive, &options, &Watch::default())?;
+    let options = options(Scheme::Sdirk2, 900.0, cell_outputs());
+    let found = screening(&plan, &cell_members(&plan, 5), &drive, &options, &RunControl::default())?;
     Ok(found.records.iter().map(|record| record.to_bits()).collect())
 }
 

@@ -1,10 +1,10 @@
 //! Surfaces that see no other surface of their zone.
 
 use crate::common::{Builder, forcing, options, run};
+use mascarin_engine::Scheme;
 use mascarin_engine::description::ZoneLongwave;
-use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
 
 /// Two walls that look the same way do not see each other: they exchange no long-wave radiation, as without any.
 #[test]
@@ -21,9 +21,9 @@ fn walls_that_look_the_same_way_exchange_nothing() {
         }
         let plan = Plan::new(b.describe()).unwrap();
         let rows = forcing(&plan, Scheme::Sdirk2, 48, 900.0, crate::common::weather);
-        let readings = |side| Probe::FaceTemperature { surface: 1, side };
-        let probes = vec![Probe::AirTemperature { zone: 0 }, readings(0), readings(1)];
-        run(&plan, &rows, &options(Scheme::Sdirk2, 900.0, probes)).records
+        let readings = |side| Output::FaceTemperature { surface: 1, side };
+        let outputs = vec![Output::AirTemperature { zone: 0 }, readings(0), readings(1)];
+        run(&plan, &rows, &options(Scheme::Sdirk2, 900.0, outputs)).records
     };
     let (with, without) = (solve(ZoneLongwave::Radiosity), solve(ZoneLongwave::None));
     for (with, without) in with.iter().zip(&without) {

@@ -1,13 +1,13 @@
 //! Walls of many cells, whose step is no map but two solves.
 
 use crate::common::{Builder, facing, forcing, options, run, values, weather};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::{Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Scheme, Watch};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::{RunControl, Scheme};
 
 /// A room behind a wall of one material in layers of some cells, all of one thickness.
 fn room(layers: &[usize]) -> Plan {
@@ -27,7 +27,7 @@ fn room(layers: &[usize]) -> Plan {
     b.plan()
 }
 
-const AIR: Probe = Probe::AirTemperature { zone: 0 };
+const AIR: Output = Output::AirTemperature { zone: 0 };
 const DT: f64 = 900.0;
 
 /// A finer mesh changes little: the wall with a map and the one without lie on one line of second order.
@@ -57,7 +57,7 @@ fn walls_with_and_without_a_map_agree() {
 fn lanes_and_slopes_are_those_of_a_run() {
     let plan = room(&[40, 40]);
     let rows = forcing(&plan, Scheme::Sdirk2, 8, DT, weather);
-    let (options, watch) = (options(Scheme::Sdirk2, DT, vec![AIR]), Watch::default());
+    let (options, watch) = (options(Scheme::Sdirk2, DT, vec![AIR]), RunControl::default());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let alone = run(&plan, &rows, &options);
     let together = ensemble(&plan, &values(&plan).repeat(4), &drive, &options, &watch).unwrap();

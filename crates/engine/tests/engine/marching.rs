@@ -3,16 +3,17 @@
 use crate::common::linear::cell_of_linear_laws;
 use crate::common::melting::{ceiling, ceiling_weather};
 use crate::common::{
-    ALL_SCHEMES, SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run,
+    ALL_SCHEMES, SCHEMES, cell, cell_members, cell_outputs, cell_weather, forcing, options, position, run,
     try_run, values, warmup,
 };
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
 use mascarin_engine::state::Initial;
 
 const STEP: f64 = 900.0;
@@ -24,7 +25,7 @@ fn energy_closes() {
         let plan = Plan::new(cell(gamma)).unwrap();
         for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
             let rows = forcing(&plan, scheme, 480, dt, cell_weather);
-            let result = run(&plan, &rows, &options(scheme, dt, cell_probes()));
+            let result = run(&plan, &rows, &options(scheme, dt, cell_outputs()));
             let closure = result.ledger.closure();
             assert!(closure < 1e-10, "closure {closure} with {scheme:?}, gamma {gamma}, steps of {dt} s");
             let sum: f64 = result.ledger.into.iter().sum();
@@ -58,16 +59,16 @@ fn lanes_are_scalars() {
     let width = plan.description.parameters.len();
     for scheme in ALL_SCHEMES {
         let rows = forcing(&plan, scheme, 3 * 96, STEP, cell_weather);
-        let mut options = options(scheme, STEP, cell_probes());
+        let mut options = options(scheme, STEP, cell_outputs());
         options.warmup = Some(warmup(STEP));
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
         let numbers = cell_members(&plan, 19);
-        let watch = Watch::default();
+        let watch = RunControl::default();
         let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
         let row = together.records.len() / 19;
         let (mut iterations, mut cycles) = (Vec::new(), Vec::new());
         for (member, numbers) in numbers.chunks(width).enumerate() {
-            let alone = match march(&plan, numbers, &drive, &options, &watch) {
+            let alone = match simulate(&plan, numbers, &drive, &options, &watch) {
                 Ok(alone) => alone,
                 Err(error) => {
                     // The warm-up of the paper's scheme does not converge where the melting is sharp.
@@ -117,7 +118,7 @@ fn duals_are_differences() {
         }
     }
     let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
-    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let options = options(Scheme::Sdirk2, STEP, cell_outputs());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     // One figure that all readings and times enter with different weights.
     let weight = |row: usize| 1.0 + Real::sin(0.37 * row as f64);
@@ -132,7 +133,7 @@ fn duals_are_differences() {
             .enumerate()
             .map(|(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) })
             .collect();
-        let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+        let records = simulate(&plan, &duals, &drive, &options, &RunControl::default()).unwrap().records;
         let slope = records.iter().enumerate().map(|(i, r)| scaled(i) * weight(i) * r.slope[0]).sum::<f64>()
             / records.len() as f64;
         let step = 1e-5 * if numbers[which] == 0.0 { 1.0 } else { numbers[which].abs() };
@@ -153,9 +154,9 @@ fn duals_are_differences() {
 
 /// Brings readings of enthalpy and flux to the size of temperatures.
 fn scaled(index: usize) -> f64 {
-    match cell_probes()[index % cell_probes().len()] {
-        Probe::LayerEnthalpy { .. } => 1e-7,
-        Probe::LiquidFraction { .. } => 10.0,
+    match cell_outputs()[index % cell_outputs().len()] {
+        Output::LayerEnthalpy { .. } => 1e-7,
+        Output::LiquidFraction { .. } => 10.0,
         _ => 1.0,
     }
 }
@@ -172,12 +173,12 @@ fn order_of_surfaces_does_not_matter() {
     }
     let backward = Plan::new(description).unwrap();
     let rows = forcing(&forward, Scheme::Sdirk2, 480, STEP, cell_weather);
-    let probes = vec![
-        Probe::AirTemperature { zone: 0 },
-        Probe::AirTemperature { zone: 1 },
-        Probe::Sensor { sensor: 0 },
+    let outputs = vec![
+        Output::AirTemperature { zone: 0 },
+        Output::AirTemperature { zone: 1 },
+        Output::Sensor { sensor: 0 },
     ];
-    let options = options(Scheme::Sdirk2, STEP, probes);
+    let options = options(Scheme::Sdirk2, STEP, outputs);
     let (a, b) = (run(&forward, &rows, &options), run(&backward, &rows, &options));
     for (a, b) in a.records.iter().zip(&b.records) {
         assert!((a - b).abs() < 1e-6, "{a} is not {b}");
@@ -230,7 +231,7 @@ fn not_a_number_is_no_solution() {
 fn solver_counters() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 960, STEP, cell_weather);
-    let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let mut options = options(Scheme::Sdirk2, STEP, cell_outputs());
     options.warmup = Some(warmup(STEP));
     let result = run(&plan, &rows, &options);
     assert_eq!((result.cycles, result.counters.iterations), (3, 5644));
@@ -243,7 +244,7 @@ fn linear_laws_are_eliminated_once() {
         let runs = [false, true].map(|as_power| {
             let plan = Plan::new(cell_of_linear_laws(as_power)).unwrap();
             let rows = forcing(&plan, scheme, 5 * 96, STEP, cell_weather);
-            run(&plan, &rows, &options(scheme, STEP, cell_probes()))
+            run(&plan, &rows, &options(scheme, STEP, cell_outputs()))
         });
         let [linear, as_power] = &runs;
         for (a, b) in linear.records.iter().zip(&as_power.records) {
@@ -262,15 +263,15 @@ fn lanes_of_linear_laws_have_the_bits_of_single_runs() {
     let width = plan.description.parameters.len();
     let rows = forcing(&plan, Scheme::Sdirk2, 3 * 96, STEP, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let options = options(Scheme::Sdirk2, STEP, cell_outputs());
     let mut numbers = cell_members(&plan, 11);
     numbers[4 * width + position(&plan, "materials.foam.density")] = f64::NAN;
-    let watch = Watch::default();
+    let watch = RunControl::default();
     let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
     let row = together.records.len() / 11;
     assert_eq!(together.failures.iter().map(|(member, _)| *member).collect::<Vec<_>>(), [4]);
     for (member, numbers) in numbers.chunks(width).enumerate().filter(|(member, _)| *member != 4) {
-        let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+        let alone = simulate(&plan, numbers, &drive, &options, &watch).unwrap();
         for (a, b) in alone.records.iter().zip(&together.records[member * row..]) {
             assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}");
         }
@@ -283,7 +284,7 @@ fn lanes_of_linear_laws_have_the_bits_of_single_runs() {
 fn a_start_may_be_given_cell_by_cell() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
-    let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let mut options = options(Scheme::Sdirk2, STEP, cell_outputs());
     let everywhere = run(&plan, &rows, &options);
     let (surfaces, zones) = (plan.surfaces.len(), plan.zones.len());
     let given =

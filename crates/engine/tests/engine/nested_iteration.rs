@@ -2,9 +2,9 @@
 
 use crate::common::difficult::{Step, all_steps};
 use crate::common::{try_run, values};
-use mascarin_engine::march::Options;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::Scheme;
+use mascarin_engine::run::Options;
+use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
 
 const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
@@ -16,8 +16,8 @@ fn enthalpies_are_those_of_the_temperatures() {
     for scheme in SCHEMES {
         for step in [false, true].into_iter().flat_map(|heated| all_steps(scheme, heated)) {
             let enthalpies = |initial: Initial| {
-                let probes = (0..3).map(|surface| Probe::LayerEnthalpy { surface, layer: 0 }).collect();
-                let options = Options { initial, probes, ..step.options(1) };
+                let outputs = (0..3).map(|surface| Output::LayerEnthalpy { surface, layer: 0 }).collect();
+                let options = Options { initial, outputs, ..step.options(1) };
                 try_run(&step.plan, &values(&step.plan), &step.rows, &options).unwrap()
             };
             let run = enthalpies(step.initial.clone());

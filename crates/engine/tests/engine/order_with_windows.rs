@@ -2,11 +2,11 @@
 
 use crate::common::glazed_box::glazed_box;
 use crate::common::{forcing, options, run};
+use mascarin_engine::Scheme;
 use mascarin_engine::forcing::channel;
-use mascarin_engine::march::Scheme;
+use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::Real;
+use mascarin_engine::run::outputs::Output;
 
 /// Steps [s].
 const STEPS: [f64; 6] = [3600.0, 1800.0, 900.0, 450.0, 225.0, 112.5];
@@ -22,8 +22,8 @@ fn errors(gas: bool) -> Vec<[f64; 2]> {
         let rows = forcing(&plan, Scheme::Sdirk2, 24 * each, dt, |time, row| {
             row[channel::AIR_TEMPERATURE] = 5.0 - 15.0 * Real::sin(core::f64::consts::TAU * time / 86_400.0);
         });
-        let probes = vec![Probe::AirTemperature { zone: 0 }, Probe::FaceFlux { surface: 3, side: 1 }];
-        let mut options = options(Scheme::Sdirk2, dt, probes);
+        let outputs = vec![Output::AirTemperature { zone: 0 }, Output::FaceFlux { surface: 3, side: 1 }];
+        let mut options = options(Scheme::Sdirk2, dt, outputs);
         options.record_every = each;
         run(&plan, &rows, &options).records
     };

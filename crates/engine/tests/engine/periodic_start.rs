@@ -8,13 +8,14 @@
 use core::f64::consts::TAU;
 
 use crate::common::{Builder, facing, forcing, options, position, run, set, values, warmup, weather};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::{Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Scheme, Warmup, Watch, march};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Warmup, simulate};
+use mascarin_engine::{RunControl, Scheme};
 
 const HOUR: f64 = 3600.0;
 /// Thickness of concrete and of insulation outside of it [m], and how far the start may be from the air after 400 days [K].
@@ -51,7 +52,7 @@ fn same_days(plan: &Plan, days: usize) -> Vec<f64> {
 }
 
 fn air(warmup: Option<Warmup>) -> Options {
-    Options { warmup, ..options(Scheme::Sdirk2, HOUR, vec![Probe::AirTemperature { zone: 0 }]) }
+    Options { warmup, ..options(Scheme::Sdirk2, HOUR, vec![Output::AirTemperature { zone: 0 }]) }
 }
 
 /// Houses that need up to 143 repetitions alone: at most nine, and their air is nearer to that after 400 days than with repetitions
@@ -82,8 +83,8 @@ fn the_periodic_state_of_a_thick_slab_is_found() {
     let rows = forcing(&plan, Scheme::Sdirk2, 96, 900.0, |time, row| {
         set(row, 0, 10.0 + 10.0 * (TAU * time / 86400.0).cos());
     });
-    let probes = [0, 1].map(|side| Probe::FaceTemperature { surface: 0, side });
-    let mut options = options(Scheme::Sdirk2, 900.0, probes.to_vec());
+    let outputs = [0, 1].map(|side| Output::FaceTemperature { surface: 0, side });
+    let mut options = options(Scheme::Sdirk2, 900.0, outputs.to_vec());
     options.initial = mascarin_engine::state::Initial::Everywhere(30.0);
     options.warmup = Some(Warmup { steps: 96, tolerance: 1e-3, max_cycles: 200 });
     let found = run(&plan, &rows, &options);
@@ -115,12 +116,12 @@ fn members_converge_one_by_one() {
         own[density] *= [1.0, 0.02, 3.0, 0.2, 0.5, 0.05, 2.0, 0.1][member];
         numbers.extend(own);
     }
-    let together = ensemble(&plan, &numbers, &drive, &options, &Watch::default()).unwrap();
+    let together = ensemble(&plan, &numbers, &drive, &options, &RunControl::default()).unwrap();
     assert!(together.failures.is_empty());
     let mut cycles = Vec::new();
     let records = together.records.chunks(together.records.len() / 8);
     for (own, records) in numbers.chunks(nominal.len()).zip(records) {
-        let alone = march(&plan, own, &drive, &options, &Watch::default()).unwrap();
+        let alone = simulate(&plan, own, &drive, &options, &RunControl::default()).unwrap();
         assert!(alone.records.iter().zip(records).all(|(a, b)| a.to_bits() == b.to_bits()));
         cycles.push(alone.cycles);
     }
@@ -134,7 +135,7 @@ fn members_converge_one_by_one() {
 #[test]
 fn slopes_are_those_of_the_periodic_state() {
     let plan = house([0.5, 0.1]);
-    let (rows, nominal, watch) = (same_days(&plan, 1), values(&plan), Watch::default());
+    let (rows, nominal, watch) = (same_days(&plan, 1), values(&plan), RunControl::default());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let tight = air(Some(Warmup { tolerance: 1e-10, ..warmup(HOUR) }));
     let names =

@@ -4,16 +4,17 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::common::random::{Case, Contents, Random, of_surface, of_zone, probes, reordered};
+use crate::common::random::{Case, Contents, Random, of_surface, of_zone, outputs, reordered};
 use crate::common::{relative, try_run, values};
-use mascarin_engine::batch::{ensemble, screening};
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::{ensemble, screening};
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, simulate};
 
 /// Buildings of each test, unless the environment asks for another number.
 const CASES: u64 = 40;
@@ -82,13 +83,13 @@ fn order_of_zones_and_surfaces_does_not_matter() {
             .collect();
         let (rows, options) = (case.rows(&plan), case.options());
         let first = try_run(&plan, &values(&plan), &rows, &options).map_err(|error| error.to_string())?;
-        let options = Options { probes: same, ..options };
+        let options = Options { outputs: same, ..options };
         let second = try_run(&other, &values(&other), &rows, &options).map_err(|error| error.to_string())?;
-        let probes = probes(d);
+        let outputs = outputs(d);
         let (mut temperature, mut load) = (0.0, 0.0);
         for (i, (a, b)) in first.records.iter().zip(&second.records).enumerate() {
             let difference: f64 = (a - b).abs();
-            if matches!(probes[i % probes.len()], Probe::HeatingLoad { .. } | Probe::CoolingLoad { .. }) {
+            if matches!(outputs[i % outputs.len()], Output::HeatingLoad { .. } | Output::CoolingLoad { .. }) {
                 load = f64::max(load, difference / a.abs().max(1.0));
             } else {
                 temperature = f64::max(temperature, difference);
@@ -114,13 +115,13 @@ fn members_of_an_ensemble_have_the_bits_of_single_runs() {
             let some = random.between(0.0, 0.02);
             numbers.extend(values(&plan).iter().map(|value| value * (1.0 + random.between(-some, some))));
         }
-        let (rows, options, watch) = (case.rows(&plan), case.options(), Watch::default());
+        let (rows, options, watch) = (case.rows(&plan), case.options(), RunControl::default());
         let drive = drive(&case, &plan, &rows);
         let together =
             ensemble(&plan, &numbers, &drive, &options, &watch).map_err(|error| error.to_string())?;
         let row = together.records.len() / members;
         for (member, numbers) in numbers.chunks(width).enumerate() {
-            let alone = march(&plan, numbers, &drive, &options, &watch);
+            let alone = simulate(&plan, numbers, &drive, &options, &watch);
             let failure = together.failures.iter().find(|(failed, _)| *failed == member);
             check(alone.is_err() == failure.is_some(), || {
                 format!(
@@ -152,7 +153,7 @@ fn members_in_single_precision_are_near_double_precision() {
             return Ok(());
         }
         let plan = case.plan();
-        let (rows, options, watch) = (case.rows(&plan), case.options(), Watch::default());
+        let (rows, options, watch) = (case.rows(&plan), case.options(), RunControl::default());
         let (drive, numbers) = (drive(&case, &plan, &rows), values(&plan).repeat(2));
         let [single, double] =
             [screening, ensemble].map(|run| run(&plan, &numbers, &drive, &options, &watch));
@@ -160,12 +161,12 @@ fn members_in_single_precision_are_near_double_precision() {
             (single.map_err(|error| error.to_string())?, double.map_err(|error| error.to_string())?);
         check(single.failures.len() == double.failures.len(), || "other failures".to_owned())?;
         check(single.closure.iter().all(|&closure| closure < 1e-4), || format!("{:?}", single.closure))?;
-        let probes = &options.probes;
+        let outputs = &options.outputs;
         for (i, (a, b)) in single.records.iter().zip(&double.records).enumerate() {
-            let probe = &probes[i % probes.len()];
-            let load = matches!(probe, Probe::HeatingLoad { .. } | Probe::CoolingLoad { .. });
+            let output = &outputs[i % outputs.len()];
+            let load = matches!(output, Output::HeatingLoad { .. } | Output::CoolingLoad { .. });
             let limit = if load { 0.02 * b.abs().max(500.0) } else { 0.1 };
-            check((a - b).abs() < limit, || format!("record {i}, {probe:?}: {a} in place of {b}"))?;
+            check((a - b).abs() < limit, || format!("record {i}, {output:?}: {a} in place of {b}"))?;
         }
         Ok(())
     });
@@ -182,12 +183,12 @@ fn temperatures_stay_within_imposed_temperatures() {
         let run =
             try_run(&plan, &values(&plan), &rows, &case.options()).map_err(|error| error.to_string())?;
         let [low, high] = case.imposed_range(&plan, &rows);
-        let probes = probes(&case.description);
+        let outputs = outputs(&case.description);
         for (i, &record) in run.records.iter().enumerate() {
-            let probe = &probes[i % probes.len()];
-            let temperature = !matches!(probe, Probe::HeatingLoad { .. } | Probe::CoolingLoad { .. });
+            let output = &outputs[i % outputs.len()];
+            let temperature = !matches!(output, Output::HeatingLoad { .. } | Output::CoolingLoad { .. });
             check(!temperature || (low - 1e-7..high + 1e-7).contains(&record), || {
-                format!("{record} of {probe:?} is outside {low} to {high}")
+                format!("{record} of {output:?} is outside {low} to {high}")
             })?;
         }
         let cells = run.state.cells.iter().find(|cell| !(low - 1e-7..high + 1e-7).contains(*cell));
@@ -206,12 +207,12 @@ struct Slopes {
 }
 
 fn slopes(case: &Case, plan: &Plan, rows: &[f64], random: &mut Random) -> Result<Slopes, String> {
-    let (numbers, watch) = (values(plan), Watch::default());
+    let (numbers, watch) = (values(plan), RunControl::default());
     let (options, drive) = (case.options(), drive(case, plan, rows));
     let trajectory = Trajectory::new(plan, &numbers, &drive, &options, &watch, 1 << 30);
     let trajectory = trajectory.map_err(|error| error.to_string())?;
     let records = &trajectory.run.records;
-    let (count, width) = (records.len(), options.probes.len());
+    let (count, width) = (records.len(), options.outputs.len());
     // Among the later ones, which the parameters had time to change.
     let record = count - 1 - random.below(count / 3);
     let mut weights = vec![0.0; count];
@@ -302,7 +303,7 @@ fn slopes_lie_between_differences(first_seed: u64, steps: usize) {
         let (plan, mut random) = (case.plan(), Random::new(seed ^ 0xd1ff));
         let (rows, numbers) = (case.rows(&plan), values(&plan));
         let found = slopes(&case, &plan, &rows, &mut random)?;
-        let reading = found.record % probes(&case.description).len();
+        let reading = found.record % outputs(&case.description).len();
         let load = reading < 4 * case.description.zones.len() && reading % 4 > 1;
         for (&which, &slope) in found.which.iter().zip(&found.forward) {
             let parameter = &plan.description.parameters[which];

@@ -2,16 +2,16 @@
 
 use crate::common::conditioned::{ideal_load, number};
 use crate::common::{ALL_SCHEMES, Builder, facing, forcing, options, run, values, weather};
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
 use mascarin_engine::description::{
     Construction, Convection, Description, Facing, Gap, Gas, Glazing, Pane, PaneOptics, ParamId, Side,
     ZoneLongwave,
 };
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Watch;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
 
 /// Of one shape: a front of eight and one of seven, beside the rooms at the ends.
 pub const ROOMS: usize = 17;
@@ -129,18 +129,18 @@ fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
         let plan = row(loads, storing);
         for scheme in ALL_SCHEMES {
             let rows = forcing(&plan, scheme, 96, STEP, weather);
-            let probes =
-                (0..ROOMS).flat_map(|zone| [Probe::AirTemperature { zone }, Probe::NetLoad { zone }]);
+            let outputs =
+                (0..ROOMS).flat_map(|zone| [Output::AirTemperature { zone }, Output::NetLoad { zone }]);
             let surfaces = (0..plan.description.surfaces.len())
-                .flat_map(|surface| [0, 1].map(|side| Probe::FaceTemperature { surface, side }));
-            let options = options(scheme, STEP, probes.chain(surfaces).collect());
+                .flat_map(|surface| [0, 1].map(|side| Output::FaceTemperature { surface, side }));
+            let options = options(scheme, STEP, outputs.chain(surfaces).collect());
             let alone = run(&plan, &rows, &options);
             assert!(alone.ledger.closure() < 1e-12, "{}", alone.ledger.closure());
             let heat = [Flow::Heating, Flow::Cooling].map(|flow| alone.ledger.into[flow as usize]);
             assert_eq!(heat.map(|heat| heat != 0.0), [loads; 2], "{heat:?} J");
             let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
             let members = values(&plan).repeat(8);
-            let pack = ensemble(&plan, &members, &drive, &options, &Watch::default()).unwrap();
+            let pack = ensemble(&plan, &members, &drive, &options, &RunControl::default()).unwrap();
             assert!(pack.failures.is_empty(), "{:?}", pack.failures);
             for (i, (a, b)) in alone.records.iter().zip(&pack.records).enumerate() {
                 assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: number {i}, {scheme:?}");

@@ -1,53 +1,54 @@
 //! Ensembles in single precision: how near they are to double precision, and what their members depend on.
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
-use crate::common::glazed::{glazed_probes, glazed_rooms};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather};
+use crate::common::glazed::{glazed_outputs, glazed_rooms};
 use crate::common::linear::linear_cell;
 use crate::common::melting::{melting, melting_weather};
 use crate::common::{
-    cell, cell_members, cell_probes, cell_weather, forcing, options, position, values, warmup, weather,
+    cell, cell_members, cell_outputs, cell_weather, forcing, options, position, values, warmup, weather,
 };
 use crate::rooms_side_by_side::{ROOMS, row};
-use mascarin_engine::batch::{Ensemble, ensemble, screening};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Scheme, Warmup, Watch};
 use mascarin_engine::number::simd::Level;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::ensemble::{Ensemble, ensemble, screening};
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Warmup};
+use mascarin_engine::{RunControl, Scheme};
 
 const STEP: f64 = 900.0;
 const DAYS: usize = 6;
 
 /// A building with its weather, run in both precisions.
 struct Both {
-    probes: Vec<Probe>,
+    outputs: Vec<Output>,
     single: Ensemble,
     double: Ensemble,
 }
 
 impl Both {
-    fn new(plan: &Plan, weather: fn(f64, &mut [f64]), probes: Vec<Probe>, scheme: Scheme) -> Self {
+    fn new(plan: &Plan, weather: fn(f64, &mut [f64]), outputs: Vec<Output>, scheme: Scheme) -> Self {
         let rows = forcing(plan, scheme, DAYS * 96, STEP, weather);
-        let options = Options { warmup: Some(warmup(STEP)), ..options(scheme, STEP, probes.clone()) };
+        let options = Options { warmup: Some(warmup(STEP)), ..options(scheme, STEP, outputs.clone()) };
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
         let mut numbers = values(plan).repeat(5);
         for (k, number) in numbers.iter_mut().enumerate() {
             // Up to 0.6 % less.
             *number *= 1.0 - 1e-3 * (k % 7) as f64;
         }
-        let run = |run: fn(&Plan, &[f64], &Forcing<'_>, &Options, &Watch) -> _| {
-            let found: Result<Ensemble, _> = run(plan, &numbers, &drive, &options, &Watch::default());
+        let run = |run: fn(&Plan, &[f64], &Forcing<'_>, &Options, &RunControl) -> _| {
+            let found: Result<Ensemble, _> = run(plan, &numbers, &drive, &options, &RunControl::default());
             found.unwrap()
         };
-        Self { probes, single: run(screening), double: run(ensemble) }
+        Self { outputs, single: run(screening), double: run(ensemble) }
     }
 
     /// Root mean square and largest difference of the outputs that are chosen.
-    fn apart(&self, chosen: impl Fn(&Probe) -> bool) -> [f64; 2] {
+    fn apart(&self, chosen: impl Fn(&Output) -> bool) -> [f64; 2] {
         let of = |found: &Ensemble| -> Vec<f64> {
-            let records = found.records.iter().zip(self.probes.iter().cycle());
-            records.filter(|(_, probe)| chosen(probe)).map(|(record, _)| *record).collect()
+            let records = found.records.iter().zip(self.outputs.iter().cycle());
+            records.filter(|(_, output)| chosen(output)).map(|(record, _)| *record).collect()
         };
         let differences: Vec<f64> =
             of(&self.single).iter().zip(of(&self.double)).map(|(a, b)| a - b).collect();
@@ -65,30 +66,30 @@ impl Both {
 }
 
 /// A building, its weather and its outputs.
-type Building = (&'static str, Plan, fn(f64, &mut [f64]), Vec<Probe>);
+type Building = (&'static str, Plan, fn(f64, &mut [f64]), Vec<Output>);
 
-fn is_air(probe: &Probe) -> bool {
-    matches!(probe, Probe::AirTemperature { .. })
+fn is_air(output: &Output) -> bool {
+    matches!(output, Output::AirTemperature { .. })
 }
 
 /// Phase change, radiation and convection that are not linear, ideal loads, windows, hysteresis: airs within 0.01 K.
 #[test]
 fn airs_are_within_a_hundredth_of_a_kelvin() {
-    let airs = |zones: usize| (0..zones).map(|zone| Probe::AirTemperature { zone }).collect::<Vec<_>>();
+    let airs = |zones: usize| (0..zones).map(|zone| Output::AirTemperature { zone }).collect::<Vec<_>>();
     let plan = |description: Description| Plan::new(description).unwrap();
     let buildings: [Building; 8] = [
-        ("cell", plan(cell(1.0)), cell_weather, cell_probes()),
-        ("sharp", plan(cell(0.04)), cell_weather, cell_probes()),
+        ("cell", plan(cell(1.0)), cell_weather, cell_outputs()),
+        ("sharp", plan(cell(0.04)), cell_weather, cell_outputs()),
         ("linear", plan(linear_cell()), cell_weather, airs(1)),
-        ("loads", plan(conditioned(0.5)), conditioned_weather, conditioned_probes()),
-        ("glass", plan(glazed_rooms().swap_remove(0)), weather, glazed_probes()),
+        ("loads", plan(conditioned(0.5)), conditioned_weather, conditioned_outputs()),
+        ("glass", plan(glazed_rooms().swap_remove(0)), weather, glazed_outputs()),
         ("hysteresis", plan(melting(None)), melting_weather, airs(1)),
         ("rooms", row(false, false), weather, airs(ROOMS)),
         ("rooms with loads", row(true, true), weather, airs(ROOMS)),
     ];
-    for (name, plan, weather, probes) in buildings {
+    for (name, plan, weather, outputs) in buildings {
         for scheme in [Scheme::Sdirk2, Scheme::LinearlyImplicit] {
-            let both = Both::new(&plan, weather, probes.clone(), scheme);
+            let both = Both::new(&plan, weather, outputs.clone(), scheme);
             assert!(both.single.failures.is_empty() && both.double.failures.is_empty(), "{name}");
             let [rms, most] = both.apart(is_air);
             assert!(rms < 4e-3 && most < 0.03, "{name}, {scheme:?}: {rms} K, at most {most} K");
@@ -103,15 +104,15 @@ fn airs_are_within_a_hundredth_of_a_kelvin() {
 #[test]
 fn loads_are_near_those_in_double_precision() {
     let plan = Plan::new(conditioned(0.5)).unwrap();
-    let both = Both::new(&plan, conditioned_weather, conditioned_probes(), Scheme::Sdirk2);
-    let is_load = |probe: &Probe| matches!(probe, Probe::HeatingLoad { .. } | Probe::CoolingLoad { .. });
+    let both = Both::new(&plan, conditioned_weather, conditioned_outputs(), Scheme::Sdirk2);
+    let is_load = |output: &Output| matches!(output, Output::HeatingLoad { .. } | Output::CoolingLoad { .. });
     let [rms, _] = both.apart(is_load);
     let largest = both
         .double
         .records
         .iter()
-        .zip(both.probes.iter().cycle())
-        .filter(|(_, probe)| is_load(probe))
+        .zip(both.outputs.iter().cycle())
+        .filter(|(_, output)| is_load(output))
         .fold(0.0_f64, |most, (record, _)| most.max(record.abs()));
     assert!(largest > 100.0 && rms < 2e-3 * largest, "{rms} W of {largest} W");
 }
@@ -122,10 +123,10 @@ fn members_do_not_depend_on_their_neighbours() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let options = options(Scheme::Sdirk2, STEP, cell_outputs());
     let members = cell_members(&plan, 19);
     let width = values(&plan).len();
-    let run = |numbers: &[f64]| screening(&plan, numbers, &drive, &options, &Watch::default()).unwrap();
+    let run = |numbers: &[f64]| screening(&plan, numbers, &drive, &options, &RunControl::default()).unwrap();
     let all = run(&members);
     let row = all.records.len() / 19;
     for (first, last) in [(0, 1), (3, 5), (7, 18), (18, 19)] {
@@ -150,10 +151,10 @@ fn members_that_do_not_close_are_run_in_double_precision() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let rows = forcing(&plan, scheme, 96, STEP, cell_weather);
     let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
-    let options = options(scheme, STEP, cell_probes());
+    let options = options(scheme, STEP, cell_outputs());
     let members = cell_members(&plan, 4);
-    let [single, double] =
-        [screening, ensemble].map(|run| run(&plan, &members, &drive, &options, &Watch::default()).unwrap());
+    let [single, double] = [screening, ensemble]
+        .map(|run| run(&plan, &members, &drive, &options, &RunControl::default()).unwrap());
     assert!(double.closure.iter().all(|&closure| closure > 1e-4));
     assert_eq!(single.records, double.records);
     assert_eq!(single.closure, double.closure);
@@ -174,10 +175,10 @@ fn members_that_do_not_become_periodic_fail_alone() {
     }
     let warmup = |max_cycles| Some(Warmup { max_cycles, ..warmup(STEP) });
     let of =
-        |max_cycles| Options { warmup: warmup(max_cycles), ..options(Scheme::Sdirk2, STEP, cell_probes()) };
+        |max_cycles| Options { warmup: warmup(max_cycles), ..options(Scheme::Sdirk2, STEP, cell_outputs()) };
     for run in [ensemble, screening] {
         let run = |max_cycles, members: &[f64]| {
-            run(&plan, members, &drive, &of(max_cycles), &Watch::default()).unwrap()
+            run(&plan, members, &drive, &of(max_cycles), &RunControl::default()).unwrap()
         };
         let all = run(200, &members);
         assert!(all.failures.is_empty());

@@ -2,16 +2,17 @@
 
 use crate::common::difficult::{all_steps, jumps};
 use crate::common::glazed_box::glazed_box;
-use crate::common::{Builder, cell, cell_probes, cell_weather, forcing, options, position, set, values};
+use crate::common::{Builder, cell, cell_outputs, cell_weather, forcing, options, position, set, values};
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{Description, IdealLoad, SetPoint, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, simulate};
 
 const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
 
@@ -19,10 +20,10 @@ const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
 fn both(plan: &Plan, rows: &[f64], options: &Options, path: &str) -> Vec<[f64; 2]> {
     let (numbers, which) = (values(plan), position(plan, path));
     let drive = Forcing::new(rows, options.scheme.weights().len(), plan.n_channels()).unwrap();
-    let along = jacobian(plan, &numbers, &[which], &drive, options, &Watch::default()).unwrap().slopes;
+    let along = jacobian(plan, &numbers, &[which], &drive, options, &RunControl::default()).unwrap().slopes;
     let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
     let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
-    let iterated = march(plan, &duals, &drive, options, &Watch::default()).unwrap().records;
+    let iterated = simulate(plan, &duals, &drive, options, &RunControl::default()).unwrap().records;
     along.into_iter().zip(iterated).map(|(along, iterated)| [along, iterated.slope[0]]).collect()
 }
 
@@ -45,7 +46,7 @@ fn heated(mut d: Description) -> Plan {
 }
 
 fn heated_options(scheme: Scheme, dt: f64) -> Options {
-    options(scheme, dt, vec![Probe::AirTemperature { zone: 0 }, Probe::HeatingLoad { zone: 0 }])
+    options(scheme, dt, vec![Output::AirTemperature { zone: 0 }, Output::HeatingLoad { zone: 0 }])
 }
 
 /// A heated zone behind walls that melt within 1 K, in jumping weather.
@@ -100,8 +101,9 @@ fn slopes_across_nested_stages() {
             let (plan, numbers) = (&step.plan, values(&step.plan));
             let (options, which) = (step.options(1), position(plan, "tarp.factor"));
             let drive = Forcing::new(&step.rows, scheme.weights().len(), plan.n_channels()).unwrap();
-            let slopes = jacobian(plan, &numbers, &[which], &drive, &options, &Watch::default()).unwrap();
-            let slope = slopes.slopes[options.probes.len()];
+            let slopes =
+                jacobian(plan, &numbers, &[which], &drive, &options, &RunControl::default()).unwrap();
+            let slope = slopes.slopes[options.outputs.len()];
             let quotient = |h: f64| {
                 let at = |change: f64| {
                     let mut numbers = numbers.clone();
@@ -129,7 +131,7 @@ fn slopes_in_reverse_do_not_depend_on_memory() {
     for scheme in SCHEMES {
         let melting = Plan::new(cell(1.0)).unwrap();
         let rows = forcing(&melting, scheme, 96, 900.0, cell_weather);
-        same_slopes(&melting, &rows, &options(scheme, 900.0, cell_probes()));
+        same_slopes(&melting, &rows, &options(scheme, 900.0, cell_outputs()));
         let glazed = heated(glazed_box(true));
         let rows = forcing(&glazed, scheme, 48, 900.0, |time, row| {
             jumps(time, 900.0, row);
@@ -140,7 +142,7 @@ fn slopes_in_reverse_do_not_depend_on_memory() {
 }
 
 fn same_slopes(plan: &Plan, rows: &[f64], options: &Options) {
-    let (numbers, watch) = (values(plan), Watch::default());
+    let (numbers, watch) = (values(plan), RunControl::default());
     let drive = Forcing::new(rows, options.scheme.weights().len(), plan.n_channels()).unwrap();
     let slopes = |bytes: usize| {
         let run = Trajectory::new(plan, &numbers, &drive, options, &watch, bytes).unwrap();

@@ -1,15 +1,16 @@
 //! Runs that are taken on step by step.
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather};
 use crate::common::melting::{melting, melting_weather};
 use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
+use mascarin_engine::Scheme;
 use mascarin_engine::description::HysteresisModel;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Scheme};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::stepwise::StepByStep;
+use mascarin_engine::run::Options;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::stepwise::StepByStep;
 
 const STEP: f64 = 900.0;
 const STEPS: usize = 96;
@@ -37,11 +38,11 @@ fn cases(scheme: Scheme) -> Vec<(Plan, Vec<f64>, Options)> {
     for warmup in [None, Some(warmup(STEP))] {
         let plan = Plan::new(conditioned(0.04)).unwrap();
         let rows = forcing(&plan, scheme, STEPS, STEP, conditioned_weather);
-        found.push((plan, rows, Options { warmup, ..options(scheme, STEP, conditioned_probes()) }));
+        found.push((plan, rows, Options { warmup, ..options(scheme, STEP, conditioned_outputs()) }));
         let plan = Plan::new(melting(Some(HysteresisModel::CurveTrack))).unwrap();
         let rows = forcing(&plan, scheme, STEPS, STEP, melting_weather);
-        let probes = vec![Probe::AirTemperature { zone: 0 }, Probe::FaceFlux { surface: 0, side: 1 }];
-        found.push((plan, rows, Options { warmup, ..options(scheme, STEP, probes) }));
+        let outputs = vec![Output::AirTemperature { zone: 0 }, Output::FaceFlux { surface: 0, side: 1 }];
+        found.push((plan, rows, Options { warmup, ..options(scheme, STEP, outputs) }));
     }
     found
 }
@@ -74,8 +75,8 @@ fn steps_are_those_of_a_run() {
             records(&mut second, &rows[..7 * row], stages, channels);
             second.restore(&saved).unwrap();
             let rest = records(&mut second, &rows[half * row..], stages, channels);
-            let probes = options.probes.len();
-            assert_eq!(bits(&rest[probes..]), bits(&whole.records[(half + 1) * probes..]));
+            let outputs = options.outputs.len();
+            assert_eq!(bits(&rest[outputs..]), bits(&whole.records[(half + 1) * outputs..]));
 
             // What is not such a state changes nothing.
             let kept = second.save();
@@ -93,7 +94,7 @@ fn weather_of_another_shape_is_refused() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
     let (channels, numbers) = (plan.n_channels(), values(&plan));
     let rows = forcing(&plan, Scheme::Sdirk2, 2, STEP, conditioned_weather);
-    let options = options(Scheme::Sdirk2, STEP, conditioned_probes());
+    let options = options(Scheme::Sdirk2, STEP, conditioned_outputs());
     let all = Forcing::new(&rows, 2, channels).unwrap();
     let mut run = StepByStep::start(&plan, &numbers, &options, &all, &all).unwrap();
     let narrow = Forcing::new(&rows[..2 * (channels - 1)], 2, channels - 1).unwrap();

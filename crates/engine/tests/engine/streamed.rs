@@ -1,19 +1,20 @@
 //! Runs that hand their records over in blocks.
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather};
 use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
+use mascarin_engine::RunControl;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Watch, march_streamed};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, simulate_in_blocks};
 
 const STEP: f64 = 900.0;
 const STEPS: usize = 96;
 
 /// Records of the sun that is absorbed are averaged on request only.
-fn probes() -> Vec<Probe> {
-    [conditioned_probes(), vec![Probe::AbsorbedSolar { surface: 0, side: 0 }]].concat()
+fn outputs() -> Vec<Output> {
+    [conditioned_outputs(), vec![Output::AbsorbedSolar { surface: 0, side: 0 }]].concat()
 }
 
 /// The blocks have the rows that were asked for, the last one what is left, and together the bits of a run.
@@ -27,11 +28,11 @@ fn blocks_are_the_records_of_a_run() {
         for (warmup, record_every, rows) in
             [(None, 1, 10), (Some(warmup(STEP)), 1, 97), (None, 3, 1), (None, 1, usize::MAX)]
         {
-            let options = Options { warmup, record_every, ..options(scheme, STEP, probes()) };
+            let options = Options { warmup, record_every, ..options(scheme, STEP, outputs()) };
             let whole = run(&plan, &weather, &options);
             let mut blocks: Vec<Vec<f64>> = Vec::new();
-            let watch = Watch::default();
-            let streamed = march_streamed(&plan, &numbers, &drive, &options, &watch, rows, |block| {
+            let watch = RunControl::default();
+            let streamed = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, rows, |block| {
                 blocks.push(block);
                 Ok(())
             })
@@ -39,7 +40,7 @@ fn blocks_are_the_records_of_a_run() {
             let total = options.rows(STEPS);
             let expected = total.div_ceil(rows.min(total));
             assert_eq!(blocks.len(), expected);
-            let width = rows.min(total) * options.probes.len();
+            let width = rows.min(total) * options.outputs.len();
             assert!(blocks[..expected - 1].iter().all(|block| block.len() == width));
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             assert_eq!(bits(&blocks.concat()), bits(&whole.records));
@@ -53,13 +54,13 @@ fn blocks_are_the_records_of_a_run() {
 /// A block that is not taken ends the run.
 #[test]
 fn a_refused_block_ends_the_run() {
-    let options = options(ALL_SCHEMES[0], STEP, probes());
+    let options = options(ALL_SCHEMES[0], STEP, outputs());
     let plan = Plan::new(conditioned(0.04)).unwrap();
     let weather = forcing(&plan, options.scheme, STEPS, STEP, conditioned_weather);
     let (numbers, stages) = (values(&plan), options.scheme.weights().len());
     let drive = Forcing::new(&weather, stages, plan.n_channels()).unwrap();
-    let (watch, mut taken) = (Watch::default(), 0);
-    let ended = march_streamed(&plan, &numbers, &drive, &options, &watch, 10, |_| {
+    let (watch, mut taken) = (RunControl::default(), 0);
+    let ended = simulate_in_blocks(&plan, &numbers, &drive, &options, &watch, 10, |_| {
         taken += 1;
         if taken < 3 { Ok(()) } else { Err(EngineError::Interrupted) }
     });

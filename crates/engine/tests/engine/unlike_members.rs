@@ -5,17 +5,18 @@
 
 use std::process::Command;
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather};
 use crate::common::difficult::{jumps, sharp};
-use crate::common::glazed::{glazed_probes, glazed_rooms};
-use crate::common::random::{Case, Contents, Random, probes};
+use crate::common::glazed::{glazed_outputs, glazed_rooms};
+use crate::common::random::{Case, Contents, Random, outputs};
 use crate::common::{ALL_SCHEMES, forcing, options, try_run, values, warmup, weather};
 use crate::rooms_side_by_side::row;
-use mascarin_engine::batch::{Ensemble, ensemble, screening};
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::march::{Options, Scheme, Warmup, Watch};
 use mascarin_engine::number::simd::Level;
 use mascarin_engine::plan::Plan;
+use mascarin_engine::run::ensemble::{Ensemble, ensemble, screening};
+use mascarin_engine::run::{Options, Warmup};
+use mascarin_engine::{RunControl, Scheme};
 
 /// Says in which process a test runs, and with which vector registers.
 const CHILD: &str = "MASCARIN_TEST_UNLIKE";
@@ -60,7 +61,7 @@ impl Building {
         let drive =
             Forcing::new(&self.rows, self.options.scheme.weights().len(), self.plan.n_channels()).unwrap();
         let run = if single { screening } else { ensemble };
-        run(&self.plan, &numbers, &drive, &self.options, &Watch::default()).unwrap()
+        run(&self.plan, &numbers, &drive, &self.options, &RunControl::default()).unwrap()
     }
 
     /// Records of each member in a pack of others, in its place of `order`, as bits; none where it failed.
@@ -141,28 +142,28 @@ fn made_buildings(count: usize) -> Vec<Building> {
             let plan = Plan::new(conditioned(0.04)).unwrap();
             let rows = forcing(&plan, scheme, warmup(dt).steps + 16, dt, conditioned_weather);
             let options =
-                Options { warmup: Some(short_warmup(dt)), ..options(scheme, dt, conditioned_probes()) };
+                Options { warmup: Some(short_warmup(dt)), ..options(scheme, dt, conditioned_outputs()) };
             all.push(Building::new(format!("conditioned, {scheme:?}"), plan, (rows, options), count, 0.2));
         }
         for description in glazed_rooms() {
             let plan = Plan::new(description).unwrap();
             let rows = forcing(&plan, scheme, 24, 3600.0, weather);
             let given =
-                Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, glazed_probes()) };
+                Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, glazed_outputs()) };
             all.push(Building::new(format!("glazed, {scheme:?}"), plan, (rows, given), count, 0.1));
         }
         let plan = row(true, true);
         let rows = forcing(&plan, scheme, 24, 3600.0, weather);
-        let probes = probes(&plan.description);
-        let given = Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, probes) };
+        let outputs = outputs(&plan.description);
+        let given = Options { warmup: Some(short_warmup(3600.0)), ..options(scheme, 3600.0, outputs) };
         all.push(Building::new(format!("row, {scheme:?}"), plan, (rows, given), count, 0.1));
     }
     for (width, nodes, heated) in [(1e-3, 6, true), (0.1, 8, false), (1.0, 4, true)] {
         let plan = Plan::new(sharp(width, 0.006, nodes, heated)).unwrap();
         let dt = 3600.0;
         let rows = forcing(&plan, Scheme::Sdirk2, 24, dt, |time, row| jumps(time, dt, row));
-        let probes = probes(&plan.description);
-        let given = options(Scheme::Sdirk2, dt, probes);
+        let outputs = outputs(&plan.description);
+        let given = options(Scheme::Sdirk2, dt, outputs);
         all.push(Building::new(format!("sharp {width} K"), plan, (rows, given), count, 0.05));
     }
     all

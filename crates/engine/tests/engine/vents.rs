@@ -1,17 +1,18 @@
 //! Openings that pressure drives air through, and their controls.
 
 use crate::common::{Builder, facing, forcing, options, position, run, values};
-use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::{Trajectory, jacobian};
 use mascarin_engine::description::{
     Band, Facing, Gain, Vent, VentControl, WindOnVent, WindPressure, ZoneLongwave,
 };
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::march::{Run, Scheme, Watch};
+use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::Real;
+use mascarin_engine::run::Run;
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
+use mascarin_engine::{RunControl, Scheme};
 
 const GRAVITY: f64 = 9.806_65;
 const DISCHARGE: f64 = 0.6;
@@ -77,8 +78,8 @@ fn flows(plan: &Plan, inside: f64, outdoor: f64, wind: f64) -> Vec<[f64; 2]> {
         (row[channel::AIR_TEMPERATURE], row[channel::WIND_SPEED]) = (outdoor, wind);
     });
     let vents = 0..plan.description.vents.len();
-    let probes = vents.flat_map(|vent| [Probe::VentOutflow { vent }, Probe::VentInflow { vent }]);
-    let mut options = options(Scheme::BackwardEuler, 60.0, probes.collect());
+    let outputs = vents.flat_map(|vent| [Output::VentOutflow { vent }, Output::VentInflow { vent }]);
+    let mut options = options(Scheme::BackwardEuler, 60.0, outputs.collect());
     options.initial = Initial::Everywhere(inside);
     let records = run(plan, &rows, &options).records;
     let (pairs, _) = records.as_chunks();
@@ -200,8 +201,8 @@ fn mass_balances_in_many_zones() {
         let air = (0..count).map(|_| 15.0 + 15.0 * next()).collect();
         let rows = forcing(&plan, Scheme::BackwardEuler, 1, 60.0, |_, row| row[channel::WIND_SPEED] = 5.0);
         let vents = 0..plan.description.vents.len();
-        let probes = vents.flat_map(|vent| [Probe::VentOutflow { vent }, Probe::VentInflow { vent }]);
-        let mut options = options(Scheme::BackwardEuler, 60.0, probes.collect());
+        let outputs = vents.flat_map(|vent| [Output::VentOutflow { vent }, Output::VentInflow { vent }]);
+        let mut options = options(Scheme::BackwardEuler, 60.0, outputs.collect());
         options.initial = Initial::Given {
             cells: vec![20.0; plan.n_cells],
             surfaces: vec![20.0; plan.surfaces.len()],
@@ -263,19 +264,19 @@ fn day(time: f64, row: &mut [f64]) {
     row[channel::WIND_DIRECTION] = 150.0 + 60.0 * Real::sin(angle);
 }
 
-fn probes() -> Vec<Probe> {
+fn outputs() -> Vec<Output> {
     vec![
-        Probe::AirTemperature { zone: 0 },
-        Probe::AirTemperature { zone: 1 },
-        Probe::VentInflow { vent: 0 },
-        Probe::AirChanges { zone: 1 },
-        Probe::ControlOpen { control: 0 },
+        Output::AirTemperature { zone: 0 },
+        Output::AirTemperature { zone: 1 },
+        Output::VentInflow { vent: 0 },
+        Output::AirChanges { zone: 1 },
+        Output::ControlOpen { control: 0 },
     ]
 }
 
 fn of_day(plan: &Plan, scheme: Scheme, steps: usize) -> Run<f64> {
     let dt = 86400.0 / steps as f64;
-    run(plan, &forcing(plan, scheme, steps, dt, day), &options(scheme, dt, probes()))
+    run(plan, &forcing(plan, scheme, steps, dt, day), &options(scheme, dt, outputs()))
 }
 
 /// The energy balance closes and contains the flow; the control opens and closes.
@@ -323,9 +324,10 @@ fn minimum_times() {
             row[channel::AIR_TEMPERATURE] = if step.rem_euclid(2.0) < 0.5 { 21.0 } else { 19.0 };
             row[channel::WIND_SPEED] = if (step - storm).abs() < 0.5 { 8.0 } else { 2.0 };
         });
-        let options = options(scheme, dt, vec![Probe::ControlOpen { control: 0 }]);
+        let options = options(scheme, dt, vec![Output::ControlOpen { control: 0 }]);
         let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
-        let run = mascarin_engine::march::march(&plan, numbers, &drive, &options, &Watch::default()).unwrap();
+        let run =
+            mascarin_engine::run::simulate(&plan, numbers, &drive, &options, &RunControl::default()).unwrap();
         // The first row is the start, at which it decides as in the first step.
         assert_eq!(run.records[0], run.records[1]);
         run.records[1..].iter().map(|&open: &f64| open > 0.5).collect()
@@ -353,8 +355,8 @@ fn steady_heat_by_stack() {
     b.description.zones[0].gains.push(Gain { name: "heater".to_owned(), power, radiative, schedule: None });
     let plan = b.plan();
     let rows = forcing(&plan, Scheme::Sdirk2, 400, 900.0, |_, row| row[channel::AIR_TEMPERATURE] = 10.0);
-    let probes = vec![Probe::AirTemperature { zone: 0 }, Probe::VentOutflow { vent: 1 }];
-    let result = run(&plan, &rows, &options(Scheme::Sdirk2, 900.0, probes));
+    let outputs = vec![Output::AirTemperature { zone: 0 }, Output::VentOutflow { vent: 1 }];
+    let result = run(&plan, &rows, &options(Scheme::Sdirk2, 900.0, outputs));
     let [air, flow] = result.records[result.records.len() - 2..] else { panic!() };
     near(HEAT * flow * (air - 10.0), 500.0, 1e-5);
     near(flow, DISCHARGE * 0.1 * (2.0 * GRAVITY * (288.15 / 283.15 - 288.15 / (air + 273.15))).sqrt(), 1e-5);
@@ -369,7 +371,7 @@ fn flows_are_of_first_order() {
     let at = |steps: usize| {
         let dt = 3600.0 / steps as f64;
         let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| row[channel::AIR_TEMPERATURE] = 12.0);
-        let mut options = options(Scheme::Sdirk2, dt, vec![Probe::AirTemperature { zone: 0 }]);
+        let mut options = options(Scheme::Sdirk2, dt, vec![Output::AirTemperature { zone: 0 }]);
         options.initial = Initial::Everywhere(26.0);
         *run(&plan, &rows, &options).records.last().unwrap()
     };
@@ -394,12 +396,12 @@ fn lanes_have_the_bits_of_single_runs() {
     let (scheme, dt) = (Scheme::Sdirk2, 900.0);
     let rows = forcing(&plan, scheme, 96, dt, day);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let options = options(scheme, dt, probes());
-    let all = ensemble(&plan, &members, &drive, &options, &Watch::default()).unwrap();
+    let options = options(scheme, dt, outputs());
+    let all = ensemble(&plan, &members, &drive, &options, &RunControl::default()).unwrap();
     let size = all.records.len() / 9;
     for member in 0..9 {
         let own = &members[member * width..(member + 1) * width];
-        let alone = ensemble(&plan, own, &drive, &options, &Watch::default()).unwrap();
+        let alone = ensemble(&plan, own, &drive, &options, &RunControl::default()).unwrap();
         let same = all.records[member * size..].iter().zip(&alone.records);
         assert!(same.clone().all(|(a, b)| a.to_bits() == b.to_bits()), "member {member}");
         assert!(same.count() == size && all.closure[member] < 1e-12);
@@ -417,8 +419,8 @@ fn derivatives() {
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
         let rows = forcing(&plan, scheme, 72, 1200.0, day);
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
-        let options = options(scheme, 1200.0, probes());
-        let watch = Watch::default();
+        let options = options(scheme, 1200.0, outputs());
+        let watch = RunControl::default();
         let trajectory = Trajectory::new(&plan, &numbers, &drive, &options, &watch, 1 << 30).unwrap();
         let weights: Vec<f64> =
             (0..trajectory.run.records.len()).map(|i| Real::sin(0.37 * i as f64)).collect();
@@ -434,8 +436,9 @@ fn derivatives() {
             let sum = |step: f64| {
                 let mut numbers = numbers.clone();
                 numbers[which] *= 1.0 + step;
-                let records =
-                    mascarin_engine::march::march(&plan, &numbers, &drive, &options, &watch).unwrap().records;
+                let records = mascarin_engine::run::simulate(&plan, &numbers, &drive, &options, &watch)
+                    .unwrap()
+                    .records;
                 records.iter().zip(&weights).map(|(record, weight)| record * weight).sum::<f64>()
             };
             let difference = (sum(1e-5) - sum(-1e-5)) / (2e-5 * numbers[which]);

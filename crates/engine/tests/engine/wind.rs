@@ -1,14 +1,15 @@
 //! Which walls are windward.
 
 use crate::common::{Builder, facing, forcing, options, position, set, values};
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Convection, Exposure, Facing, OutdoorLongwave};
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
 
 /// Orientations of walls and winds [deg].
 const ANGLES: usize = 24;
@@ -36,8 +37,8 @@ fn walls() -> Plan {
     b.plan()
 }
 
-fn probes() -> Vec<Probe> {
-    (0..ANGLES).map(|surface| Probe::FaceTemperature { surface, side: 0 }).collect()
+fn outputs() -> Vec<Output> {
+    (0..ANGLES).map(|surface| Output::FaceTemperature { surface, side: 0 }).collect()
 }
 
 /// A wind from each direction in turn, a step each.
@@ -54,9 +55,9 @@ fn winds(plan: &Plan) -> Vec<f64> {
 fn a_wind_along_a_wall_is_windward() {
     let plan = walls();
     let rows = winds(&plan);
-    let options = options(Scheme::BackwardEuler, 1.0, probes());
+    let options = options(Scheme::BackwardEuler, 1.0, outputs());
     let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
-    let run = march(&plan, &values(&plan), &drive, &options, &Watch::default()).unwrap();
+    let run = simulate(&plan, &values(&plan), &drive, &options, &RunControl::default()).unwrap();
     // The first row is the state at the start.
     for (direction, records) in run.records.chunks(ANGLES).skip(1).enumerate() {
         for (wall, surface) in records.iter().enumerate() {
@@ -82,7 +83,7 @@ fn a_wind_along_a_wall_is_windward() {
 fn ties_are_the_same_in_lanes_and_derivatives() {
     let plan = walls();
     let rows = winds(&plan);
-    let options = options(Scheme::BackwardEuler, 1.0, probes());
+    let options = options(Scheme::BackwardEuler, 1.0, outputs());
     let drive = Forcing::new(&rows, 1, plan.n_channels()).unwrap();
     let numbers = values(&plan);
     let mut members = Vec::new();
@@ -94,13 +95,13 @@ fn ties_are_the_same_in_lanes_and_derivatives() {
         }
         members.extend(member);
     }
-    let watch = Watch::default();
+    let watch = RunControl::default();
     let together = ensemble(&plan, &members, &drive, &options, &watch).unwrap();
     let size = together.records.len() / 8;
     for (k, member) in members.chunks(numbers.len()).enumerate() {
-        let alone = march(&plan, member, &drive, &options, &watch).unwrap();
+        let alone = simulate(&plan, member, &drive, &options, &watch).unwrap();
         let duals: Vec<Dual<1>> = member.iter().map(|&number| Dual::constant(number)).collect();
-        let duals = march(&plan, &duals, &drive, &options, &watch).unwrap();
+        let duals = simulate(&plan, &duals, &drive, &options, &watch).unwrap();
         let lanes = &together.records[k * size..(k + 1) * size];
         for ((alone, lane), dual) in alone.records.iter().zip(lanes).zip(&duals.records) {
             assert_eq!(alone.to_bits(), lane.to_bits());

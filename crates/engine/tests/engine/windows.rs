@@ -1,16 +1,17 @@
 //! Rooms with windows, frames and shades: energy balance, lanes, derivatives, order.
 
-use crate::common::glazed::{glazed, glazed_probes, glazed_rooms};
+use crate::common::glazed::{glazed, glazed_outputs, glazed_rooms};
 use crate::common::{facing, forcing, options, position, run, try_run, values, warmup, weather};
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{Facing, Glazing, ZoneSun};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
 
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
@@ -21,7 +22,7 @@ fn energy_closes_with_windows() {
         let plan = Plan::new(description).unwrap();
         for scheme in SCHEMES {
             let rows = forcing(&plan, scheme, 192, STEP, weather);
-            let result = run(&plan, &rows, &options(scheme, STEP, glazed_probes()));
+            let result = run(&plan, &rows, &options(scheme, STEP, glazed_outputs()));
             assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
             let sums: Vec<f64> = (0..10)
                 .map(|k| result.records.chunks(10).skip(1).map(|record| record[k]).sum::<f64>() * STEP)
@@ -56,15 +57,15 @@ fn lanes_are_scalars_with_windows() {
             numbers.extend(one);
         }
         let rows = forcing(&plan, Scheme::Sdirk2, 2 * 96, STEP, weather);
-        let mut options = options(Scheme::Sdirk2, STEP, glazed_probes());
+        let mut options = options(Scheme::Sdirk2, STEP, glazed_outputs());
         options.warmup = Some(warmup(STEP));
         let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-        let watch = Watch::default();
+        let watch = RunControl::default();
         let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
         assert!(together.failures.is_empty(), "{:?}", together.failures);
         let row = together.records.len() / 11;
         for (member, numbers) in numbers.chunks(width).enumerate() {
-            let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+            let alone = simulate(&plan, numbers, &drive, &options, &watch).unwrap();
             for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
                 assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}, reading {i}");
             }
@@ -80,7 +81,7 @@ fn duals_are_differences_with_windows() {
         let plan = Plan::new(description).unwrap();
         let numbers = values(&plan);
         let rows = forcing(&plan, Scheme::Sdirk2, 60, STEP, weather);
-        let options = options(Scheme::Sdirk2, STEP, glazed_probes());
+        let options = options(Scheme::Sdirk2, STEP, glazed_outputs());
         let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
         let scale = |i: usize| if i % 10 < 5 { 1.0 } else { 0.01 };
         let weight = |i: usize| scale(i) * (1.0 + Real::sin(0.37 * i as f64));
@@ -96,7 +97,7 @@ fn duals_are_differences_with_windows() {
             }
             let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
             let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
-            let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+            let records = simulate(&plan, &duals, &drive, &options, &RunControl::default()).unwrap().records;
             let slope: f64 = records.iter().enumerate().map(|(i, r)| weight(i) * r.slope[0]).sum();
             let step = 1e-5 * numbers[which].abs().max(1e-3);
             let shifted = |sign: f64| {
@@ -120,12 +121,12 @@ fn order_of_faces_does_not_matter() {
         let readings = |order| {
             let plan = Plan::new(glazed(sun.clone(), order)).unwrap();
             let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, weather);
-            let probes = vec![
-                Probe::AirTemperature { zone: 0 },
-                Probe::FaceTemperature { surface: 6, side: 1 },
-                Probe::ZoneLostSolar { zone: 0 },
+            let outputs = vec![
+                Output::AirTemperature { zone: 0 },
+                Output::FaceTemperature { surface: 6, side: 1 },
+                Output::ZoneLostSolar { zone: 0 },
             ];
-            run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes)).records
+            run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs)).records
         };
         let (one, other) = (readings([0, 1, 2, 3, 4, 5]), readings([3, 5, 0, 4, 2, 1]));
         for (i, (a, b)) in one.iter().zip(&other).enumerate() {

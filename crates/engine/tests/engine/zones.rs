@@ -1,16 +1,17 @@
 //! Zones with ideal loads, gains, ventilation, openings and paths: loads, lanes, derivatives, energy balance.
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, ideal_load, number};
+use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_weather, ideal_load, number};
 use crate::common::{Builder, facing, forcing, options, position, relative, run, try_run, values, warmup};
-use mascarin_engine::batch::ensemble;
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Watch, march};
+use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::run::ensemble::ensemble;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::simulate;
 
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
@@ -21,12 +22,12 @@ fn energy_closes_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 480, STEP, conditioned_weather);
-        let result = run(&plan, &rows, &options(scheme, STEP, conditioned_probes()));
+        let result = run(&plan, &rows, &options(scheme, STEP, conditioned_outputs()));
         assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
         let into = |flow: Flow| result.ledger.into[flow as usize];
         assert!(into(Flow::Interzone).abs() < 1e-12 * result.ledger.total_exchanged);
         assert!(into(Flow::Heating) > 0.0 && into(Flow::Cooling) < 0.0 && into(Flow::Gains) > 0.0);
-        let width = conditioned_probes().len();
+        let width = conditioned_outputs().len();
         let (mut held, mut full, mut off, mut cooled) = (0, 0, 0, 0);
         for record in result.records.chunks(width).skip(1) {
             let (air, heating, cooling) = (record[0], record[10], record[11]);
@@ -75,15 +76,15 @@ fn lanes_are_scalars_with_plants() {
     }
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 2 * 96, STEP, conditioned_weather);
-        let mut options = options(scheme, STEP, conditioned_probes());
+        let mut options = options(scheme, STEP, conditioned_outputs());
         options.warmup = Some(warmup(STEP));
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
-        let watch = Watch::default();
+        let watch = RunControl::default();
         let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
         assert!(together.failures.is_empty(), "{:?}", together.failures);
         let row = together.records.len() / 11;
         for (member, numbers) in numbers.chunks(width).enumerate() {
-            let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+            let alone = simulate(&plan, numbers, &drive, &options, &watch).unwrap();
             for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
                 assert_eq!(
                     a.to_bits(),
@@ -102,9 +103,9 @@ fn duals_are_differences_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
     let numbers = values(&plan);
     let rows = forcing(&plan, Scheme::Sdirk2, 40, STEP, conditioned_weather);
-    let options = options(Scheme::Sdirk2, STEP, conditioned_probes());
+    let options = options(Scheme::Sdirk2, STEP, conditioned_outputs());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let size = conditioned_probes().len();
+    let size = conditioned_outputs().len();
     let scale = |i: usize| {
         if i % size >= 10 && (i % size - 10) % 3 < 2 { 0.01 } else { f64::from(u8::from(i % size != 8)) }
     };
@@ -122,7 +123,7 @@ fn duals_are_differences_with_plants() {
         }
         let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
         let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
-        let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+        let records = simulate(&plan, &duals, &drive, &options, &RunControl::default()).unwrap().records;
         let slope: f64 = records.iter().enumerate().map(|(i, r)| weight(i) * r.slope[0]).sum();
         let step = 1e-5 * numbers[which].abs().max(1e-3);
         let shifted = |sign: f64| {
@@ -163,18 +164,18 @@ fn order_of_zones_and_surfaces_does_not_matter() {
     let backward = Plan::new(description).unwrap();
     let readings = |plan: &Plan, zones: [usize; 2]| {
         let rows = forcing(plan, Scheme::Sdirk2, 192, STEP, conditioned_weather);
-        let probes = zones
+        let outputs = zones
             .into_iter()
             .flat_map(|zone| {
                 [
-                    Probe::AirTemperature { zone },
-                    Probe::MeanRadiantTemperature { zone },
-                    Probe::HeatingLoad { zone },
-                    Probe::CoolingLoad { zone },
+                    Output::AirTemperature { zone },
+                    Output::MeanRadiantTemperature { zone },
+                    Output::HeatingLoad { zone },
+                    Output::CoolingLoad { zone },
                 ]
             })
             .collect();
-        run(plan, &rows, &options(Scheme::Sdirk2, STEP, probes)).records
+        run(plan, &rows, &options(Scheme::Sdirk2, STEP, outputs)).records
     };
     let (one, other) = (readings(&forward, [0, 1]), readings(&backward, [1, 0]));
     for (i, (a, b)) in one.iter().zip(&other).enumerate() {
@@ -205,8 +206,8 @@ fn coupled_loads_by_hand() {
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     let plan = Plan::new(d).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 20 * 96, STEP, |_, row| row[0] = 5.0);
-    let probes = vec![Probe::HeatingLoad { zone: 0 }, Probe::CoolingLoad { zone: 1 }];
-    let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes));
+    let outputs = vec![Output::HeatingLoad { zone: 0 }, Output::CoolingLoad { zone: 1 }];
+    let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs));
     let across = (12.0 / (0.1 / 0.2 + 2.0 / 4.0) + 0.02 * 1.2 * 1006.0) * 4.0;
     let fresh = 40.0 / 3600.0 * 1.2 * 1006.0 * 17.0;
     let [a, b] = [result.records[result.records.len() - 2], result.records[result.records.len() - 1]];

@@ -236,7 +236,7 @@ impl<S: Real> Curve<S> {
 
     /// Temperatures between which the compact curve rises [degC].
     #[inline(always)]
-    fn support(&self) -> [S; 2] {
+    pub(super) fn support(&self) -> [S; 2] {
         let [low, high] = match &self.shape {
             Shape::Tanh(_) => [-3.453_377_389_324_276_5, 3.453_377_389_324_276_5],
             Shape::Gaussian => [-3.090_232_306_167_813, 3.090_232_306_167_813],

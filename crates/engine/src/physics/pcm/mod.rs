@@ -8,6 +8,7 @@
 //! `rho_s/rho_l` and conducts `k_l rho_l/rho_s` over the thickness as built. With one density this is the paper's eq. 2.
 
 mod curve;
+mod evaluate;
 mod hysteresis;
 mod normal;
 mod segments;
@@ -21,6 +22,7 @@ use hysteresis::{FAR, Hysteresis};
 use table::{Table, TablePoint};
 
 pub use curve::CUT;
+pub use evaluate::LiquidFraction;
 pub(crate) use hysteresis::REMEMBERED;
 pub use hysteresis::{PcmMemory, reversed};
 

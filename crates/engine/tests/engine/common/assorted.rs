@@ -5,7 +5,7 @@ use mascarin_engine::description::{
     SetPoint, Sky, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
-use mascarin_engine::real::Real;
+use mascarin_engine::number::Real;
 
 use super::conditioned::{conditioned, conditioned_weather, number};
 use super::glazed::glazed;

@@ -3,9 +3,9 @@
 use mascarin_engine::description::{
     AirPath, Description, Gain, IdealLoad, Opening, ParamId, Parameter, SetPoint, Ventilation,
 };
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
 
-use super::{cell, cell_probes, cell_weather, set};
+use super::{cell, cell_outputs, cell_weather, set};
 
 /// Adds a parameter.
 pub fn number(description: &mut Description, path: &str, value: f64) -> ParamId {
@@ -74,12 +74,12 @@ pub fn conditioned_weather(time: f64, row: &mut [f64]) {
 }
 
 /// Readings of the cell, and the loads and the air changes of both zones.
-pub fn conditioned_probes() -> Vec<Probe> {
-    let mut probes = cell_probes();
+pub fn conditioned_outputs() -> Vec<Output> {
+    let mut outputs = cell_outputs();
     for zone in 0..2 {
-        probes.push(Probe::HeatingLoad { zone });
-        probes.push(Probe::CoolingLoad { zone });
-        probes.push(Probe::AirChanges { zone });
+        outputs.push(Output::HeatingLoad { zone });
+        outputs.push(Output::CoolingLoad { zone });
+        outputs.push(Output::AirChanges { zone });
     }
-    probes
+    outputs
 }

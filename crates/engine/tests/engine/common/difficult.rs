@@ -2,15 +2,15 @@
 
 #![allow(dead_code, reason = "every test program uses its own part")]
 
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{
     Convection, Description, IdealLoad, MeltingCurve, PcmLaw, SetPoint, ZoneLongwave,
 };
 use mascarin_engine::forcing::channel;
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Run};
+use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::Real;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Run};
 use mascarin_engine::state::Initial;
 
 use crate::common::{Builder, forcing, options, set, try_run, values, weather};
@@ -73,7 +73,7 @@ impl Step {
     /// Options of the step cut into equal parts.
     pub fn options(&self, parts: usize) -> Options {
         let initial = self.initial.clone();
-        Options { initial, ..options(self.scheme, self.dt / parts as f64, probes()) }
+        Options { initial, ..options(self.scheme, self.dt / parts as f64, outputs()) }
     }
 
     /// Whether Newton's iteration alone did not solve it.
@@ -88,10 +88,10 @@ impl Step {
 }
 
 /// What is recorded.
-pub fn probes() -> Vec<Probe> {
-    let surface = |surface| Probe::FaceTemperature { surface, side: 1 };
-    let liquid = |surface| Probe::LiquidFraction { surface, layer: 0 };
-    let zone = [Probe::AirTemperature { zone: 0 }, Probe::HeatingLoad { zone: 0 }];
+pub fn outputs() -> Vec<Output> {
+    let surface = |surface| Output::FaceTemperature { surface, side: 1 };
+    let liquid = |surface| Output::LiquidFraction { surface, layer: 0 };
+    let zone = [Output::AirTemperature { zone: 0 }, Output::HeatingLoad { zone: 0 }];
     zone.into_iter().chain((0..3).map(surface)).chain((0..3).map(liquid)).collect()
 }
 
@@ -123,7 +123,7 @@ fn first_steps(scheme: Scheme, heated: bool, count: usize) -> Vec<Step> {
         let rows = forcing(&plan, scheme, count, dt, |time, row| jumps(time, dt, row));
         let mut initial = Initial::Everywhere(20.0);
         for (step, rows) in rows.chunks(rows.len() / count).enumerate() {
-            let options = Options { initial: initial.clone(), ..options(scheme, dt, probes()) };
+            let options = Options { initial: initial.clone(), ..options(scheme, dt, outputs()) };
             let run = try_run(&plan, &values(&plan), rows, &options).unwrap();
             let state = &run.state;
             let next = Initial::Given {

@@ -4,7 +4,7 @@ use mascarin_engine::description::{
     Construction, Description, FrameShare, Gap, Gas, Glazing, Material, Pane, PaneOptics, ParamId, Side,
     Surface, ZoneLongwave, ZoneSun,
 };
-use mascarin_engine::probe::Probe;
+use mascarin_engine::run::outputs::Output;
 
 use super::Builder;
 use super::conditioned::number;
@@ -159,17 +159,17 @@ pub fn glazed_rooms() -> Vec<Description> {
 }
 
 /// Readings that see the windows, the frame and the room.
-pub fn glazed_probes() -> Vec<Probe> {
+pub fn glazed_outputs() -> Vec<Output> {
     vec![
-        Probe::AirTemperature { zone: 0 },
-        Probe::FaceTemperature { surface: 6, side: 0 },
-        Probe::FaceTemperature { surface: 6, side: 1 },
-        Probe::FaceTemperature { surface: 8, side: 1 },
-        Probe::FaceTemperature { surface: 4, side: 1 },
-        Probe::IncidentSolar { surface: 6 },
-        Probe::TransmittedSolar { surface: 6 },
-        Probe::TransmittedSolar { surface: 7 },
-        Probe::ZoneTransmittedSolar { zone: 0 },
-        Probe::ZoneLostSolar { zone: 0 },
+        Output::AirTemperature { zone: 0 },
+        Output::FaceTemperature { surface: 6, side: 0 },
+        Output::FaceTemperature { surface: 6, side: 1 },
+        Output::FaceTemperature { surface: 8, side: 1 },
+        Output::FaceTemperature { surface: 4, side: 1 },
+        Output::IncidentSolar { surface: 6 },
+        Output::TransmittedSolar { surface: 6 },
+        Output::TransmittedSolar { surface: 7 },
+        Output::ZoneTransmittedSolar { zone: 0 },
+        Output::ZoneLostSolar { zone: 0 },
     ]
 }

@@ -3,7 +3,7 @@
 use mascarin_engine::description::{
     Description, Facing, HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail, ZoneLongwave,
 };
-use mascarin_engine::real::Real;
+use mascarin_engine::number::Real;
 
 use super::{Builder, cell_weather, facing, set};
 

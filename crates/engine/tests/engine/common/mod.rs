@@ -11,6 +11,8 @@ pub mod linear;
 pub mod melting;
 pub mod random;
 
+use mascarin_engine::RunControl;
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{
     Clouds, Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer,
     Material, MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky,
@@ -18,11 +20,10 @@ use mascarin_engine::description::{
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
-use mascarin_engine::march::Scheme;
-use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
+use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::Real;
+use mascarin_engine::run::outputs::Output;
+use mascarin_engine::run::{Options, Run, Warmup, simulate};
 use mascarin_engine::state::Initial;
 
 /// All schemes.
@@ -362,13 +363,13 @@ pub fn weather(time: f64, row: &mut [f64]) {
 }
 
 /// A run of given steps from 20 degC, recording everything asked for.
-pub fn options(scheme: Scheme, dt: f64, probes: Vec<Probe>) -> Options {
+pub fn options(scheme: Scheme, dt: f64, outputs: Vec<Output>) -> Options {
     Options {
         dt,
         scheme,
         initial: Initial::Everywhere(20.0),
         warmup: None,
-        probes,
+        outputs,
         record_from: 0,
         record_every: 1,
         residuals: false,
@@ -395,7 +396,7 @@ pub fn try_run(
     options: &Options,
 ) -> Result<Run<f64>, EngineError> {
     let forcing = Forcing::new(rows, nodes(options.scheme).len(), plan.n_channels()).unwrap();
-    march(plan, values, &forcing, options, &Watch::default())
+    simulate(plan, values, &forcing, options, &RunControl::default())
 }
 
 /// A number in units of another.
@@ -486,18 +487,18 @@ pub fn cell_weather(time: f64, row: &mut [f64]) {
 }
 
 /// Readings that see every part of the cell.
-pub fn cell_probes() -> Vec<Probe> {
+pub fn cell_outputs() -> Vec<Output> {
     vec![
-        Probe::AirTemperature { zone: 0 },
-        Probe::AirTemperature { zone: 1 },
-        Probe::MeanRadiantTemperature { zone: 0 },
-        Probe::FaceTemperature { surface: 6, side: 0 },
-        Probe::FaceFlux { surface: 5, side: 1 },
-        Probe::InterfaceTemperature { surface: 5, interface: 1 },
-        Probe::LayerFlux { surface: 0, layer: 1 },
-        Probe::LiquidFraction { surface: 5, layer: 0 },
-        Probe::LayerEnthalpy { surface: 5, layer: 0 },
-        Probe::Sensor { sensor: 0 },
+        Output::AirTemperature { zone: 0 },
+        Output::AirTemperature { zone: 1 },
+        Output::MeanRadiantTemperature { zone: 0 },
+        Output::FaceTemperature { surface: 6, side: 0 },
+        Output::FaceFlux { surface: 5, side: 1 },
+        Output::InterfaceTemperature { surface: 5, interface: 1 },
+        Output::LayerFlux { surface: 0, layer: 1 },
+        Output::LiquidFraction { surface: 5, layer: 0 },
+        Output::LayerEnthalpy { surface: 5, layer: 0 },
+        Output::Sensor { sensor: 0 },
     ]
 }
 

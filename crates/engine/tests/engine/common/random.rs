@@ -4,17 +4,17 @@
 
 use core::f64::consts::TAU;
 
+use mascarin_engine::Scheme;
 use mascarin_engine::description::{
     AirPath, Construction, Convection, Description, DiffuseSky, Exposure, Facing, FrameShare, Gain, Gap, Gas,
     Glazing, HysteresisModel, IdealLoad, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
     ParamId, Parameter, PcmLaw, SetPoint, Side, Sky, TablePoints, Tail, Ventilation, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
-use mascarin_engine::march::Options;
-use mascarin_engine::march::Scheme;
+use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::probe::Probe;
-use mascarin_engine::real::Real;
+use mascarin_engine::run::Options;
+use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
 
 use crate::common::{Builder, LayerOf, facing, forcing, options, set, weather};
@@ -132,11 +132,11 @@ impl Case {
         set(row, IRRADIANCE, f64::max(300.0 * Real::cos(TAU * (hour - 12.3) / 24.0), 0.0));
     }
 
-    /// Options of the run; [`Case::probes`] are recorded.
+    /// Options of the run; [`Case::outputs`] are recorded.
     pub fn options(&self) -> Options {
         Options {
             initial: Initial::Everywhere(self.start),
-            ..options(self.scheme, self.dt, probes(&self.description))
+            ..options(self.scheme, self.dt, outputs(&self.description))
         }
     }
 
@@ -164,24 +164,24 @@ impl Case {
 }
 
 /// Readings of all zones, then of all surfaces.
-pub fn probes(description: &Description) -> Vec<Probe> {
+pub fn outputs(description: &Description) -> Vec<Output> {
     let zones = (0..description.zones.len()).flat_map(of_zone);
     zones.chain((0..description.surfaces.len()).flat_map(of_surface)).collect()
 }
 
 /// Readings of a zone: two temperatures, two loads.
-pub fn of_zone(zone: usize) -> [Probe; 4] {
+pub fn of_zone(zone: usize) -> [Output; 4] {
     [
-        Probe::AirTemperature { zone },
-        Probe::MeanRadiantTemperature { zone },
-        Probe::HeatingLoad { zone },
-        Probe::CoolingLoad { zone },
+        Output::AirTemperature { zone },
+        Output::MeanRadiantTemperature { zone },
+        Output::HeatingLoad { zone },
+        Output::CoolingLoad { zone },
     ]
 }
 
 /// Readings of a surface: two temperatures.
-pub fn of_surface(surface: usize) -> [Probe; 2] {
-    [Probe::FaceTemperature { surface, side: 0 }, Probe::FaceTemperature { surface, side: 1 }]
+pub fn of_surface(surface: usize) -> [Output; 2] {
+    [Output::FaceTemperature { surface, side: 0 }, Output::FaceTemperature { surface, side: 1 }]
 }
 
 /// The same building with other numbers of zones and surfaces: `zones[k]` is the old number of the new zone k.

@@ -1,5 +1,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
-    mascarin_fuzz::march(data);
+    mascarin_fuzz::simulate(data);
 });

@@ -3,20 +3,20 @@
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
-use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
 use crate::run::output_limits::require_limits;
 use crate::run::outputs::Output;
+use crate::run::simulate::{Run, simulate_observed};
 use crate::step::control::RunControl;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
-/// Runs a plan at a parameter vector as [`march`](crate::run::march::march), and gives `take` the records in blocks of `rows` rows, the
+/// Runs a plan at a parameter vector as [`simulate`](crate::run::simulate::simulate), and gives `take` the records in blocks of `rows` rows, the
 /// last one with what is left. The records of the finished run are empty.
 ///
 /// # Errors
-/// Those of `march`, and those of `take`, which end the run.
-pub fn march_streamed(
+/// Those of `simulate`, and those of `take`, which end the run.
+pub fn simulate_in_blocks(
     plan: &Plan,
     parameters: &[f64],
     forcing: &Forcing<'_>,
@@ -26,25 +26,25 @@ pub fn march_streamed(
     mut take: impl FnMut(Vec<f64>) -> Result<(), EngineError>,
 ) -> Result<Run<f64>, EngineError> {
     options.check(plan, parameters.len(), forcing)?;
-    let probes = &options.probes;
+    let outputs = &options.outputs;
     // The blocks are the only records.
-    let bare = Options { probes: Vec::new(), ..options.clone() };
+    let bare = Options { outputs: Vec::new(), ..options.clone() };
     let mut stepper = Stepper::new(plan, parameters, options.scheme);
-    if probes.iter().any(Output::averages_absorbed_sun) {
+    if outputs.iter().any(Output::averages_absorbed_sun) {
         stepper.average_absorbed_sun();
     }
     let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
     let weather = Weather::for_single_run(plan, forcing, repeated);
     let rows = rows.clamp(1, options.rows(forcing.steps()).max(1));
     let (mut block, mut filled) = (Vec::new(), 0);
-    let run = march_observed(stepper, &weather, &bare, control, |stepper, state, action| {
+    let run = simulate_observed(stepper, &weather, &bare, control, |stepper, state, action| {
         if action.row(options).is_none() {
             return Ok(());
         }
-        block.reserve(if filled == 0 { rows * probes.len() } else { 0 });
+        block.reserve(if filled == 0 { rows * outputs.len() } else { 0 });
         let step = stepper.readings();
-        block.extend(probes.iter().map(|output| output.read(plan, &step, state)));
-        require_limits(plan, probes, &block[block.len() - probes.len()..], action.step())?;
+        block.extend(outputs.iter().map(|output| output.read(plan, &step, state)));
+        require_limits(plan, outputs, &block[block.len() - outputs.len()..], action.step())?;
         filled += 1;
         if filled < rows {
             return Ok(());

@@ -6,7 +6,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use mascarin_bench::Case;
 
-fn march(criterion: &mut Criterion) {
+fn simulate(criterion: &mut Criterion) {
     let folder =
         std::env::var_os("MASCARIN_BENCH_CASES").expect("MASCARIN_BENCH_CASES: the folder with the cases");
     let cases = Case::read_all(&PathBuf::from(folder));
@@ -29,6 +29,6 @@ criterion_group! {
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(3))
         .without_plots();
-    targets = march
+    targets = simulate
 }
 criterion_main!(benches);

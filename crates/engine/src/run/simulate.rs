@@ -46,7 +46,7 @@ pub struct Run<S: Real> {
 /// # Errors
 /// [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`], [`EngineError::Impossible`], [`EngineError::Interrupted`],
 /// [`EngineError::Input`].
-pub fn march<S: Real>(
+pub fn simulate<S: Real>(
     plan: &Plan,
     parameters: &[S],
     forcing: &Forcing<'_>,
@@ -55,24 +55,20 @@ pub fn march<S: Real>(
 ) -> Result<Run<S>, EngineError> {
     options.check(plan, parameters.len(), forcing)?;
     let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
-    march_in(plan, parameters, &Weather::for_single_run(plan, forcing, repeated), options, control)
+    simulate_in(plan, parameters, &Weather::for_single_run(plan, forcing, repeated), options, control)
 }
 
 /// Runs a plan at a parameter vector in a weather that many runs share. What [`Options::check`] checks must hold.
-pub(crate) fn march_in<S: Real>(
+pub(crate) fn simulate_in<S: Real>(
     plan: &Plan,
     parameters: &[S],
     weather: &Weather<'_>,
     options: &Options,
     control: &RunControl,
 ) -> Result<Run<S>, EngineError> {
-    march_observed(
-        Stepper::new(plan, parameters, options.scheme),
-        weather,
-        options,
-        control,
-        |_, _, _| Ok(()),
-    )
+    simulate_observed(Stepper::new(plan, parameters, options.scheme), weather, options, control, |_, _, _| {
+        Ok(())
+    })
 }
 
 /// Lets a stepper find what the options ask for beside the results of every run.
@@ -80,13 +76,13 @@ pub(super) fn prepare<S: Real>(stepper: &mut Stepper<'_, S>, options: &Options) 
     if options.residuals {
         stepper.evaluate_residuals();
     }
-    if options.probes.iter().any(Output::averages_absorbed_sun) {
+    if options.outputs.iter().any(Output::averages_absorbed_sun) {
         stepper.average_absorbed_sun();
     }
 }
 
 /// Runs a stepper; `observe` is called with each action and the state after it.
-pub(crate) fn march_observed<'a, S: Real>(
+pub(crate) fn simulate_observed<'a, S: Real>(
     mut stepper: Stepper<'a, S>,
     weather: &Weather<'_>,
     options: &Options,
@@ -99,7 +95,7 @@ pub(crate) fn march_observed<'a, S: Real>(
     let mut state = stepper.begin(&options.initial, weather.row(0, 0));
     let (cycles, warm_up_change) =
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
-    let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
+    let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.outputs.len());
     let mut ledger = Ledger::new();
     let mut limits = PhysicalLimits::new(&state, options.scheme);
     for action in Action::all(weather.steps(), options) {
@@ -110,8 +106,8 @@ pub(crate) fn march_observed<'a, S: Real>(
         limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
         if action.row(options).is_some() {
             let step = stepper.readings();
-            records.extend(options.probes.iter().map(|output| output.read(plan, &step, &state)));
-            judge_records(&mut stepper, &options.probes, &records, action.step())?;
+            records.extend(options.outputs.iter().map(|output| output.read(plan, &step, &state)));
+            judge_records(&mut stepper, &options.outputs, &records, action.step())?;
         }
         observe(&stepper, &state, action)?;
     }

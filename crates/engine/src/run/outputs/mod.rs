@@ -1,0 +1,301 @@
+//! What a run records: the table of all outputs. All that is said of an output anywhere follows from its row.
+
+mod row;
+mod values;
+
+use serde::Deserialize;
+
+use crate::building::ids::SurfaceId;
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::number::real::Real;
+use crate::physics::globe::globe_temperature;
+use crate::physics::psychrometrics::{dew_point, relative_humidity, wet_bulb};
+use crate::step::readings::Readings;
+use crate::step::state::State;
+
+use row::{At, Place, outputs, require};
+pub use row::{Entry, Of, Row, Time};
+use values::{
+    interface_temperature, layer_flux, layer_mean, mean_radiant, sensor_temperature, solar_transmittance,
+    transmitted,
+};
+
+outputs! {
+    /// Temperature of the air.
+    AirTemperature { zone } =
+        Row::state(Of::Zone, "ZONE.air_temperature", "degC", "Air temperature").usual(),
+        |at| at.state.air[zone];
+
+    /// Mean of the surface temperatures of the zone, weighted by area; without view factors to a point and without emissivities.
+    MeanRadiantTemperature { zone } =
+        Row::state(Of::Zone, "ZONE.mean_radiant_temperature", "degC", "Mean radiant temperature"),
+        |at| mean_radiant(&at, zone);
+
+    /// Mean of the air and the mean radiant temperature.
+    OperativeTemperature { zone } =
+        Row::state(Of::Zone, "ZONE.operative_temperature", "degC", "Operative temperature"),
+        |at| (at.state.air[zone] + mean_radiant(&at, zone)).scale(0.5);
+
+    /// Temperature of a black globe of 0.15 m between the air and the mean radiant temperature.
+    GlobeTemperature { zone } =
+        Row::state(Of::Zone, "ZONE.globe_temperature", "degC", "Globe temperature"),
+        |at| globe_temperature(at.state.air[zone], mean_radiant(&at, zone), S::constant(0.15), S::constant(0.95));
+
+    /// Heat that ideal heating supplies to the air, not below 0.
+    HeatingLoad { zone } =
+        Row::mean(Of::HeatedZone, "ZONE.heating_load", "W", "Heating"),
+        |at| at.state.load[zone].max(S::zero());
+
+    /// Heat that ideal cooling takes from the air, not below 0.
+    CoolingLoad { zone } =
+        Row::mean(Of::CooledZone, "ZONE.cooling_load", "W", "Cooling"),
+        |at| (-at.state.load[zone]).max(S::zero());
+
+    /// Heat that ideal heating brings less what ideal cooling takes.
+    NetLoad { zone } =
+        Row::mean(Of::ConditionedZone, "ZONE.net_load", "W", "Heating less cooling"),
+        |at| at.state.load[zone];
+
+    /// Outdoor air over the volume of the zone: infiltration, ventilation, openings and ventilation units.
+    AirChanges { zone } =
+        Row::state(Of::Zone, "ZONE.air_changes", "1/h", "Air changes").not_negative(),
+        |at| at.step.air_changes(zone, at.state.air[zone]);
+
+    /// Vapour in the air of the zone by mass of dry air.
+    HumidityRatio { zone } =
+        Row::state(Of::HumidZone, "ZONE.humidity_ratio", "kg/kg", "Humidity ratio").not_negative(),
+        |at| at.state.vapour[zone];
+
+    /// Vapour pressure over that of saturated air, over water.
+    RelativeHumidity { zone } =
+        Row::state(Of::HumidZone, "ZONE.relative_humidity", "-", "Relative humidity").not_negative(),
+        |at| relative_humidity(at.state.air[zone], at.state.vapour[zone], at.step.pressure());
+
+    /// Temperature at which the air is saturated over water.
+    DewPoint { zone } =
+        Row::state(Of::HumidZone, "ZONE.dew_point", "degC", "Dew point"),
+        |at| dew_point(at.state.vapour[zone], at.step.pressure());
+
+    /// Temperature of adiabatic saturation of the air.
+    WetBulb { zone } =
+        Row::state(Of::HumidZone, "ZONE.wet_bulb", "degC", "Wet-bulb temperature"),
+        |at| wet_bulb(at.state.air[zone], at.state.vapour[zone], at.step.pressure());
+
+    /// Heat of condensation of the vapour that drying or the cooling coil takes.
+    LatentCooling { zone } =
+        Row::mean(Of::DriedZone, "ZONE.latent_cooling_load", "W", "Latent cooling").not_negative(),
+        |at| at.step.latent(zone, false);
+
+    /// Heat of evaporation of the vapour that humidifying brings.
+    LatentHeating { zone } =
+        Row::mean(Of::HumidifiedZone, "ZONE.latent_heating_load", "W", "Latent heating").not_negative(),
+        |at| at.step.latent(zone, true);
+
+    /// Solar radiation that enters through all windows of the zone.
+    ZoneTransmittedSolar { zone } =
+        Row::mean(Of::SunlitZone, "ZONE.transmitted_solar", "W", "Transmitted solar radiation"),
+        |at| at.step.weather.sun.zones[zone];
+
+    /// Solar radiation that leaves the zone again through its windows.
+    ZoneLostSolar { zone } =
+        Row::mean(Of::SunlitZone, "ZONE.lost_solar", "W", "Lost solar radiation"),
+        |at| at.step.weather.sun.lost[zone];
+
+    /// Temperature of the surface.
+    FaceTemperature { surface, side } =
+        Row::state(Of::Side, "SURFACE.SIDE_temperature, WINDOW.SIDE_temperature", "degC", "Surface temperature").usual(),
+        |at| at.state.surfaces[SurfaceId::new(surface, side)];
+
+    /// Temperature between two layers, counted from outside.
+    InterfaceTemperature { surface, interface } =
+        Row::state(
+            Of::Interface,
+            "SURFACE.interface_N_temperature or SURFACE.LAYER_LAYER_temperature",
+            "degC",
+            "Temperature between layers",
+        )
+        .usual(),
+        |at| interface_temperature(&at, surface, interface);
+
+    /// Conduction in the wall at its surface, positive towards the inside.
+    FaceFlux { surface, side } =
+        Row::mean(Of::Side, "SURFACE.SIDE_flux", "W/m2", "Conduction at the surface"),
+        |at| at.step.link_flux(at.state, surface, side * at.plan.walls[surface].len());
+
+    /// Conduction through the middle of a layer, positive towards the inside.
+    LayerFlux { surface, layer } =
+        Row::mean(Of::Layer, "SURFACE.LAYER_flux", "W/m2", "Conduction in a layer"),
+        |at| layer_flux(&at, surface, layer);
+
+    /// Mean temperature of a layer.
+    LayerTemperature { surface, layer } =
+        Row::state(Of::MeltingLayer, "SURFACE.LAYER_temperature", "degC", "Layer temperature"),
+        |at| layer_mean(at.plan, surface, layer, |k| at.state.cells[k]);
+
+    /// Melted part of a layer.
+    LiquidFraction { surface, layer } =
+        Row::state(Of::MeltingLayer, "SURFACE.LAYER_liquid_fraction", "-", "Liquid fraction")
+            .within(0.0, 1.0)
+            .usual(),
+        |at| layer_mean(at.plan, surface, layer, |k| at.state.memory[k].liquid_fraction);
+
+    /// Mean enthalpy of a layer per volume of the solid, zero for the solid at the melting temperature.
+    LayerEnthalpy { surface, layer } =
+        Row::state(Of::MeltingLayer, "SURFACE.LAYER_enthalpy", "J/m3", "Enthalpy"),
+        |at| layer_mean(at.plan, surface, layer, |k| at.step.enthalpy(at.state, surface, k));
+
+    /// Solar radiation on the surface, after shading.
+    IncidentSolar { surface } =
+        Row::mean(
+            Of::OutdoorSurface,
+            "SURFACE.incident_solar, WINDOW.incident_solar",
+            "W/m2",
+            "Incident solar radiation",
+        ),
+        |at| at.step.incident(SurfaceId::outside(surface));
+
+    /// Solar radiation that the window transmits; between two zones less what it transmits the other way.
+    TransmittedSolar { surface } =
+        Row::mean(Of::Window, "WINDOW.transmitted_solar", "W", "Transmitted solar radiation"),
+        |at| transmitted(&at, surface);
+
+    /// Transmitted over incident solar radiation on the glass; 0 without sun.
+    SolarTransmittance { surface } =
+        Row::mean(Of::OutdoorWindow, "WINDOW.solar_transmittance", "-", "Solar transmittance"),
+        |at| solar_transmittance(&at, surface);
+
+    /// Solar radiation that the side of a surface, or all panes of a window, absorb.
+    AbsorbedSolar { surface, side } =
+        Row::mean(
+            Of::SunlitSide,
+            "SURFACE.SIDE_absorbed_solar, WINDOW.absorbed_solar",
+            "W/m2",
+            "Absorbed solar radiation",
+        ),
+        |at| at.step.weather.absorbed(SurfaceId::new(surface, side));
+
+    /// Long-wave radiation that the side gains from its surroundings.
+    NetLongwave { surface, side } =
+        Row::state(
+            Of::RadiatingSide,
+            "SURFACE.SIDE_longwave, WINDOW.SIDE_longwave",
+            "W/m2",
+            "Net long-wave radiation",
+        ),
+        |at| at.step.net_longwave(at.state, SurfaceId::new(surface, side));
+
+    /// Convective heat transfer coefficient.
+    Convection { surface, side } =
+        Row::state(
+            Of::ConvectiveSide,
+            "SURFACE.SIDE_convection, WINDOW.SIDE_convection",
+            "W/(m2 K)",
+            "Heat transfer coefficient",
+        )
+        .not_negative(),
+        |at| at.step.convection(at.state, SurfaceId::new(surface, side));
+
+    /// Relative humidity of the air of the zone at the temperature of the surface.
+    SurfaceHumidity { surface, side } =
+        Row::state(
+            Of::HumidSide,
+            "SURFACE.SIDE_relative_humidity, WINDOW.SIDE_relative_humidity",
+            "-",
+            "Relative humidity at the surface",
+        )
+        .not_negative(),
+        |at| at.step.surface_humidity(at.state, SurfaceId::new(surface, side));
+
+    /// 1 where dew, or below 0.01 degC frost, forms on the surface, else 0.
+    Condensation { surface, side } =
+        Row::state(
+            Of::HumidSide,
+            "SURFACE.SIDE_condensation, WINDOW.SIDE_condensation",
+            "-",
+            "Condensation",
+        ),
+        |at| S::select(at.step.condenses(at.state, SurfaceId::new(surface, side)), S::one(), S::zero());
+
+    /// Air that flows into the zone of the vent, or from the second zone to the first, at the density of the site.
+    VentInflow { vent } =
+        Row::state(Of::Vent, "VENT.inflow", "m3/s", "Inflow"),
+        |at| at.step.vents_now().flows[vent][1];
+
+    /// Air that flows out of the zone of the vent, or from the first zone to the second, at the density of the site.
+    VentOutflow { vent } =
+        Row::state(Of::Vent, "VENT.outflow", "m3/s", "Outflow"),
+        |at| at.step.vents_now().flows[vent][0];
+
+    /// Fraction of the area of the vent that its schedule and control open.
+    VentOpen { vent } =
+        Row::state(Of::Vent, "VENT.open", "-", "Open fraction").within(0.0, 1.0),
+        |at| at.step.vents_now().open[vent];
+
+    /// 1 where the control lets openings open, else 0, during the step.
+    ControlOpen { control } =
+        Row::state(Of::Control, "CONTROL.open", "-", "Open by the control"),
+        |at| at.state.opened[control];
+
+    /// Temperature of a black sky with the same long-wave emission.
+    SkyTemperature =
+        Row::state(Of::Building, "sky_temperature", "degC", "Sky temperature"),
+        |at| at.step.sky_temperature();
+
+    /// Temperature at a depth of a wall.
+    Sensor { sensor } =
+        Row::state(Of::Sensor, "SENSOR.temperature", "degC", "Temperature of a sensor").usual(),
+        |at| sensor_temperature(&at, sensor);
+}
+
+impl Output {
+    /// Checks that the zone, wall, layer or sensor exists.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`].
+    pub fn check(&self, plan: &Plan) -> Result<(), EngineError> {
+        require(self.row().of, plan, &self.place(), self)
+    }
+
+    /// The part of the building that it is read at, for messages.
+    pub(crate) fn part(&self, plan: &Plan) -> String {
+        self.row().of.part(plan, &self.place())
+    }
+
+    /// Whether it is the mean over the step of the sun that surfaces absorb, which is averaged on request only.
+    #[must_use]
+    pub fn averages_absorbed_sun(&self) -> bool {
+        matches!(self, Self::AbsorbedSolar { .. })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every kind of the table is read from JSON, with the positions that its name has.
+    #[test]
+    fn rows_are_outputs() {
+        let positions = |of: Of| match of {
+            Of::Side | Of::SunlitSide | Of::RadiatingSide | Of::ConvectiveSide | Of::HumidSide => {
+                r#", "surface": 0, "side": 1"#
+            }
+            Of::OutdoorSurface | Of::Window | Of::OutdoorWindow => r#", "surface": 0"#,
+            Of::Interface => r#", "surface": 0, "interface": 1"#,
+            Of::Layer | Of::MeltingLayer => r#", "surface": 0, "layer": 0"#,
+            Of::Vent => r#", "vent": 0"#,
+            Of::Control => r#", "control": 0"#,
+            Of::Building => "",
+            Of::Sensor => r#", "sensor": 0"#,
+            _ => r#", "zone": 0"#,
+        };
+        let table = Output::table();
+        for entry in &table {
+            let text = format!(r#"{{"kind": "{}"{}}}"#, entry.kind, positions(entry.row.of));
+            let output: Output = serde_json::from_str(&text).expect(&text);
+            assert_eq!(*output.row(), entry.row);
+        }
+        assert_eq!(table[1].kind, "mean_radiant_temperature");
+        assert_eq!(table[0].meaning, "Temperature of the air");
+    }
+}
