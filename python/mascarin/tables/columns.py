@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
 
 FACTORS: Mapping[str, tuple[str, float, float]] = {
     "degC": ("degC", 1.0, 0.0),
