@@ -22,6 +22,7 @@ import pandas as pd
 
 import fuzz_mutation
 from mascarin._io import own_files
+from mascarin._io.cache import _read
 from mascarin.building.outputs import Output
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor
 from mascarin.ensemble.members import Members
@@ -39,8 +40,7 @@ from mascarin.simulation.times import Times
 from mascarin.study import kept
 from mascarin.study.findings import PredictionIntervals
 from mascarin.study.storage import Workspace
-from mascarin.weather.kept import _read
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.timezones import parse_timezone
 
 CODES = (
     "<f8",

@@ -15,6 +15,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 ORDER = [
     {"errors", "engine_errors", "linear_algebra", "physics", "progress", "_engine", "_io"},
     {"figures"},
+    {"tables"},
     {"materials"},
     {"building"},
     {"weather"},

@@ -179,7 +179,7 @@ def test_bins_of_standard_140_take_a_temperature_that_is_held() -> None:
 
 
 def test_values_at_the_ends_of_the_possible_range_are_no_defect() -> None:
-    from mascarin.weather.quality import _out_of_range
+    from mascarin.tables.quality.defects import _out_of_range
 
     assert _out_of_range(around(100.0), (0.0, 100.0)) == []
     assert _out_of_range(np.array([101.0]), (0.0, 100.0)) != []

@@ -26,7 +26,7 @@ from mascarin.simulation.netcdf import NetcdfDraft
 from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.times import Times
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.timezones import parse_timezone
 
 OUTPUTS = ["room.air_temperature", "room.operative_temperature", "facade.outside_flux", "room.air_changes"]
 

@@ -7,11 +7,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from mascarin.tables.quality.filled_values import copied, interpolated
 from mascarin.validation.changes import changes
 from mascarin.validation.evidence import chance
 from mascarin.validation.joint import Extra, Joint, Whitening
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, shifted, white_noise
-from mascarin.weather.filled import copied, interpolated
 
 Floats = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mascarin._io.cache import FOLDER, MOST, Cached, cache_folder, cached
 from mascarin.errors import InputError
-from mascarin.weather import Climate, Measurements, readers, shipped, sun_check, table
-from mascarin.weather.data import cache_folder
-from mascarin.weather.kept import FOLDER, MOST, Kept, kept
+from mascarin.tables.reading import table
+from mascarin.weather import Climate, Measurements, readers, shipped, sun_check
 
 PLACE = (39.74, -105.18)
 
@@ -90,7 +90,7 @@ def test_a_folder_that_cannot_be_written_costs_nothing(folder: Path) -> None:
 
 def test_the_oldest_are_removed(folder: Path) -> None:
     for number in range(MOST + 3):
-        kept((number,), [readers], partial(Kept, {"n": number}))
+        cached((number,), [readers], partial(Cached, {"n": number}))
     assert len(list(folder.iterdir())) == MOST
 
 
@@ -181,7 +181,7 @@ def test_a_table_that_is_refused_is_not_kept(folder: Path, tmp_path: Path) -> No
 
 
 def test_a_large_table_is_not_kept(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mascarin.weather.kept.LARGEST", 10)
+    monkeypatch.setattr("mascarin._io.cache.LARGEST", 10)
     file = tmp_path / "table.csv"
     file.write_text(ROWS, encoding="utf-8")
     weather(file)

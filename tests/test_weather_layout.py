@@ -9,7 +9,7 @@ import pytest
 
 from mascarin import Measurements
 from mascarin.errors import InputError
-from mascarin.weather.table import read_table
+from mascarin.tables.reading.table import read_table
 
 STAMPS = ["2024-09-04 00:00", "2024-09-04 00:15", "2024-09-04 00:30", "2024-09-04 00:45"]
 

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
+from mascarin.tables.quality import mask
 from mascarin.weather import Measurements
-from mascarin.weather.quality import mask
 
 
 def measured(**options: object) -> Measurements:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mascarin.weather.profile import Profile, index_nodes, pieces_for, steady, trapezoid_weights
+from mascarin.tables.profile import Profile, index_nodes, pieces_for, steady, trapezoid_weights
 
 MEANS = st.lists(st.floats(0.0, 1000.0), min_size=3, max_size=30)
 

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mascarin.tables.profile import Profile, pieces_for, steady
+from mascarin.tables.steps import Steps
 from mascarin.weather import STAGES, Climate, Measurements, Place
 from mascarin.weather.forcing import column_means, column_values
-from mascarin.weather.profile import Profile, pieces_for, steady
-from mascarin.weather.steps import Steps
 from strategies_weather import means, numbers, quick, tables
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from mascarin.tables.quality import Stretch, find, mask, runs
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.quality import Stretch, find, mask, runs
 
 SHARED = {"time": "AAAAMMJJHH", "time_format": "%Y%m%d%H", "stamps": "end"}
 

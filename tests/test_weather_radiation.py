@@ -5,11 +5,11 @@ import pandas as pd
 import pytest
 from pvlib import atmosphere, clearsky, solarposition
 
+from mascarin.tables.profile import trapezoid_weights
+from mascarin.tables.times import epoch_seconds
 from mascarin.weather.channels import Basis
-from mascarin.weather.profile import trapezoid_weights
 from mascarin.weather.radiation import clear_beam, direct_by_closure, from_instants, from_means
 from mascarin.weather.sun import SunPath
-from mascarin.weather.times import epoch_seconds
 
 LATITUDE, LONGITUDE, DAYS = -21.34, 55.48, 12
 

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from pvlib import irradiance, solarposition
 
+from mascarin.tables.times import epoch_seconds
 from mascarin.weather.sun import SOLAR_CONSTANT, SunPath
-from mascarin.weather.times import epoch_seconds
 
 PLACES = {
     "Denver": (39.83, -104.65),

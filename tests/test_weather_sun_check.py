@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
+from mascarin.tables.times import epoch_seconds
 from mascarin.weather import Climate, Measurements, Place
 from mascarin.weather.sun import SunPath
-from mascarin.weather.times import epoch_seconds
 
 SITE = Place(45.0, 5.0)
 

@@ -10,10 +10,10 @@ import pytest
 
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError
-from mascarin.weather.columns import Column
-from mascarin.weather.table import read_table
-from mascarin.weather.times import epoch_seconds, stamps_of
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.columns import Column
+from mascarin.tables.reading.table import read_table
+from mascarin.tables.times import epoch_seconds, stamps_of
+from mascarin.tables.timezones import parse_timezone
 
 HEADER = "time,T,G\n"
 

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather.timezones import fixed_zone, localize, moment, parse_timezone, zone_name
+from mascarin.tables.timezones import fixed_zone, localize, moment, parse_timezone, zone_name
 
 PARIS = parse_timezone("Europe/Paris")
 

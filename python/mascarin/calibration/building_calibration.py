@@ -206,7 +206,7 @@ def _beginning(
     """Length of the warm-up, and the first instant that is compared."""
     import pandas as pd
 
-    from mascarin.weather.timezones import moment
+    from mascarin.tables.timezones import moment
 
     lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
     return lead, climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")

@@ -11,10 +11,10 @@ import numpy as np
 from mascarin.comfort.adaptive import ASHRAE_WEIGHTS, EN_WEIGHTS, weighted_mean
 from mascarin.comfort.evaluation import Floats
 from mascarin.physics import STANDARD_PRESSURE, humidity_of_dew_point, humidity_ratio
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
+from mascarin.tables.grid import values_in
+from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.weather.forcing import window
-from mascarin.weather.grid import values_in
-from mascarin.weather.times import epoch_seconds, stamps_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,8 +12,8 @@ from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.tables.reading.table import Stamps
     from mascarin.weather import Climate, Column, Measurements
-    from mascarin.weather.table import Stamps
 
 _YAML: Final = (".yaml", ".yml")
 _TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq")
@@ -93,8 +93,8 @@ def run_inputs(
 def _measured_weather(
     building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps
 ) -> Climate:
+    from mascarin.tables.reading.table import read_table
     from mascarin.weather import Climate
-    from mascarin.weather.table import read_table
 
     names = [str(name) for name in read_table(file, timezone=zone).frame.columns]
     chosen: dict[str, Column] = {}

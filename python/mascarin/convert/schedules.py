@@ -16,7 +16,7 @@ from mascarin.convert.field_checks import finite
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
 from mascarin.convert.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
-from mascarin.weather.timezones import YEARS
+from mascarin.tables.timezones import YEARS
 
 SCHEDULES: Final = (
     "Schedule:Compact",

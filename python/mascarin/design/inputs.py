@@ -22,8 +22,8 @@ from mascarin.errors import InputError
 from mascarin.simulation.compiling import period
 from mascarin.study.inputs import Beside, find
 from mascarin.study.locations import Faults, Places
+from mascarin.tables.reading.files import file_hash
 from mascarin.weather import Climate
-from mascarin.weather.files import file_hash
 from mascarin.weather.shipped import PREFIX, found
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from mascarin.simulation.judgement import JUDGED, OUTSIDE, all_sound
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import pandas as pd

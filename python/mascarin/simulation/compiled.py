@@ -18,7 +18,7 @@ from mascarin.engine_errors import plan_of, translated
 from mascarin.simulation.blocks import InMemory, rows_of
 from mascarin.simulation.options import require_precision
 from mascarin.simulation.readings import Readings
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -21,6 +21,8 @@ from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.sky import with_sky_of
 from mascarin.simulation.times import Times
 from mascarin.simulation.wind import require_wind
+from mascarin.tables.times import stamps_of
+from mascarin.tables.timezones import seconds_at
 from mascarin.weather import (
     CHANNELS,
     COEFFICIENTS,
@@ -31,8 +33,6 @@ from mascarin.weather import (
     parse_timezone,
     scheduled,
 )
-from mascarin.weather.times import stamps_of
-from mascarin.weather.timezones import seconds_at
 
 if TYPE_CHECKING:
     import numpy.typing as npt

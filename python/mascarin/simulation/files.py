@@ -12,7 +12,7 @@ from mascarin._io import atomic, identity, memory, own_files
 from mascarin._io.regular import require_regular, require_text
 from mascarin.errors import InputError
 from mascarin.simulation.blocks import InMemory
-from mascarin.weather.timezones import parse_timezone
+from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import numpy as np

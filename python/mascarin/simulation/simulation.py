@@ -28,9 +28,9 @@ from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
+from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
 from mascarin.weather.brightness import findings
-from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
     import numpy.typing as npt

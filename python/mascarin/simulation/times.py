@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from mascarin.weather.times import epoch_seconds, local_time, stamps_of
+from mascarin.tables.times import epoch_seconds, local_time, stamps_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -30,7 +30,7 @@ def _seconds(given: Any) -> Any:
 
 def _timezone(text: object) -> object:
     """A time zone that exists."""
-    from mascarin.weather.timezones import parse_timezone
+    from mascarin.tables.timezones import parse_timezone
 
     try:
         parse_timezone(text)

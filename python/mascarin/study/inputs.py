@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin._io.cache import cache_folder
 from mascarin.building.engine_input import measured_columns
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
+from mascarin.tables.reading.table import read_table
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.data import FOLDER, cache_folder, data_file
+from mascarin.weather.data import FOLDER, data_file
 from mascarin.weather.shipped import FOLDER as CLIMATES
 from mascarin.weather.shipped import PREFIX
-from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
     from mascarin.building import Building

@@ -29,16 +29,16 @@ from mascarin.study.inputs import (
 from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
 from mascarin.study.patterns import tied_building, written_out
+from mascarin.tables.quality import mask
+from mascarin.tables.quality.filled_values import filled_stretches
+from mascarin.tables.reading.files import file_hash
 from mascarin.validation.criteria import Criterion
-from mascarin.weather.files import file_hash
-from mascarin.weather.filled import filled_stretches
-from mascarin.weather.quality import mask
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.tables.quality import Stretch
     from mascarin.weather import Climate, Measurements
-    from mascarin.weather.quality import Stretch
 
 
 @dataclass(frozen=True, eq=False)

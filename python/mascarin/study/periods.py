@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.tables.timezones import moment
 from mascarin.validation.observation import PERIODS
-from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:
     import numpy.typing as npt

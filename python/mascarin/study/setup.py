@@ -24,9 +24,9 @@ from mascarin.study.forms import Choice, Forms, label
 from mascarin.study.patterns import ties_of
 from mascarin.study.periods import Timeline
 from mascarin.study.phase_change import melting_layers
+from mascarin.tables.timezones import moment
 from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import Observation, observe
-from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -42,10 +42,10 @@ if TYPE_CHECKING:
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
     from mascarin.study.storage import Workspace
+    from mascarin.tables.grid import Grid
+    from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Criterion
     from mascarin.weather import Climate, Measurements
-    from mascarin.weather.grid import Grid
-    from mascarin.weather.quality import Stretch
 
     Flags = npt.NDArray[np.bool_]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.times import epoch_seconds
+from mascarin.tables.times import epoch_seconds
 
 if TYPE_CHECKING:
     import numpy.typing as npt

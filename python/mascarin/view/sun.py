@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.tables.timezones import parse_timezone, standard_offset
 from mascarin.weather.sun import SunPath
-from mascarin.weather.timezones import parse_timezone, standard_offset
 
 if TYPE_CHECKING:
     from mascarin.building.site import Site

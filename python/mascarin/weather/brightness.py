@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.cache import Cached, cached
+from mascarin.tables.arrays import Flags
+from mascarin.tables.quality import Stretch, runs
+from mascarin.tables.times import stamps_of
+from mascarin.tables.timezones import zone_name
 from mascarin.weather import completion
-from mascarin.weather.arrays import Flags
-from mascarin.weather.kept import Kept, kept
-from mascarin.weather.quality import Stretch, runs
 from mascarin.weather.record import WeatherRecord
-from mascarin.weather.times import stamps_of
-from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,11 +92,13 @@ def findings(record: WeatherRecord, latitude: float, longitude: float) -> tuple[
         longitude,
     )
 
-    def said() -> Kept:
+    def said() -> Cached:
         bright = too_bright(record, latitude, longitude)
-        return Kept({"said": [_sentence(record, name, rows) for name, rows in bright.items() if rows.any()]})
+        return Cached(
+            {"said": [_sentence(record, name, rows) for name, rows in bright.items() if rows.any()]}
+        )
 
-    return tuple(kept(key, [sys.modules[__name__], completion], said).notes["said"])
+    return tuple(cached(key, [sys.modules[__name__], completion], said).notes["said"])
 
 
 def with_findings(

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-Kind = Literal["instant", "mean"]
-"""`instant`: the value at the stamp; `mean`: the mean over the interval that the stamp starts."""
+from mascarin.tables.record import Kind
 
 Basis = Literal["direct+diffuse", "global+diffuse", "all"]
 """Irradiances whose means are kept. With `all`, the global one is kept as far as the beam allows."""

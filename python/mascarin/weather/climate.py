@@ -9,26 +9,26 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
-from mascarin.weather import measured
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
+from mascarin.tables.gaps import filled
+from mascarin.tables.quality import Stretch, find
+from mascarin.tables.reading.table import Stamps, read_table
+from mascarin.tables.steps import Steps
+from mascarin.tables.table_cache import cached_record
+from mascarin.weather import derive, measured
 from mascarin.weather.brightness import bright_parts, with_findings
 from mascarin.weather.channels import LIMITS
 from mascarin.weather.completion import complete
 from mascarin.weather.forcing import forcing, require_period
-from mascarin.weather.gaps import filled
-from mascarin.weather.kept_tables import kept_record
 from mascarin.weather.measured import Columns, record_of_table
 from mascarin.weather.measurements import Measurements
 from mascarin.weather.place_check import require_place
 from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
-from mascarin.weather.quality import Stretch, find
 from mascarin.weather.readers import read_epw, read_tmy3
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.shipped import PREFIX, found
 from mascarin.weather.site import Place, SiteLike
-from mascarin.weather.steps import Steps
 from mascarin.weather.sun_check import check_clock
-from mascarin.weather.table import Stamps, read_table
 from mascarin.weather.view import RecordView
 from mascarin.weather.yearly import record_of_year
 
@@ -267,8 +267,8 @@ class Climate(RecordView[WeatherRecord]):
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
-        record = kept_record(
-            WeatherRecord, source, timezone, (reading, *choice), [measured],
+        record = cached_record(
+            WeatherRecord, source, timezone, (reading, *choice), [measured, derive],
             lambda: record_of_table(read_table(source, timezone=timezone, **reading), *choice),
         )  # fmt: skip
         return cls(replace(record, check_sun=check_sun))._at(latitude, longitude, altitude)
@@ -375,7 +375,7 @@ class Climate(RecordView[WeatherRecord]):
         Returns
         -------
         list of Stretch
-            In order of column, then start; see `mascarin.weather.quality.find`.
+            In order of column, then start; see `mascarin.tables.quality.find`.
         """
         return [*find(self.data, limits=LIMITS), *bright_parts(self.record, self.data.index)]
 

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from mascarin.tables.arrays import Array
+from mascarin.tables.grid import Grid
+from mascarin.tables.profile import node_times, pieces_for, trapezoid_weights
+from mascarin.tables.record import Kind
 from mascarin.weather import derive
-from mascarin.weather.arrays import Array
-from mascarin.weather.channels import RADIATION, Basis, Kind
-from mascarin.weather.grid import Grid
-from mascarin.weather.profile import node_times, pieces_for, trapezoid_weights
+from mascarin.weather.channels import RADIATION, Basis
 from mascarin.weather.radiation import clear_beam, direct_by_closure
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath

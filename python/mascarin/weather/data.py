@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from mascarin._io.cache import cache_folder
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -154,13 +155,6 @@ def registry() -> pooch.Pooch:
         registry={known.path: f"sha256:{known.sha256}" for known in FILES},
         urls={known.path: known.url for known in FILES if known.url is not None},
     )
-
-
-def cache_folder() -> Path:
-    """Cache folder of the user: where the platform puts files that can be downloaded again."""
-    import platformdirs
-
-    return Path(platformdirs.user_cache_dir("mascarin"))
 
 
 def _known(name: str) -> DataFile:

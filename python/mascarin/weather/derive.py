@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
 
 _CLOUD_LOSS: Final = 0.71
 _CLEAR_GAIN: Final = 1098.0

@@ -9,17 +9,18 @@ from typing import Final
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array, Flags
-from mascarin.weather.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS
-from mascarin.weather.checks import require_range, require_values
-from mascarin.weather.grid import Grid, values_in
-from mascarin.weather.profile import Profile, pieces_for, steady
+from mascarin.tables.arrays import Array, Flags
+from mascarin.tables.checks import require_range, require_values
+from mascarin.tables.grid import Grid, values_in
+from mascarin.tables.profile import Profile, pieces_for, steady
+from mascarin.tables.record import Record
+from mascarin.tables.steps import Steps
+from mascarin.tables.times import clock
+from mascarin.weather.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS, UNITS
 from mascarin.weather.radiation import from_instants, from_means
-from mascarin.weather.record import Record, WeatherRecord
+from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import SiteLike
-from mascarin.weather.steps import Steps
 from mascarin.weather.sun import SunPath
-from mascarin.weather.times import clock
 
 
 def require_period(record: WeatherRecord, steps: Steps) -> None:
@@ -41,7 +42,9 @@ def require_period(record: WeatherRecord, steps: Steps) -> None:
     record.grid.require(steps.first, steps.last, record.file, hint)
     for name in SOURCE_CHANNELS:
         if name in record.columns:
-            require_range(record, name, (BY_NAME[name].low, BY_NAME[name].high), steps.first, steps.last)
+            require_range(
+                record, name, (BY_NAME[name].low, BY_NAME[name].high), steps.first, steps.last, UNITS[name]
+            )
 
 
 def forcing(
@@ -94,7 +97,7 @@ def forcing(
         record = record_of(source, measured, name)
         record.grid.require(first, steps.last, f"{record.file}: {name}")
         if limits is not None and name in limits:
-            require_range(record, name, limits[name], first, steps.last)
+            require_range(record, name, limits[name], first, steps.last, UNITS.get(name, ""))
         out[..., place] = column_values(record, name, steps)
     return out
 

@@ -11,12 +11,13 @@ import numpy as np
 from mascarin._io.arguments import names_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import dew_point
-from mascarin.weather.arrays import Array
-from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS, Kind
-from mascarin.weather.columns import Column
+from mascarin.tables.arrays import Array
+from mascarin.tables.columns import Column
+from mascarin.tables.interval_labels import knot_lines, to_starts
+from mascarin.tables.reading.table import Table
+from mascarin.tables.record import Kind
+from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS
 from mascarin.weather.record import WeatherRecord
-from mascarin.weather.starts import knot_lines, to_starts
-from mascarin.weather.table import Table
 
 NEUTRAL: Final[Mapping[str, float]] = {
     "dew_point": np.nan,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,23 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array
-from mascarin.weather.channels import Kind
-from mascarin.weather.columns import Column
-from mascarin.weather.gaps import filled
-from mascarin.weather.grid import Grid
-from mascarin.weather.kept_tables import kept_record
-from mascarin.weather.quality import Stretch, find
-from mascarin.weather.record import Record
-from mascarin.weather.starts import knot_lines, to_starts
-from mascarin.weather.table import Stamps, Table, read_table
-from mascarin.weather.times import epoch_seconds
+from mascarin.tables.arrays import Array
+from mascarin.tables.gaps import filled
+from mascarin.tables.grid import Grid
+from mascarin.tables.quality import Stretch, find
+from mascarin.tables.reading import records
+from mascarin.tables.reading.records import Columns, record_of_columns
+from mascarin.tables.reading.table import Stamps, read_table
+from mascarin.tables.record import Record
+from mascarin.tables.table_cache import cached_record
+from mascarin.tables.times import epoch_seconds
 from mascarin.weather.view import RecordView
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Columns = Mapping[str, str | Column | Mapping[str, object]]
 
 
 class Measurements(RecordView[Record]):
@@ -121,9 +117,9 @@ class Measurements(RecordView[Record]):
         choice = (wanted, tuple(mean), stamps)
 
         def made() -> Record:
-            return _record_of(read_table(source, timezone=timezone, **reading), *choice)
+            return record_of_columns(read_table(source, timezone=timezone, **reading), *choice)
 
-        return cls(kept_record(Record, source, timezone, (reading, *choice), [sys.modules[__name__]], made))
+        return cls(cached_record(Record, source, timezone, (reading, *choice), [records], made))
 
     def quality(self, limits: Mapping[str, tuple[float, float]] | None = None) -> list[Stretch]:
         """Suspicious parts of every column: missing, stuck, out of range, spikes.
@@ -136,7 +132,7 @@ class Measurements(RecordView[Record]):
         Returns
         -------
         list of Stretch
-            In order of column, then start; see `mascarin.weather.quality.find`.
+            In order of column, then start; see `mascarin.tables.quality.find`.
 
         Examples
         --------
@@ -237,7 +233,7 @@ class Measurements(RecordView[Record]):
         Parameters
         ----------
         mask : pandas.DataFrame
-            True for values to leave out, such as from `mascarin.weather.quality.mask`; rows and columns that
+            True for values to leave out, such as from `mascarin.tables.quality.mask`; rows and columns that
             it does not have are kept.
 
         Returns
@@ -256,34 +252,6 @@ class Measurements(RecordView[Record]):
         parts = [f"{name} {int(count)}" for name, count in counts.items() if count]
         note = f"{self.file}: values masked on request: {', '.join(parts) if parts else 'none'}."
         return Measurements(replace(self.record, columns=columns, provenance=(*self.provenance, note)))
-
-
-def _record_of(
-    table: Table, columns: Iterable[str] | Columns | None, mean: Iterable[str], stamps: Stamps
-) -> Record:
-    """Record of a table; parameters are those of `Measurements.from_table`."""
-    wanted: Iterable[str] | Columns
-    wanted = [str(name) for name in table.frame.columns] if columns is None else columns
-    pairs = wanted.items() if isinstance(wanted, Mapping) else [(name, name) for name in wanted]
-    chosen = {name: Column.of(given, f"{table.where}: columns.{name}") for name, given in pairs}
-    kinds: dict[str, Kind] = {name: column.kind or "instant" for name, column in chosen.items()}
-    for name in mean:
-        if name not in kinds:
-            raise InputError(
-                f"{table.where}: mean: {name!r} is not read. {did_you_mean(name, kinds)}".rstrip()
-            )
-        kinds[name] = "mean"
-    values, notes = {}, []
-    for name, column in chosen.items():
-        raw = table.numbers(column.column, name)
-        values[name] = column.convert(raw, "", table.interval, f"{table.where}: {name}")
-        notes.append(column.sentence(name, ""))
-    kept, closing, grid, note = to_starts(table, values, kinds, stamps)
-    said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
-    return Record(
-        kept, kinds, grid, closing, table.where, table.sha256, said, table.lines,
-        knot_lines(table.lines, stamps),
-    )  # fmt: skip
 
 
 def _instants(grid: Grid, values: Array, closing: float, seconds: Array) -> Array:

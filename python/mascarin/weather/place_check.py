@@ -6,10 +6,10 @@ from datetime import timedelta, timezone, tzinfo
 from typing import Final
 
 from mascarin.errors import InputError
+from mascarin.tables.times import local_time
+from mascarin.tables.timezones import parse_timezone, standard_offset, zone_name
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import SiteLike
-from mascarin.weather.times import local_time
-from mascarin.weather.timezones import parse_timezone, standard_offset, zone_name
 
 _FAR: Final = 2.0
 """Larger differences of latitude or longitude are another place. [deg]"""

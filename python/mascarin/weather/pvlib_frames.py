@@ -11,14 +11,14 @@ import numpy as np
 
 from mascarin._io.arguments import finite_number, require_type
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
+from mascarin.tables.columns import Column
+from mascarin.tables.reading.table import Table, read_table
+from mascarin.tables.timezones import fixed_offset, parse_timezone, zone_name, zone_of
 from mascarin.weather.channels import BY_NAME, RADIATION
-from mascarin.weather.columns import Column
 from mascarin.weather.measured import record_of_table
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import Place
-from mascarin.weather.table import Table, read_table
-from mascarin.weather.timezones import fixed_offset, parse_timezone, zone_name, zone_of
 
 if TYPE_CHECKING:
     import pandas as pd

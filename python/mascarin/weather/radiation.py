@@ -15,9 +15,9 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
+from mascarin.tables.profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
 from mascarin.weather.channels import Basis
-from mascarin.weather.profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
 from mascarin.weather.sun import SunPath
 
 BEAM_CEILING: Final = 2.0

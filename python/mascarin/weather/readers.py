@@ -14,12 +14,12 @@ from typing import Final
 
 import numpy as np
 
+from mascarin._io.cache import Cached, cached
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.files import file_hash
-from mascarin.weather.kept import Kept, kept
+from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.reading.files import file_hash
+from mascarin.tables.timezones import fixed_zone, zone_name
 from mascarin.weather.shipped import COMPRESSED, PACKED, content
-from mascarin.weather.timezones import fixed_zone, zone_name
 
 _HEADER = 8
 _FIELDS = 35
@@ -117,7 +117,7 @@ def read_epw(path: Path) -> Year:
     """
     found = file_hash(path)  # refuses what is no file
     where = path.name.removesuffix(PACKED).removesuffix(COMPRESSED)
-    kept_year = kept((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
+    kept_year = cached((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
     return _unpacked(kept_year, where)
 
 
@@ -145,7 +145,7 @@ def _parsed_epw(path: Path, where: str) -> Year:
     return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, numbers, notes)
 
 
-def _packed(read: Year) -> Kept:
+def _packed(read: Year) -> Cached:
     """A year as the cache keeps it."""
     offset = read.zone.utcoffset(None)
     hours = offset.total_seconds() / 3600.0 if offset is not None else 0.0
@@ -153,10 +153,10 @@ def _packed(read: Year) -> Kept:
         "year": read.year, "mixed": read.mixed, "hours": hours, "place": read.place, "sha256": read.sha256,
         "first": int(read.lines[0]), "notes": read.notes,
     }  # fmt: skip
-    return Kept(notes, read.values)
+    return Cached(notes, read.values)
 
 
-def _unpacked(found: Kept, where: str) -> Year:
+def _unpacked(found: Cached, where: str) -> Year:
     """The year of `_packed`; its rows are lines without a gap."""
     notes, values = found.notes, found.columns
     latitude, longitude, altitude, name = notes["place"]

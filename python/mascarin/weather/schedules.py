@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array
-from mascarin.weather.channels import TEMPERATURES
-from mascarin.weather.checks import require_range
+from mascarin.tables.arrays import Array
+from mascarin.tables.checks import require_range
+from mascarin.tables.steps import Steps
+from mascarin.tables.times import local_time
+from mascarin.weather.channels import TEMPERATURES, UNITS
 from mascarin.weather.climate import Climate
 from mascarin.weather.forcing import column_means, column_values, record_of
 from mascarin.weather.measurements import Measurements
-from mascarin.weather.steps import Steps
-from mascarin.weather.times import local_time
 
 if TYPE_CHECKING:
     from mascarin.building.courses import ColumnCourse
@@ -231,7 +231,14 @@ def _of_column(
         raise InputError(f"schedules.{name}.column: {error}") from None
     record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
     low, high = LIMITS_OF_COURSES[course.kind]
-    require_range(record, column, (low / course.scale, high / course.scale), steps.first, steps.last)
+    require_range(
+        record,
+        column,
+        (low / course.scale, high / course.scale),
+        steps.first,
+        steps.last,
+        UNITS.get(column, ""),
+    )
     if course.kind == "temperature":
         return column_values(record, column, steps)
     return column_means(record, column, steps)[:, None]

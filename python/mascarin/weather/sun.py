@@ -24,7 +24,7 @@ from typing import Final
 import numpy as np
 
 from mascarin.physics import STANDARD_PRESSURE
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
 
 SOLAR_CONSTANT: Final = 1361.0
 """Total solar irradiance at the mean distance of the earth (Kopp & Lean 2011, 1360.8) [W/m2]."""

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.cache import Cached, cached
 from mascarin.errors import InputError
+from mascarin.tables.arrays import Array
+from mascarin.tables.times import stamps_of
+from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
 from mascarin.weather import sun as sun_module
-from mascarin.weather.arrays import Array
 from mascarin.weather.channels import RADIATION
-from mascarin.weather.kept import Kept, kept
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath
-from mascarin.weather.times import stamps_of
-from mascarin.weather.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -69,11 +69,11 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
     digest, kind = hashlib.sha256(values.tobytes()).hexdigest(), record.kinds[_name(record)]
     key = ("clock", digest, kind, grid.start, grid.interval, zone_name(grid.zone), latitude, longitude)
 
-    def passed() -> Kept:
+    def passed() -> Cached:
         _refuse(record, values, latitude, longitude)
-        return Kept()
+        return Cached()
 
-    kept(key, [sys.modules[__name__], sun_module], passed)
+    cached(key, [sys.modules[__name__], sun_module], passed)
 
 
 def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> None:

@@ -11,10 +11,10 @@ from mascarin._io import display
 from mascarin._io.arguments import require_type
 from mascarin._io.units import bracketed, shown
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.channels import UNITS, Kind
-from mascarin.weather.grid import Grid
-from mascarin.weather.record import Record
-from mascarin.weather.timezones import zone_name
+from mascarin.tables.grid import Grid
+from mascarin.tables.record import Kind, Record
+from mascarin.tables.timezones import zone_name
+from mascarin.weather.channels import UNITS
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,9 +9,9 @@ from typing import cast
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.channels import Kind
-from mascarin.weather.grid import Grid
+from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.grid import Grid
+from mascarin.tables.record import Kind
 from mascarin.weather.readers import Year, kind_of
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import Place

@@ -12,7 +12,7 @@ from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
 from mascarin.study.inputs import Beside, find
-from mascarin.weather.times import epoch_seconds
+from mascarin.tables.times import epoch_seconds
 
 if TYPE_CHECKING:
     from mascarin.study.description import StudyFile

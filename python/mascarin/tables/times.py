@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -8,11 +8,10 @@ import numpy as np
 
 from mascarin._io.limits import above, below
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Flags, Lines
-from mascarin.weather.channels import UNITS
-from mascarin.weather.grid import values_in
-from mascarin.weather.record import Record
-from mascarin.weather.times import stamps_of
+from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.grid import values_in
+from mascarin.tables.record import Record
+from mascarin.tables.times import stamps_of
 
 _UNIT_HINTS: Final = {
     "degC": "unit: K or unit: degF",
@@ -65,7 +64,9 @@ def require_values(
     )
 
 
-def require_range(record: Record, name: str, limits: tuple[float, float], first: float, last: float) -> None:
+def require_range(
+    record: Record, name: str, limits: tuple[float, float], first: float, last: float, unit: str = ""
+) -> None:
     """Refuse impossible values that are needed over a span of time.
 
     Parameters
@@ -78,6 +79,8 @@ def require_range(record: Record, name: str, limits: tuple[float, float], first:
         Lowest and highest possible value [unit of the column].
     first, last : float
         Span, seconds since 1970-01-01 UTC [s].
+    unit : str
+        Unit of the column; empty where it has none.
 
     Raises
     ------
@@ -94,7 +97,6 @@ def require_range(record: Record, name: str, limits: tuple[float, float], first:
     bad = np.flatnonzero(outside & _needed(record, name, start, len(values), first, last))
     if not len(bad):
         return
-    unit = UNITS.get(name, "")
     raise InputError(
         f"{_where(record, name, int(rows[bad[0]]))}: {name} is {values[bad[0]]:g} at "
         f"{_shown(record, start, bad)}, expected {low:g} .. {high:g}{' ' if unit else ''}{unit}; "

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array, Flags, Lines
+from mascarin.tables.arrays import Array, Flags, Lines
 
 _FEW: Final = 3
 """A column with so few different values is a state."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from mascarin._io import memory
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array
-from mascarin.weather.timezones import seconds_at
+from mascarin.tables.arrays import Array
+from mascarin.tables.timezones import seconds_at
 
 #: Most steps of a run: a year in steps of 1.6 s. More are a mistake in the unit, and take hours.
 MOST_STEPS: Final = 20_000_000

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array
-from mascarin.weather.quality import Defect, Stretch
-from mascarin.weather.quality import runs as flagged
+from mascarin.tables.arrays import Array
+from mascarin.tables.quality.defects import Defect, Stretch
+from mascarin.tables.quality.defects import runs as flagged
 
 if TYPE_CHECKING:
     import pandas as pd

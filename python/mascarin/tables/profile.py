@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mascarin.weather.arrays import Array, Flags
+from mascarin.tables.arrays import Array, Flags
 
 _FINEST = 300.0
 _FLAT_BELOW = 0.2

@@ -8,7 +8,7 @@ from typing import Literal
 
 from mascarin.errors import InputError
 from mascarin.physics import KELVIN
-from mascarin.weather.arrays import Array
+from mascarin.tables.arrays import Array
 
 FACTORS: Mapping[str, tuple[str, float, float]] = {
     "degC": ("degC", 1.0, 0.0),

@@ -15,13 +15,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from mascarin import __version__
 from mascarin._io import own_files
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array
-from mascarin.weather.data import cache_folder
+
+Array: TypeAlias = npt.NDArray[np.floating[Any]]
 
 FOLDER: Final = "weather"
 VARIABLE: Final = "MASCARIN_CACHE"
@@ -34,7 +37,7 @@ _KIND: Final = "weather"
 
 
 @dataclass(frozen=True)
-class Kept:
+class Cached:
     """What is kept.
 
     Attributes
@@ -49,7 +52,14 @@ class Kept:
     columns: Mapping[str, Array] = field(default_factory=dict)
 
 
-def kept(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], Kept]) -> Kept:
+def cache_folder() -> Path:
+    """Cache folder of the user: where the platform puts files that can be downloaded again."""
+    import platformdirs
+
+    return Path(platformdirs.user_cache_dir("mascarin"))
+
+
+def cached(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], Cached]) -> Cached:
     """Read what was kept for a key, or make and keep it.
 
     Parameters
@@ -63,7 +73,7 @@ def kept(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], K
 
     Returns
     -------
-    Kept
+    Cached
         The same, whether it was kept or made.
     """
     if os.environ.get(VARIABLE, "").lower() == "off":
@@ -91,7 +101,7 @@ def _file(key: Sequence[object], code: Sequence[ModuleType]) -> Path:
     return cache_folder() / FOLDER / f"{name[:40]}.bin"
 
 
-def _read(file: Path) -> Kept | None:
+def _read(file: Path) -> Cached | None:
     """The content of a file; None where there is none, or another one than was written."""
     try:
         notes, columns = own_files.unpacked(own_files.read(file, _KIND))
@@ -99,7 +109,7 @@ def _read(file: Path) -> Kept | None:
         return None
     if not isinstance(notes, dict) or len({column.shape for column in columns.values()}) > 1:
         return None
-    return Kept(notes, columns)
+    return Cached(notes, columns)
 
 
 def _remove_oldest(folder: Path) -> None:

@@ -3,7 +3,8 @@
 Nothing is corrected here. What is usual is derived from each channel: how often it repeats a value, how far
 it changes in one step, where it is constant (night, no wind, saturation). A part of a series is reported when
 it is far from that, so that the steps of a coarse logger are not reported. Columns that are switched
-(heaters, set points, states) hold their values rightly and are never stuck, see `mascarin.weather.switching`.
+(heaters, set points, states) hold their values rightly and are never stuck, see
+`mascarin.tables.quality.switched_signals`.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 
 from mascarin._io.limits import above, below
-from mascarin.weather.arrays import Array, Flags, Lines
-from mascarin.weather.switching import is_switched, switched_levels
+from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.quality.switched_signals import is_switched, switched_levels
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +58,8 @@ class Stretch:
         Column.
     kind : str
         `stuck` (one channel repeats a value while it should change), `forward_filled` (several channels
-        repeat their values over the same rows), `interpolated` and `copied` (see `weather.filled`), `spike`,
+        repeat their values over the same rows), `interpolated` and `copied` (see
+        `tables.quality.filled_values`), `spike`,
         `missing`, `out_of_range`.
     start, end : pandas.Timestamp
         First and last row. Where a value is repeated, `start` is its first repetition.

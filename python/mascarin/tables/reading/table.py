@@ -15,11 +15,11 @@ from mascarin._io import memory
 from mascarin._io.arguments import require_type
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.files import file_hash, read_frame, with_time_column
-from mascarin.weather.layout import EMPTY
-from mascarin.weather.times import epoch_seconds, stamps_of
-from mascarin.weather.timezones import (
+from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.reading.files import file_hash, read_frame, with_time_column
+from mascarin.tables.reading.layout import EMPTY
+from mascarin.tables.times import epoch_seconds, stamps_of
+from mascarin.tables.timezones import (
     YEARS,
     fixed_offset,
     localize,

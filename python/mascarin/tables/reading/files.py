@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
-from mascarin.weather.layout import Layout, decoded, find_layout
+from mascarin.tables.reading.layout import Layout, decoded, find_layout
 
 if TYPE_CHECKING:
     import pandas as pd

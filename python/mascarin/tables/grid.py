@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.times import local_time, stamps_of
-from mascarin.weather.timezones import zone_name
+from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.times import local_time, stamps_of
+from mascarin.tables.timezones import zone_name
 
 Rows = Lines
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array
-from mascarin.weather.quality import runs
-from mascarin.weather.record import Record
+from mascarin.tables.arrays import Array
+from mascarin.tables.quality import runs
+from mascarin.tables.record import Record
 
 R = TypeVar("R", bound=Record)
 

@@ -9,22 +9,23 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from mascarin.weather import columns, derive, files, layout, starts, table, timezones
-from mascarin.weather.files import file_hash
-from mascarin.weather.grid import Grid
-from mascarin.weather.kept import Kept, kept
-from mascarin.weather.record import Record, WeatherRecord
-from mascarin.weather.timezones import parse_timezone
+from mascarin._io.cache import Cached, cached
+from mascarin.tables import columns, interval_labels, timezones
+from mascarin.tables.grid import Grid
+from mascarin.tables.reading import files, layout, table
+from mascarin.tables.reading.files import file_hash
+from mascarin.tables.record import Record
+from mascarin.tables.timezones import parse_timezone
 
-AnyRecord = TypeVar("AnyRecord", Record, WeatherRecord)
+AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 #: Modules that make a record of a table, beside that of the caller.
-_CODE: Final = (columns, derive, files, layout, starts, table, timezones)
+_CODE: Final = (columns, files, interval_labels, layout, table, timezones)
 _LINES: Final = "lines"
 _KNOTS: Final = "knots"
 
 
-def kept_record(
+def cached_record(
     kind: type[AnyRecord],
     source: object,
     timezone: str | None,
@@ -37,7 +38,7 @@ def kept_record(
     Parameters
     ----------
     kind : type
-        `Record` or `WeatherRecord`.
+        `Record`, or a class made from it.
     source : str, Path or other object
         The table. Only what was read from a file is kept.
     timezone : str or None
@@ -51,7 +52,7 @@ def kept_record(
 
     Returns
     -------
-    Record or WeatherRecord
+    Record
         The same, whether it was kept or made.
     """
     if not isinstance(source, str | Path) or timezone is None:
@@ -60,7 +61,7 @@ def kept_record(
     zone = parse_timezone(timezone, f"{path.name}: timezone")
     # The representation of plain values says all about them.
     key = (kind.__name__, file_hash(path), path.name, timezone, *map(_plain, options))
-    found = kept(key, (*_CODE, *code), lambda: _packed(make()))
+    found = cached(key, (*_CODE, *code), lambda: _packed(make()))
     return _unpacked(kind, found, Grid(zone=zone, **found.notes["grid"]), path.name)
 
 
@@ -71,7 +72,7 @@ def _plain(value: object) -> object:
     return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
 
 
-def _packed(record: Record) -> Kept:
+def _packed(record: Record) -> Cached:
     """A record as the cache keeps it."""
     grid, knots = record.grid, record.knots
     notes: dict[str, Any] = {
@@ -82,23 +83,22 @@ def _packed(record: Record) -> Kept:
         "provenance": list(record.provenance),
         "last": None if knots is None else int(knots[-1]),
     }
-    if isinstance(record, WeatherRecord):
-        notes["assumed"] = sorted(record.assumed)
+    notes |= {name: sorted(getattr(record, name)) for name in record.name_sets}
     numbers = {f"column {name}": values for name, values in record.columns.items()}
     numbers[_LINES] = record.lines.astype(np.float64)
     if knots is not None:
         numbers[_KNOTS] = knots[:-1].astype(np.float64)
-    return Kept(notes, numbers)
+    return Cached(notes, numbers)
 
 
-def _unpacked(kind: type[AnyRecord], found: Kept, grid: Grid, where: str) -> AnyRecord:
+def _unpacked(kind: type[AnyRecord], found: Cached, grid: Grid, where: str) -> AnyRecord:
     """The record of `_packed`."""
     notes, numbers = found.notes, dict(found.columns)
     lines = numbers.pop(_LINES).astype(np.int64)
     knots = None
     if notes["last"] is not None:
         knots = np.append(numbers.pop(_KNOTS).astype(np.int64), np.int64(notes["last"]))
-    more: dict[str, Any] = {"assumed": frozenset(notes["assumed"])} if "assumed" in notes else {}
+    more: dict[str, Any] = {name: frozenset(notes[name]) for name in kind.name_sets}
     return kind(
         columns={name.removeprefix("column "): values for name, values in numbers.items()},
         kinds=notes["kinds"], grid=grid, closing=notes["closing"], file=where, sha256=notes["sha256"],

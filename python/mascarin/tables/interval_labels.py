@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.channels import Kind
-from mascarin.weather.grid import Grid
-from mascarin.weather.table import Table
-from mascarin.weather.times import epoch_seconds
+from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.grid import Grid
+from mascarin.tables.reading.table import Table
+from mascarin.tables.record import Kind
+from mascarin.tables.times import epoch_seconds
 
 if TYPE_CHECKING:
     import pandas as pd

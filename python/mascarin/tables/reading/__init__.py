@@ -1,0 +1,1 @@
+"""Files of tables as regular series: encoding, layout, numbers, times."""
