@@ -19,7 +19,7 @@ import mascarin
 from mascarin.building.part import Part
 
 PACKAGES = [
-    "building", "calibration", "comfort", "ensemble", "materials", "optimization", "sensitivity",
+    "building", "calibration", "comfort", "ensemble", "materials", "optimization", "physics", "sensitivity",
     "simulation", "validation", "weather",
 ]  # fmt: skip
 

@@ -12,9 +12,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "python" / "mascarin"
 ENGINE = ROOT / "crates" / "engine" / "src"
 
-#: Constants by their digits: 0 degC and the triple point, Stefan and Boltzmann, gravity, ratio of the molar masses
-#: of vapour and air, gas constants, specific heats of air, vapour and water, latent heats, Magnus' formula, the
-#: standard atmosphere.
+#: Constants by their digits: 0 degC and the triple point, Stefan and Boltzmann, gravity, ratio of the molar
+#: masses of vapour and air, gas constants, specific heats of air, vapour and water, latent heats, Magnus,
+#: the standard atmosphere.
 CONSTANTS = {
     "27315", "27316", "567", "567037", "5670374419", "980665", "981", "622", "621945", "62198", "287055",
     "28705", "28706", "461524", "4615", "8314462618", "8314", "1006", "1860", "4186", "4182", "2501", "2830",

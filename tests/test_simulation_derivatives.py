@@ -145,8 +145,9 @@ def test_dataset_names_units_and_parameters(cell: Study) -> None:
 
 
 def test_globe_temperature_follows_air_and_radiant_temperature(cell: Study) -> None:
+    names = ["room.globe_temperature", "room.air_temperature", "room.mean_radiant_temperature"]
     simulation = Simulation(
-        cell.building, cell.climate, start="2010-09-20", end="2010-09-21", outputs=["room.globe_temperature"],
+        cell.building, cell.climate, start="2010-09-20", end="2010-09-21", outputs=names,
         measurements=cell.measurements, initial=23.0,
     )  # fmt: skip
     path = "surfaces.roof.outside.absorptance"
@@ -156,7 +157,16 @@ def test_globe_temperature_follows_air_and_radiant_temperature(cell: Study) -> N
     apart = np.abs(exact[:, 0]) > 0.1
     np.testing.assert_allclose(slopes[0, apart, 0], exact[apart, 0], rtol=2e-3)
     assert apart.sum() > 50
-    assert records.shape == (97, 1)
+    # By the implicit function theorem on the balance of ISO 7726: 4 e sigma T^3 and 1.25 times the convective
+    # coefficient are the weights of the surroundings and of the air.
+    globe, air, radiant = records.T
+    convection = 1.25 * 1.4 * (np.abs(globe - air) / 0.15) ** 0.25
+    at_globe, at_walls = (4.0 * 0.95 * 5.670374419e-8 * (t + 273.15) ** 3 for t in (globe, radiant))
+    _, by_air, by_walls = slopes[0].T
+    implicit = (convection * by_air + at_walls * by_walls) / (at_globe + convection)
+    # Closer than 1e-8 K the coefficient at the globe is lost in round-off.
+    np.testing.assert_allclose(slopes[0, :, 0], implicit, rtol=1e-6, atol=1e-7)
+    assert records.shape == (97, 3)
 
 
 def test_refusals(days: Simulation) -> None:

@@ -400,3 +400,8 @@ class MeltingCurve:
     def reach(self) -> tuple[float, float]:
         """Where melting starts and is complete, without a thousandth of the transition at tails [degC]."""
         return _engine.melting_reach(self._curve, self._values)
+
+
+def __dir__() -> list[str]:
+    """Public names alone, as packages list them."""
+    return __all__

@@ -11,8 +11,6 @@ from mascarin import _engine
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from mascarin.building.outputs import Output
-
 
 class OutputName(NamedTuple):
     """A name of a kind of output for the parts of one sort.
@@ -101,14 +99,3 @@ KINDS: Final[Mapping[str, OutputKind]] = {
     row["kind"]: _read(row) for row in json.loads(_engine.output_table())
 }
 """Every kind of output, zones first."""
-
-
-def meaning(output: Output) -> str:
-    """What an output is, in one sentence.
-
-    Parameters
-    ----------
-    output : Output
-        The output.
-    """
-    return KINDS[output.kind].meaning

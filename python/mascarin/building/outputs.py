@@ -98,6 +98,11 @@ class Output:
         return KINDS[self.kind].usual
 
     @property
+    def meaning(self) -> str:
+        """What it is, in one sentence."""
+        return KINDS[self.kind].meaning
+
+    @property
     def label(self) -> str:
         """Title of figures of it."""
         return KINDS[self.kind].label
@@ -120,16 +125,17 @@ def outputs(building: Description) -> list[Output]:
 def _found(building: Description) -> Iterator[Output]:
     for owner, names in owners(building).items():
         rows = [(kind, row, name) for kind, row in KINDS.items() for name in row.names if name.owner == owner]
+        # Rows of sides, or of layers, that follow each other: side by side, or layer by layer.
+        groups = [list(group) for _, group in groupby(rows, key=lambda row: _WORD.findall(row[2].pattern))]
         for index, part in enumerate(names):
-            found = [
-                (place, kind, row, name)
-                for kind, row, name in rows
-                for place in places(building, owner, index, part, row.of)
-            ]
-            for keys, group in groupby(found, key=lambda one: tuple(one[0].positions)):
-                # Sides and layers one after the other, each with all of its quantities.
-                order = sorted(group, key=lambda one: tuple(one[0].positions[key] for key in keys))
-                yield from (_output(*one) for one in order)
+            for group in groups:
+                found = [
+                    (place, kind, row, name)
+                    for kind, row, name in group
+                    for place in places(building, owner, index, part, row.of)
+                ]
+                found.sort(key=lambda one: tuple(one[0].positions.values()))
+                yield from (_output(*one) for one in found)
 
 
 def _output(place: Place, kind: str, row: OutputKind, name: OutputName) -> Output:

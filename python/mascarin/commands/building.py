@@ -114,7 +114,6 @@ def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_jso
     patterns : str
         Only outputs that fit these patterns, such as "roof.*" or "*_temperature".
     """
-    from mascarin.building.output_kinds import meaning
     from mascarin.simulation.compiling import chosen_outputs
 
     described = read_building(building, settings)
@@ -126,7 +125,7 @@ def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_jso
             "aliases": list(output.aliases),
             "mean": output.mean,
             "default": output.name in usual,
-            "meaning": meaning(output),
+            "meaning": output.meaning,
         }
         for output in described.outputs()
     ]

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from mascarin.building.output_kinds import meaning
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ def _input(simulation: Simulation, channel: Channel) -> Variable:
 def _outputs(simulation: Simulation) -> list[Variable]:
     columns = simulation.compiled.readings.columns
     return [
-        Variable(output.name, "output", output.unit, meaning(output), {"output": column})
+        Variable(output.name, "output", output.unit, output.meaning, {"output": column})
         for output, column in zip(simulation.outputs, columns, strict=True)
     ]
 

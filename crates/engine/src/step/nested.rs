@@ -8,6 +8,7 @@ use crate::building::model::Model;
 use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
+use crate::physics::constants::KELVIN;
 use crate::physics::pcm::PcmMemory;
 use crate::step::newton::{MAX_ITERATIONS, StageSolver, TOLERANCE};
 use crate::step::stage::Stage;
@@ -16,7 +17,7 @@ use crate::step::state::State;
 /// Iterations in all before a stage is given up.
 const MAX_NESTED: usize = 10 * MAX_ITERATIONS;
 /// Colder than any melting range: there the second function is zero [degC].
-const SOLID: f64 = -273.15;
+const SOLID: f64 = -KELVIN;
 
 impl<S: Real> StageSolver<'_, S> {
     /// Solves a stage from its start, one lane. False where it does not converge.
