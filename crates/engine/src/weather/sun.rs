@@ -89,8 +89,8 @@ impl<S: Real> SolarConditions<S> {
     }
 
     /// Linear interpolation or extrapolation: `fraction` 0 at the first, 1 at the second.
-    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
-        let line = |a: S, b: S| a + (b - a).scale(fraction);
+    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: S) {
+        let line = |a: S, b: S| a + (b - a) * fraction;
         for (at, (&a, &b)) in
             self.irradiances.iter_mut().zip(first.irradiances.iter().zip(&second.irradiances))
         {
