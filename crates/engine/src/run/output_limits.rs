@@ -16,6 +16,7 @@ impl Output {
         match self {
             Self::LiquidFraction { .. } => "a liquid fraction",
             Self::VentOpen { .. } => "an open fraction",
+            Self::SolarTransmittance { .. } => "a solar transmittance",
             Self::HumidityRatio { .. } => "a humidity ratio",
             Self::RelativeHumidity { .. } | Self::SurfaceHumidity { .. } => "a relative humidity",
             Self::AirChanges { .. } => "air changes",
@@ -36,6 +37,7 @@ impl Output {
             Self::SurfaceHumidity { surface, side } | Self::Convection { surface, side } => {
                 plan.surface_name(SurfaceId::new(surface, side))
             }
+            Self::SolarTransmittance { surface } => plan.surface_name(SurfaceId::outside(surface)),
             Self::VentOpen { vent } => format!("vent {}", description.vents[vent].name),
             Self::HumidityRatio { zone }
             | Self::RelativeHumidity { zone }
@@ -50,7 +52,9 @@ impl Output {
     #[must_use]
     pub fn limits(&self) -> Option<[f64; 2]> {
         match self {
-            Self::LiquidFraction { .. } | Self::VentOpen { .. } => Some([0.0, 1.0]),
+            Self::LiquidFraction { .. } | Self::VentOpen { .. } | Self::SolarTransmittance { .. } => {
+                Some([0.0, 1.0])
+            }
             Self::HumidityRatio { .. }
             | Self::RelativeHumidity { .. }
             | Self::SurfaceHumidity { .. }

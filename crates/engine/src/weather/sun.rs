@@ -132,7 +132,7 @@ impl<S: Real> SolarConditions<S> {
         let dark = now.sunlight.dark();
         for (irradiance, source) in self.irradiances.iter_mut().zip(&weather_index.irradiance_sources) {
             *irradiance = match source {
-                IrradianceSource::Measured(channel) => S::constant(now.row[*channel]),
+                IrradianceSource::Measured(channel) => S::constant(now.on_sensor(*channel)),
                 IrradianceSource::Obstructed(channel, surface) => {
                     let Boundary::Outdoors(outdoors) = &coefficients.surfaces[*surface].boundary else {
                         continue;
