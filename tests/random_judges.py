@@ -69,11 +69,6 @@ class Extremes:
     fractions_outside: int = 0
 
 
-#: Relative humidity allowed in the first row only: a fault that is known and open. Seed 0 has 1.00125 there;
-#: the pressure at the start of the repeated period explains 0.0002 of it. [-]
-SATURATED_BEFORE = 1.005
-
-
 def faults(
     case: Case,
     building: Building,
@@ -103,8 +98,6 @@ def faults(
             row = int(np.flatnonzero(~np.isfinite(values))[0])
             found.append(Fault("not finite", f"{output.name} in row {row}: {values[row]}"))
             continue
-        if output.kind == "relative_humidity" and values[0] <= SATURATED_BEFORE:
-            values = np.concatenate([np.minimum(values[:1], 1.0), values[1:]])
         low, high = float(values.min()), float(values.max())
         for kind, at, limit in _outside(case, building, output, low, high, changed or {}):
             where = f"{output.name} in row {_row(values, at)}"

@@ -85,6 +85,12 @@ impl<S: Real> Plane<S> {
 const COS_85: f64 = 0.08715574274765814;
 const COS_89: f64 = 0.0174524064372836;
 
+/// A measured irradiance, without the zero offset of its pyranometer by night [W/m2]. What is not a number stays so.
+#[inline(always)]
+pub(crate) fn not_negative(irradiance: f64) -> f64 {
+    if irradiance < 0.0 { 0.0 } else { irradiance }
+}
+
 impl Sunlight {
     /// Reads a forcing row and splits the diffuse radiation by the model.
     #[must_use]
@@ -92,10 +98,13 @@ impl Sunlight {
         let direction = [row[channel::SUN_EAST], row[channel::SUN_NORTH], row[channel::SUN_UP]];
         let up = direction[2];
         let extra = row[channel::DIRECT_NORMAL_EXTRA];
-        // Nothing exceeds what arrives from outside of the atmosphere, where that is known.
+        // Nothing exceeds what arrives from outside of the atmosphere, where that is known, and nothing is below zero: a pyranometer by night,
+        // whose dome is colder than its sensor, shows some watts less.
         let most = if extra > 0.0 { extra } else { f64::INFINITY };
-        let direct_normal = if up > 0.0 { row[channel::DIRECT_NORMAL].min(most) } else { 0.0 };
-        let diffuse = row[channel::DIFFUSE_HORIZONTAL].min(most);
+        let [direct, diffuse, global] =
+            [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL]
+                .map(|channel| not_negative(row[channel]).min(most));
+        let direct_normal = if up > 0.0 { direct } else { 0.0 };
         let (circumsolar_fraction, horizon_fraction) = match model {
             DiffuseSky::Isotropic => (0.0, 0.0),
             DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
@@ -116,7 +125,7 @@ impl Sunlight {
         Self {
             direction,
             direct_normal,
-            global_horizontal: row[channel::GLOBAL_HORIZONTAL].min(most),
+            global_horizontal: global,
             isotropic,
             circumsolar,
             horizon,

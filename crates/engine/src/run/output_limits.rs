@@ -37,8 +37,8 @@ pub(crate) fn require_limits(
             let [least, most] = row.limits;
             let expected =
                 if most.is_finite() { format!("{least} to {most}") } else { format!("none below {least}") };
-            let (label, unit) = (row.label.to_lowercase(), row.unit);
-            let what = format!("{value:.9} {unit} as its {label}, expected {expected}");
+            let unit = if row.unit == "-" { String::new() } else { format!(" {}", row.unit) };
+            let what = format!("a {} of {value:.9}{unit}, expected {expected}", row.label.to_lowercase());
             return Err(EngineError::Impossible { step, place: output.part(plan), what });
         }
     }

@@ -9,7 +9,7 @@
 //! what the building has reached while they act; cooling lowers the lower bound likewise. In exact arithmetic conduction, convection,
 //! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see `OVERSHOOT`.
 
-use crate::building::coefficients::{Boundary, Imposed};
+use crate::building::coefficients::{Boundary, BridgeEnd, Imposed};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
@@ -162,6 +162,11 @@ impl<S: Real> PhysicalLimits<S> {
             act(air);
             for &surface in &stepper.weather.index.imposed {
                 if let Boundary::Imposed(Imposed::Channel(channel)) = numbers.surfaces[surface].boundary {
+                    act(S::constant(row[channel]));
+                }
+            }
+            for bridge in &numbers.bridges {
+                if let BridgeEnd::Imposed(Imposed::Channel(channel)) = bridge.to {
                     act(S::constant(row[channel]));
                 }
             }

@@ -354,6 +354,9 @@ impl<'a, S: Real> Follower<'a, S> {
     #[inline(always)]
     pub(crate) fn end_balance(&mut self, state: &mut State<S>) {
         state.surfaces.copy_from_slice(&self.solution.surfaces);
+        if let Some(humidity) = &self.weather.conditions.humidity {
+            state.condense(humidity.pressure);
+        }
         self.weather.average_instant(&self.model);
         if let Some(vapour) = &mut self.vapour {
             vapour.begin();

@@ -64,7 +64,8 @@ impl<'a, S: Real> StageWeather<'a, S> {
     /// The weather at a stage of a step, or of a part of it.
     ///
     /// Within a step of two stages the weather is the straight line through both: SDIRK2 sums a straight line exactly,
-    /// so that the parts of a step add up to the heat of the whole one. With one stage it is constant.
+    /// so that the parts of a step add up to the heat of the whole one. With one stage it is constant. The line of the sun is less steep where
+    /// it would fall below zero.
     #[inline(always)]
     pub(crate) fn set_stage(
         &mut self,
@@ -92,8 +93,10 @@ impl<'a, S: Real> StageWeather<'a, S> {
                 add_absorbed(&mut self.absorbed, model, &first, weights[0]);
                 add_absorbed(&mut self.absorbed, model, &second, weights[1]);
             }
-            let place = part.from + part.share * nodes[stage];
-            self.conditions.interpolate(&first, &second, (place - nodes[0]) / (nodes[1] - nodes[0]));
+            let at = |place: f64| (place - nodes[0]) / (nodes[1] - nodes[0]);
+            let fraction = at(part.from + part.share * nodes[stage]);
+            let of_sun = Conditions::fraction_of_sun(&first, &second, fraction, [at(0.0), at(0.5)]);
+            self.conditions.interpolate(&first, &second, (fraction, of_sun));
         }
     }
 

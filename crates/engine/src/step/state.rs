@@ -117,6 +117,15 @@ impl<S: Real> State<S> {
         state
     }
 
+    /// Lets what the airs cannot hold at a pressure [Pa] condense: the state that a record starts from belongs to other weather, that at the end of
+    /// the repeated period or of the run before.
+    #[inline(never)]
+    pub(crate) fn condense(&mut self, pressure: S) {
+        for (ratio, &air) in self.vapour.iter_mut().zip(&self.air) {
+            *ratio = ratio.min(humidity_ratio(saturation_pressure(air), pressure));
+        }
+    }
+
     /// Enthalpies and memory that belong to the temperatures, in the nonlinear walls.
     fn set_enthalpies(&mut self, model: &Model<'_, S>) {
         for &w in &model.parts.nonlinear_walls {

@@ -106,7 +106,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.guess.forget();
     }
 
-    /// Brings the surfaces of a state into balance with the weather: a stage so short that nothing is stored.
+    /// Brings the surfaces of a state into balance with the weather: a stage so short that nothing is stored. Airs that hold more vapour than
+    /// they can in this weather lose it.
     ///
     /// # Errors
     /// [`EngineError::NotConverged`].
@@ -121,6 +122,9 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.begin_step(state, 0.0);
                 self.solve_stage(state, INSTANT.of::<S>(), (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+                if let Some(humidity) = &self.weather.conditions.humidity {
+                    state.condense(humidity.pressure);
+                }
                 self.known.accept(Part::whole(0), state);
                 self.weather.average_instant(&self.model);
                 self.begin_vapour();

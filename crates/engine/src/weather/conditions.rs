@@ -82,14 +82,15 @@ impl<S: Real> Conditions<S> {
         }
     }
 
-    /// Linear interpolation or extrapolation of two instants: `fraction` 0 at the first, 1 at the second.
+    /// Linear interpolation or extrapolation of two instants: `fraction` 0 at the first, 1 at the second; for the sun the one of
+    /// [`Self::fraction_of_sun`].
     ///
     /// Wind and the coefficients that depend on it are not extrapolated below zero.
-    pub fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
+    pub fn interpolate(&mut self, first: &Self, second: &Self, (fraction, of_sun): (f64, S)) {
         let line = |a: S, b: S| a + (b - a).scale(fraction);
         let rate = |a: S, b: S| line(a, b).max(S::zero());
         for (at, (a, b)) in self.surfaces.iter_mut().zip(first.surfaces.iter().zip(&second.surfaces)) {
-            at.solar = line(a.solar, b.solar);
+            at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
             at.forced = [rate(a.forced[0], b.forced[0]), rate(a.forced[1], b.forced[1])];
@@ -111,10 +112,45 @@ impl<S: Real> Conditions<S> {
         for (at, (&a, &b)) in self.bridges.iter_mut().zip(first.bridges.iter().zip(&second.bridges)) {
             *at = a.zip(b).map(|(a, b)| line(a, b));
         }
-        self.sun.interpolate(&first.sun, &second.sun, fraction);
+        self.sun.interpolate(&first.sun, &second.sun, of_sun);
         self.sky = line(first.sky, second.sky);
         self.outdoor_air = line(first.outdoor_air, second.outdoor_air);
         self.wind = rate(first.wind, second.wind);
+    }
+
+    /// Where on the straight line through two instants the sun is, instead of at a fraction; `start` and `middle` are the fractions at the
+    /// start and in the middle of the step.
+    ///
+    /// A sun that rises from the first instant to the second would be negative at the start of the step. The line is turned about the middle of the
+    /// step until it is nowhere: the mean over the step stays. It is turned for all parts of the sun alike, so that what is absorbed stays
+    /// what is transmitted.
+    pub(crate) fn fraction_of_sun(
+        first: &Self,
+        second: &Self,
+        fraction: f64,
+        [start, middle]: [f64; 2],
+    ) -> S {
+        let mut turn = S::one();
+        let mut keep = |a: S, b: S| {
+            let (rise, mean) = (b - a, a + (b - a).scale(middle));
+            let rises = S::zero().lt(rise);
+            let most = mean / S::select(rises, rise.scale(middle - start), S::one());
+            turn = S::select(rises, turn.min(most.max(S::zero())), turn);
+        };
+        for (a, b) in first.surfaces.iter().zip(&second.surfaces) {
+            keep(a.solar, b.solar);
+        }
+        for (&a, &b) in first.sun.irradiances.iter().zip(&second.sun.irradiances) {
+            keep(a, b);
+        }
+        for (a, b) in first.sun.windows.iter().zip(&second.sun.windows) {
+            keep(a.beam, b.beam);
+            for (&a, &b) in a.panes.iter().zip(&b.panes) {
+                keep(a, b);
+            }
+        }
+        let turned = S::constant(middle) + turn.scale(fraction - middle);
+        S::select(turn.lt(S::one()), turned, S::constant(fraction))
     }
 
     /// Evaluates the weather at an instant.
@@ -346,13 +382,47 @@ mod tests {
         later[channel::DIRECT_NORMAL] = 400.0;
         let second = conditions(&plan, &later);
         let mut at = first.clone();
-        at.interpolate(&first, &second, 0.5);
+        at.interpolate(&first, &second, (0.5, 0.5));
         let wall = SurfaceId::outside(0);
         assert_eq!((at.outdoor_air, at.wind, at.surfaces[wall].temperature), (12.0, 2.0, 12.0));
         let mean = 0.5 * (first.sun.windows[0].transmitted + second.sun.windows[0].transmitted);
         assert!((at.sun.windows[0].transmitted / mean - 1.0).abs() < 1e-12);
-        at.interpolate(&first, &second, 2.0);
+        at.interpolate(&first, &second, (2.0, 2.0));
         assert_eq!((at.outdoor_air, at.wind), (18.0, 0.0));
         assert!(at.surfaces[wall].forced[0] >= 0.0);
+    }
+
+    /// The sun rises from nothing at the first stage to 420 W/m2 at the last one. In no part of the step is it negative, and the parts of the step
+    /// have the mean of both stages; a sun that sets keeps its line.
+    #[test]
+    fn the_sun_is_not_extrapolated_below_zero() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let node = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
+        let mut dark = row();
+        for at in [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL] {
+            dark[at] = 0.0;
+        }
+        let at_stages = [conditions(&plan, &dark), conditions(&plan, &row())];
+        let at = |place: f64| (place - node) / (1.0 - node);
+        for [first, last] in [[0, 1], [1, 0]] {
+            let [first, last] = [&at_stages[first], &at_stages[last]];
+            let roof = |place: f64| {
+                let of_sun = Conditions::fraction_of_sun(first, last, at(place), [at(0.0), at(0.5)]);
+                let mut now = first.clone();
+                now.interpolate(first, last, (at(place), of_sun));
+                for (surface, solar) in now.surfaces.iter().enumerate() {
+                    assert!(solar.solar >= -1e-12, "{} W/m2 on {surface} at {place}", solar.solar);
+                }
+                now.surfaces[SurfaceId::outside(5)].solar
+            };
+            let whole = (1.0 - node) * first.surfaces[SurfaceId::outside(5)].solar
+                + node * last.surfaces[SurfaceId::outside(5)].solar;
+            let mut sum = 0.0;
+            for part in 0..8 {
+                let from = f64::from(part) / 8.0;
+                sum += ((1.0 - node) * roof(from + node / 8.0) + node * roof(from + 0.125)) / 8.0;
+            }
+            assert!((sum / whole - 1.0).abs() < 1e-12, "{sum} is not {whole}");
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::physics::convection::{Wind, WindTerms};
 use crate::physics::horizon;
 use crate::physics::longwave::SkyState;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
-use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight};
+use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight, not_negative};
 
 /// The weather at one stage of a step.
 #[derive(Debug, Clone)]
@@ -67,6 +67,13 @@ impl<'a> Instant<'a> {
         plan.solar_geometry.visibility(surface, &self.fractions)
     }
 
+    /// A measured irradiance [W/m2]. A pyranometer by night, whose dome is colder than its sensor, shows some watts below zero: these are no radiation
+    /// and count as none.
+    #[inline(always)]
+    pub(crate) fn on_sensor(&self, channel: usize) -> f64 {
+        not_negative(self.row[channel])
+    }
+
     /// A measured irradiance of a surface outdoors by its parts: beam, sky and ground in the proportions of the climate at this
     /// instant, or of an isotropic sky where the climate has no radiation. Of the irradiance of the free plane obstacles leave
     /// their part; one that was measured behind them is used as it is.
@@ -79,7 +86,7 @@ impl<'a> Instant<'a> {
         outdoors: &Outdoors<S>,
         (ground, channel): (S, usize),
     ) -> Irradiance<S> {
-        let (open, sum) = (self.visibility(plan, surface), self.row[channel]);
+        let (open, sum) = (self.visibility(plan, surface), self.on_sensor(channel));
         let Some(free) = &outdoors.free else {
             let light = if self.sunlight.dark() { Sunlight::OVERCAST } else { self.sunlight };
             return light.on(&outdoors.plane, ground, &open).measured(sum);
@@ -206,11 +213,17 @@ mod tests {
     use crate::weather::index::WeatherIndex;
 
     /// The irradiance of the south wall of a zone, of which 100 W/m2 were measured, under the overhang or without it.
-    fn left_of_100(
+    fn left_of_100(overhang: bool, behind: bool, sun: [f64; 3], climate: [f64; 2]) -> (f64, SkyVisibility) {
+        irradiated(overhang, behind, sun, climate, 100.0)
+    }
+
+    /// The same of another measured irradiance [W/m2].
+    fn irradiated(
         overhang: bool,
         behind: bool,
         sun: [f64; 3],
         [direct, diffuse]: [f64; 2],
+        measured: f64,
     ) -> (f64, SkyVisibility) {
         let mut description = glazed_zone("area", overhang);
         description.channels = vec!["G".into()];
@@ -224,7 +237,7 @@ mod tests {
         }
         (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (direct, diffuse);
         row[channel::GLOBAL_HORIZONTAL] = direct * sun[2].max(0.0) + diffuse;
-        (row[channel::DIRECT_NORMAL_EXTRA], row[CLIMATE_CHANNELS]) = (1361.0, 100.0);
+        (row[channel::DIRECT_NORMAL_EXTRA], row[CLIMATE_CHANNELS]) = (1361.0, measured);
         let numbers = values(&plan.description);
         let coefficients = Coefficients::new(&plan, &numbers);
         let index = WeatherIndex::new(&plan, &coefficients);
@@ -236,6 +249,32 @@ mod tests {
         let wall = SurfaceId::outside(0);
         // The wall absorbs 0.6 of it.
         (conditions.surfaces[wall].solar / 0.6, now.visibility(&plan, wall))
+    }
+
+    /// Below zero a pyranometer measures itself: no irradiance of a surface is negative, whether the climate or a column has it.
+    #[test]
+    fn zero_offsets_are_no_radiation() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        row[channel::SUN_UP] = 0.2;
+        row[channel::SUN_NORTH] = -0.96_f64.sqrt();
+        for at in [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL] {
+            row[at] = -3.0;
+        }
+        let numbers = values(&plan.description);
+        let coefficients = Coefficients::new(&plan, &numbers);
+        let index = WeatherIndex::new(&plan, &coefficients);
+        let forcing = Forcing::new(&row, 1, row.len()).unwrap();
+        let weather = Weather::new(&plan, &forcing);
+        let mut conditions = Conditions::new(&plan, &coefficients, &index);
+        conditions.update(&plan, &coefficients, &index, &numbers, &weather.at(0, 0));
+        assert!(weather.at(0, 0).sunlight.dark());
+        assert!(conditions.surfaces.iter().all(|surface| surface.solar == 0.0));
+        assert!(conditions.sun.windows.iter().all(|window| window.transmitted == 0.0));
+        let day = [0.0, -0.75_f64.sqrt(), 0.5];
+        for behind in [true, false] {
+            assert_eq!(irradiated(true, behind, day, [600.0, 120.0], -4.0).0, 0.0);
+        }
     }
 
     /// Beam 600 0.75^1/2 = 519.615, sky 0.5 120 = 60, ground 0.2 0.5 420 = 42 W/m2 on the free wall: of 100 W/m2 each obstacle

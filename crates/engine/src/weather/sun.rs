@@ -89,8 +89,8 @@ impl<S: Real> SolarConditions<S> {
     }
 
     /// Linear interpolation or extrapolation: `fraction` 0 at the first, 1 at the second.
-    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
-        let line = |a: S, b: S| a + (b - a).scale(fraction);
+    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: S) {
+        let line = |a: S, b: S| a + (b - a) * fraction;
         for (at, (&a, &b)) in
             self.irradiances.iter_mut().zip(first.irradiances.iter().zip(&second.irradiances))
         {
@@ -132,7 +132,7 @@ impl<S: Real> SolarConditions<S> {
         let dark = now.sunlight.dark();
         for (irradiance, source) in self.irradiances.iter_mut().zip(&weather_index.irradiance_sources) {
             *irradiance = match source {
-                IrradianceSource::Measured(channel) => S::constant(now.row[*channel]),
+                IrradianceSource::Measured(channel) => S::constant(now.on_sensor(*channel)),
                 IrradianceSource::Obstructed(channel, surface) => {
                     let Boundary::Outdoors(outdoors) = &coefficients.surfaces[*surface].boundary else {
                         continue;

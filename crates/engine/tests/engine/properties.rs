@@ -279,8 +279,7 @@ fn same_slopes_in_reverse(first_seed: u64, steps: usize) {
 /// With `d` the central difference quotient and `s` the second difference over h, the quotients of the two sides are
 /// `d - s/2` and `d + s/2`. Where the reading is smooth, `d` is of the order of h^2 from the slope and `s` of the order of h;
 /// where its slope changes at a switch within h, the slope is at most `s/2` from `d`. Where the reading itself jumps, the
-/// quotient moves away from the slope as h is halved, by the size of the jump over h (TARP at the vertical: 2e-5 and 2e-4): there is
-/// nothing to compare.
+/// quotient grows as h is halved: there is nothing to compare.
 #[test]
 fn slopes_are_differences() {
     slopes_lie_between_differences(5001, 12);
@@ -329,8 +328,7 @@ fn slopes_lie_between_differences(first_seed: u64, steps: usize) {
             }
             if (slope - difference).abs() > allowed {
                 let (closer, allowed) = quotient(0.5 * h)?;
-                let moves_away = (slope - closer).abs() > 1.5 * (slope - difference).abs();
-                if (closer - difference).abs() > 0.5 * difference.abs() || moves_away {
+                if (closer - difference).abs() > 0.5 * difference.abs() {
                     add(&jumps);
                     continue;
                 }

@@ -162,7 +162,7 @@ outputs! {
 
     /// Transmitted over incident solar radiation on the glass; 0 without sun.
     SolarTransmittance { surface } =
-        Row::mean(Of::OutdoorWindow, "WINDOW.solar_transmittance", "-", "Solar transmittance"),
+        Row::mean(Of::OutdoorWindow, "WINDOW.solar_transmittance", "-", "Solar transmittance").within(0.0, 1.0),
         |at| solar_transmittance(&at, surface);
 
     /// Solar radiation that the side of a surface, or all panes of a window, absorb.
