@@ -84,7 +84,7 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
 ) -> None:
     code, printed, said = run(capsys, "calibrate", str(bench.study), "-o", str(tmp_path), "--json")
     assert code == 0
-    content = content_of_first = json.loads(printed)
+    content = at_first = json.loads(printed)
     assert content == json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     assert set(content["parameters"]) == set(TRUTH)
     assert content["sensors"]["joint"]["corroboration"]["fitted"]["rmse"] < 0.05
@@ -100,13 +100,13 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     assert code == 0
     assert record.read_bytes() == before
     # The folder came by mail, with a file in the place of the record; and no kept results.
-    for content in (b"a,b\n1,2\n", before.replace(b'"weights":[', b'"weights":[9.0,', 1)):
+    for damaged in (b"a,b\n1,2\n", before.replace(b'"weights":[', b'"weights":[9.0,', 1)):
         for file in (tmp_path / ".work").glob("*.npz"):
             file.unlink()
-        record.write_bytes(content)
+        record.write_bytes(damaged)
         code, printed, said = run(capsys, "calibrate", str(bench.study), "-o", str(tmp_path), "--json")
         assert code == 0
-        assert json.loads(printed)["parameters"] == content_of_first["parameters"]
+        assert json.loads(printed)["parameters"] == at_first["parameters"]
         assert f"{record.name}: found something else" in said or "everything is computed again" in said
     study = json.loads((tmp_path / "study.json").read_text(encoding="utf-8"))
     assert study["parameters"] == content["parameters"]
