@@ -260,7 +260,7 @@ def _study(folder: Path) -> None:
         (folder / "tables").mkdir(exist_ok=True)
         (folder / "tables" / "a.csv").write_text("a\n")
         workspace.record("study", [folder / "tables" / "a.csv"])
-        workspace.keep("sensitivity-x", 0, np.ones((2, 3, 1)))
+        workspace.keep("sensitivity-x", 0, {"values": np.ones((2, 3, 1)), "judged": np.zeros((2, 2))})
 
 
 def _use(workspace: Workspace) -> None:

@@ -166,17 +166,17 @@ class Workspace:
         """File of an intermediate result."""
         return self.folder / name
 
-    def keep(self, name: str, first: int, values: Array) -> None:
-        """Save outputs of consecutive runs under the number of the first."""
+    def keep(self, name: str, first: int, arrays: Mapping[str, Array]) -> None:
+        """Save arrays of consecutive runs under the number of the first."""
         file = f"{name}-{first:09d}.npy"
-        own_files.write(self.path(file), file, own_files.packed(None, {"values": values}))
+        own_files.write(self.path(file), file, own_files.packed(None, arrays))
 
-    def kept(self, name: str) -> Iterator[tuple[int, Array]]:
-        """Outputs saved so far, by number of their first run; unreadable files are removed."""
+    def kept(self, name: str) -> Iterator[tuple[int, dict[str, Array]]]:
+        """Arrays saved so far, by number of their first run; unreadable files are removed."""
         for file in sorted(self.folder.glob(f"{name}-*.npy")):
             try:
                 _, arrays = own_files.unpacked(own_files.read(file, file.name))
-                yield int(file.stem.rsplit("-", 1)[1]), arrays["values"]
+                yield int(file.stem.rsplit("-", 1)[1]), arrays
             except (ValueError, LookupError, OSError):
                 own_files.remove(file)
 
