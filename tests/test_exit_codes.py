@@ -6,7 +6,6 @@ Commands come from the registry: one that is in none of the tables here fails
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
