@@ -66,9 +66,8 @@ def test_an_error_while_a_file_is_written_names_it(
         raise error
     assert caught.value.filename == str(target)
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(OSError, match=r"run\.csv") as seen, way(Path("run.csv")) as file:
-        draft = file if isinstance(file, Path) else next(Path().glob(".run.csv*"))
-        raise OSError(errno.ENOSPC, "No space left on device", str(draft))
+    with pytest.raises(OSError, match=r"run\.csv") as seen, way(Path("run.csv")):
+        raise OSError(errno.ENOSPC, "No space left on device", str(next(Path().glob(".run.csv*"))))
     assert seen.value.filename == "run.csv"
     assert target.read_text(encoding="utf-8") == "before"
     assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
