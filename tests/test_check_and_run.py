@@ -83,7 +83,7 @@ def _room(corner: float, roof: float = 3.0) -> dict[str, Any]:
     shell = {"floor": floor, "ceiling": ceiling, "south": south, "east": east, "north": north, "west": west}
     return {
         "name": "room",
-        "site": {"latitude": 48.0, "longitude": 11.0, "timezone": "UTC+1", "altitude": 500},
+        "site": {"latitude": 39.74, "longitude": -105.18, "timezone": "UTC-7", "altitude": 1829},
         "materials": {"brick": {"conductivity": 0.5, "density": 1500, "specific_heat": 900}},
         "constructions": {"wall": {"layers": [{"material": "brick", "thickness": 0.2}]}},
         "zones": {"room": {"volume": 60.0}},

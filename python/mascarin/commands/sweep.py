@@ -25,6 +25,7 @@ from mascarin.commands.inputs import (
     seconds,
 )
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, SolverError
 
@@ -114,7 +115,7 @@ def sweep(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
         allow_outside=allow_outside,
     )  # fmt: skip
-    with Progress("members") as progress:
+    with lines_named(building), Progress("members") as progress:
         store = sweep_into(
             out,
             described,
