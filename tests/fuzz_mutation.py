@@ -83,7 +83,9 @@ def mutate(tree: Any, draw: random.Random) -> None:
         case 3 if isinstance(holder, list):
             holder.append(holder[key])
         case 4 if isinstance(holder[key], int | float):
-            holder[key] = holder[key] * draw.choice((-1, 0, 1e-12, 1e12, 10, 0.1))
+            # A whole number may be larger than any other kind of number.
+            factor = draw.choice((-1, 0, 1e-12, 1e12, 10, 0.1))
+            holder[key] = holder[key] * (factor if abs(holder[key]) < 1e290 else -1)
         case _:
             holder[key] = copy.deepcopy(draw.choice(VALUES))
 

@@ -21,13 +21,14 @@ import numpy as np
 import pandas as pd
 
 import fuzz_mutation
-from mascarin._io import own_files
+from mascarin._io import own_files, own_records
 from mascarin._io.cache import _read
 from mascarin.building.outputs import Output
-from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor
+from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, evaluations
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.store import Store
 from mascarin.ensemble.work import Chunk
+from mascarin.genopt import records as genopt_records
 from mascarin.genopt.export.case import open_case
 from mascarin.genopt.export.exchange import read_settings
 from mascarin.genopt.records import Log, Record
@@ -75,6 +76,8 @@ class OwnReader:
         """A mutation of a file."""
         content = self.files[name]
         kind = self.kinds.get(name)
+        if kind is not None and name.endswith(".jsonl"):
+            return _record(content, kind, draw)
         if kind is not None and draw.random() < 0.7:
             inner = own_files.opened(kind, content)
             return own_files.sealed(
@@ -120,6 +123,28 @@ def _json(content: bytes, draw: random.Random) -> bytes:
         lines[k] = json.dumps(_tree(json.loads(lines[k]), draw)).encode()
         return b"\n".join(lines)
     return json.dumps(_tree(trees[0], draw)).encode()
+
+
+def _record(content: bytes, kind: str, draw: random.Random) -> bytes:
+    """Bytes of a record, or values of one of its lines, which is sealed again in half of the cases."""
+    if draw.random() < 0.3:
+        return _bytes(content, draw)
+    lines = content.splitlines(keepends=True)
+    k = draw.randrange(len(lines))
+    head = kind if k == 0 else own_records.seal_of(lines[0].decode())
+    entry = _tree(own_records.opened(head, lines[k]), draw)
+    sealed = isinstance(entry, dict) and draw.random() < 0.5
+    try:
+        changed = own_records.sealed(head, entry) if sealed else json.dumps(entry) + "\n"
+    except ValueError:  # a number that is not finite cannot be written
+        changed = json.dumps(entry) + "\n"
+    lines[k] = changed.encode()
+    if k == 0 and sealed:  # the others are bound to the new first line
+        first = own_records.seal_of(content.split(b"\n")[0].decode())
+        further = [own_records.opened(first, line) for line in lines[1:]]
+        head = own_records.seal_of(changed)
+        lines[1:] = [own_records.sealed(head, one).encode() for one in further]
+    return b"".join(lines)
 
 
 def _tree(tree: Any, draw: random.Random) -> Any:
@@ -235,7 +260,7 @@ def _study(folder: Path) -> None:
         (folder / "tables").mkdir(exist_ok=True)
         (folder / "tables" / "a.csv").write_text("a\n")
         workspace.record("study", [folder / "tables" / "a.csv"])
-        workspace.keep("sensitivity-x", 0, np.ones((2, 3, 1)))
+        workspace.keep("sensitivity-x", 0, {"values": np.ones((2, 3, 1)), "judged": np.zeros((2, 2))})
 
 
 def _use(workspace: Workspace) -> None:
@@ -306,8 +331,9 @@ def readers(folder: Path) -> list[OwnReader]:
         evaluator.costs(np.array([[5.0], [6.0]]))
         evaluator.residuals(np.array([[5.0]]))
     slopes = {"x": [5.0], "j": base64.b64encode(np.ones(2).tobytes()).decode()}
+    first = (folder / "record.jsonl").read_text().splitlines()[0]
     with (folder / "record.jsonl").open("a") as file:
-        file.write(json.dumps(slopes) + "\n")
+        file.write(own_records.sealed(own_records.seal_of(first), slopes))
     log = Log(folder / "log.jsonl")
     log.begin({"a": "b"})
     for k in range(3):
@@ -331,9 +357,9 @@ def readers(folder: Path) -> list[OwnReader]:
         OwnReader("own pieces resumed", _files(half), tuple(_files(half)), _continued, kinds),
         OwnReader("own study", _files(study), tuple(_files(study)), _again, sealed),
         OwnReader("own record", {"record.jsonl": (folder / "record.jsonl").read_bytes()}, ("record.jsonl",),
-                  _recorded, {}),
+                  _recorded, {"record.jsonl": evaluations._KIND}),
         OwnReader("own log", {"log.jsonl": (folder / "log.jsonl").read_bytes()}, ("log.jsonl",),
-                  _resumed, {}),
+                  _resumed, {"log.jsonl": genopt_records._KIND}),
         OwnReader("own case", {"case.npz": own_files.sealed("compiled case", packed)}, ("case.npz",),
                   lambda at: open_case(at / "case.npz", "study.yaml"), {"case.npz": "compiled case"}),
         OwnReader("own weather", {"a.bin": own_files.sealed("weather", weather)}, ("a.bin",),

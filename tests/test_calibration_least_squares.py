@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mascarin._io import own_records
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, Rules, solve
 from mascarin.calibration.least_squares import Squares, derivative, exact, scale_of
 from mascarin.errors import InputError, SolverError
@@ -158,15 +160,25 @@ def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Pat
     assert other.trace.replayed == again.trace.cost.size
 
 
-def test_damaged_slopes_in_a_record_are_refused(tmp_path: Path) -> None:
+def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
-    solve(posed(0.2), rules=EXACT, record=path)
-    lines = path.read_text().splitlines()
+    whole = solve(posed(0.2), rules=EXACT, record=path)
+    sound = path.read_bytes()
+    lines = path.read_text().splitlines(keepends=True)
     at = next(k for k, line in enumerate(lines) if "j" in json.loads(line))
-    lines[at] = json.dumps(json.loads(lines[at]) | {"j": "AAAA"})
-    path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(InputError, match=rf"record.jsonl:{at + 1}: not slopes of this problem"):
-        solve(posed(0.2), rules=EXACT, record=path)
+    head = own_records.seal_of(lines[0])
+    entry = own_records.opened(head, lines[at].encode())
+    edited = json.dumps(entry | {"j": "AAAA"}) + "\n"
+    sealed = [own_records.sealed(head, entry | {"j": "AAAA"})]
+    undefined = base64.b64encode(np.full((300, 2, 3), np.nan).tobytes()).decode()
+    sealed.append(own_records.sealed(head, entry | {"j": undefined}))
+    for changed in (edited, *sealed):
+        path.write_text("".join([*lines[:at], changed, *lines[at + 1 :]]))
+        with pytest.warns(UserWarning, match=rf"damaged lines: 1 \(line {at + 1}: .*computed again"):
+            fit = solve(posed(0.2), rules=EXACT, record=path)
+        np.testing.assert_array_equal(fit.x, whole.x)
+        np.testing.assert_array_equal(fit.high, whole.high)
+        assert sorted(path.read_bytes().splitlines()) == sorted(sound.splitlines())
 
 
 def test_a_function_without_derivatives_has_none() -> None:

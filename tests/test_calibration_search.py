@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import itertools
 import json
 import math
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mascarin._io import own_records
 from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError, SolverError
 from mascarin.optimization import NelderMead
@@ -335,7 +337,7 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
     assert "null" in path.read_text()
 
 
-def test_records_of_another_problem_and_damaged_ones_are_refused(tmp_path: Path) -> None:
+def test_records_of_another_problem_and_other_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
     rules = Rules(agree=1, sequences=1, reductions=2)
     keywords: dict[str, Any] = {"method": "hooke-jeeves", "rules": rules, "record": path}
@@ -344,19 +346,61 @@ def test_records_of_another_problem_and_damaged_ones_are_refused(tmp_path: Path)
         solve(_problem(), cost="sd", **keywords)
     with pytest.raises(InputError, match=r"\(differing: problem\)"):
         solve(_problem(identity="other"), cost="rmse", **keywords)
-    good = path.read_text()
-    path.write_text(good + "nonsense\n")
-    with pytest.raises(InputError, match=rf"record.jsonl:{good.count(chr(10)) + 1}: not a line of JSON"):
-        solve(_problem(), cost="rmse", **keywords)
-    path.write_text(good + '{"x": [1.0], "c": [1.0, 2.0]}\n')
-    with pytest.raises(InputError, match="not an evaluation of this problem"):
-        solve(_problem(), cost="rmse", **keywords)
-    path.write_text("a,b\n1,2\n")
-    with pytest.raises(InputError, match="not a line of JSON"):
-        solve(_problem(), cost="rmse", **keywords)
-    path.write_text('{"something": "else"}\n')
-    with pytest.raises(InputError, match="not that of a record of a calibration"):
-        solve(_problem(), cost="rmse", **keywords)
+    for content in ("a,b\n1,2\n", "a,b", '{"something": "else"}\n'):
+        path.write_text(content)
+        with pytest.raises(InputError, match="not that of a record of a calibration"):
+            solve(_problem(), cost="rmse", **keywords)
+        assert path.read_text() == content
+
+
+def _edited(line: str, key: str, value: Any) -> str:
+    return json.dumps(json.loads(line) | {key: value}) + "\n"
+
+
+def test_damaged_evaluations_are_computed_again(tmp_path: Path) -> None:
+    """An edited residual, a NaN, lines of another record, swapped and cut lines: the same estimates."""
+    path = tmp_path / "record.jsonl"
+    other = tmp_path / "other.jsonl"
+    keywords: dict[str, Any] = {"method": "least-squares", "cost": "nll", "rules": Rules(starts=1, agree=1)}
+    whole = solve(_problem(noise=0.2), record=path, **keywords)
+    solve(_problem(noise=0.3), record=other, **keywords)
+    first, *lines = path.read_text().splitlines(keepends=True)
+    shape = _problem(noise=0.2).measured.shape
+    shifted = base64.b64encode(np.full(shape, 0.25).tobytes()).decode()
+    undefined = base64.b64encode(np.full(shape, np.nan).tobytes()).decode()
+    head, entry = (
+        own_records.seal_of(first),
+        own_records.opened(own_records.seal_of(first), lines[0].encode()),
+    )
+    changes = {
+        "residual": [_edited(lines[0], "r", shifted), *lines[1:]],
+        "cost": [*lines[:-1], _edited(lines[-1], "c", [0.0, 0.0])],
+        "value": [_edited(lines[0], "x", [1.0, 1.0]), *lines[1:]],
+        "word": ["nonsense\n", *lines[1:]],
+        "NaN": [lines[0].replace('"c":[', '"c":[NaN,'), *lines[1:]],
+        "undefined residual": [own_records.sealed(head, entry | {"r": undefined}), *lines[1:]],
+        "number of values": [own_records.sealed(head, entry | {"x": [1.0]}), *lines[1:]],
+        "another record": [other.read_text().splitlines(keepends=True)[1], *lines[1:]],
+        "cut": [lines[0][:-9] + "\n", *lines[1:]],
+    }
+    for name, changed in changes.items():
+        path.write_text("".join([first, *changed]))
+        with pytest.warns(UserWarning, match=r"damaged lines: 1 \(line \d+: .*computed again"):
+            fit = solve(_problem(noise=0.2), record=path, **keywords)
+        assert fit.x.tobytes() == whole.x.tobytes(), name
+        assert fit.trace.replayed == len(lines) - 1, name
+        # What is in the file afterwards is sound: nothing is warned of a second time.
+        again = solve(_problem(noise=0.2), record=path, **keywords)
+        assert again.trace.replayed == len(lines), name
+    path.write_text("".join([first, *reversed(lines)]))
+    assert solve(_problem(noise=0.2), record=path, **keywords).x.tobytes() == whole.x.tobytes()
+    path.write_text("".join([_edited(first, "weights", [1.0, 9.0]), *lines]))
+    with pytest.warns(UserWarning, match="damaged or of another version; everything is computed again"):
+        fit = solve(_problem(noise=0.2), record=path, **keywords)
+    assert fit.x.tobytes() == whole.x.tobytes()
+    assert fit.trace.replayed == 0
+    path.write_text(first[:30])  # killed while the first line was written
+    assert solve(_problem(noise=0.2), record=path, **keywords).trace.replayed == 0
 
 
 # --- early errors -------------------------------------------------------------------------------------

@@ -78,12 +78,13 @@ def test_sensitivity_needs_no_plan_of_its_own(
     assert ["replicates", "8"] in json.loads(printed)["sensitivity_design"]
 
 
+@pytest.mark.filterwarnings("always:.*record")
 def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code, printed, said = run(capsys, "calibrate", str(bench.study), "-o", str(tmp_path), "--json")
     assert code == 0
-    content = json.loads(printed)
+    content = at_first = json.loads(printed)
     assert content == json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     assert set(content["parameters"]) == set(TRUTH)
     assert content["sensors"]["joint"]["corroboration"]["fitted"]["rmse"] < 0.05
@@ -98,6 +99,15 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     code, _, _ = run(capsys, "study", str(bench.study), "-o", str(tmp_path), "--no-figures")
     assert code == 0
     assert record.read_bytes() == before
+    # The folder came by mail, with a file in the place of the record; and no kept results.
+    for damaged in (b"a,b\n1,2\n", before.replace(b'"weights":[', b'"weights":[9.0,', 1)):
+        for file in (tmp_path / ".work").glob("*.npz"):
+            file.unlink()
+        record.write_bytes(damaged)
+        code, printed, said = run(capsys, "calibrate", str(bench.study), "-o", str(tmp_path), "--json")
+        assert code == 0
+        assert json.loads(printed)["parameters"] == at_first["parameters"]
+        assert f"{record.name}: found something else" in said or "everything is computed again" in said
     study = json.loads((tmp_path / "study.json").read_text(encoding="utf-8"))
     assert study["parameters"] == content["parameters"]
     assert study["criteria"] == content["criteria"]

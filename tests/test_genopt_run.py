@@ -151,6 +151,27 @@ def test_the_log_of_another_project_is_an_error(tmp_path: Path) -> None:
         optimize(ini, Options(resume=True), run=runner(bowl))
 
 
+def test_a_run_whose_line_in_the_log_is_damaged_is_made_again(tmp_path: Path) -> None:
+    ini = write_project(tmp_path)
+    whole = optimize(ini, run=runner(bowl))
+    first, line, *lines = log_path(ini).read_text().splitlines(keepends=True)
+    cost = json.loads(line)["costs"][0]
+    for damaged in (
+        line.replace(f'"costs":[{cost!r}', '"costs":[-99.0'),
+        line.replace(f'"costs":[{cost!r}', '"costs":[NaN'),
+        "nonsense\n",
+    ):
+        assert damaged != line
+        log_path(ini).write_text("".join([first, damaged, *lines]))
+        with pytest.warns(UserWarning, match=r"damaged lines: 1 \(line 2: .*these simulations are run again"):
+            again = optimize(ini, Options(resume=True), run=runner(bowl))
+        assert again.runs == 1
+        assert again.values() == whole.values()
+    log_path(ini).write_text("".join([first.replace('"format":2', '"format":3'), line, *lines]))
+    with pytest.raises(InputError, match="not the first line of a log of evaluations"):
+        optimize(ini, Options(resume=True), run=runner(bowl))
+
+
 def test_without_a_log_there_is_nothing_to_resume(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no log"):
         optimize(write_project(tmp_path), Options(resume=True), run=runner(bowl))
@@ -334,10 +355,10 @@ def test_the_log_of_runs_is_one_record_a_line(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     outcome = optimize(ini, run=runner(bowl))
     head, *records, end = map(json.loads, log_path(ini).read_text().splitlines())
-    assert head["format"] == 1
+    assert head["format"] == 2
     assert len(records) == outcome.simulations
     assert records[0]["x"] == [0.9, 0.9]
-    assert end == {"end": "required accuracy is reached"}
+    assert end["end"] == "required accuracy is reached"
 
 
 def test_the_end_by_the_limit_is_logged_as_genopt_does(tmp_path: Path) -> None:

@@ -121,7 +121,7 @@ def test_an_old_kind_of_kept_file_is_computed_again(tmp_path: Path) -> None:
         (file,) = workspace.folder.glob("kept-*")
         np.savez(file, tree=np.frombuffer(b'{"value": 5}', dtype=np.uint8))
         assert kept.kept(workspace, "key", lambda: 8) == 8
-        workspace.keep("runs", 0, np.arange(3.0))
+        workspace.keep("runs", 0, {"values": np.arange(3.0)})
         np.save(workspace.path("runs-000000003.npy"), np.arange(3.0))
         assert [first for first, _ in workspace.kept("runs")] == [0]
 

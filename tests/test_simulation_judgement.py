@@ -34,6 +34,7 @@ def unsound(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_sound_run_says_nothing() -> None:
     run = mc.simulate(box(), box_climate(), step="1h")
     assert run.sound
+    assert len(run.warnings) == 1, run.warnings  # that its one wall cannot enclose it
     assert run.judgement == Judgement()
     simulation = mc.Simulation(box(), box_climate(), step="1h")
     members = simulation.ensemble(np.tile(simulation.values, (9, 1)))
@@ -47,7 +48,9 @@ def test_a_sound_run_says_nothing() -> None:
 def test_an_unsound_run_says_where_when_and_what_to_do(tmp_path: Path, ending: str) -> None:
     run = mc.simulate(box(), box_climate(), step="1h")
     assert not run.sound
-    (line,) = [text for text in run.warnings if "all that acts on it" in text]
+    line, shell = run.warnings
+    assert "all that acts on it" in line
+    assert shell.startswith("zones.room: the surfaces cannot enclose it")
     assert line.startswith("surface roof (inside): -41.3 degC in step 5 from ")
     assert "the lowest is -2.0 degC), by 7.5 K more" in line
     assert "Take a step of 15 min" in line
@@ -98,6 +101,9 @@ def test_an_ensemble_says_which_members_are_unsound(
     whole = mc.sweep(box(), box_climate(), samples, **options)
     store = sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
     for lines in (whole.attrs["warnings"], store.warnings(), store.to_xarray().attrs["warnings"]):
+        # The box has one wall of 54 m2 and a volume: that is said, too, and nothing else.
+        assert len(lines) == 2, lines
         assert lines[0].startswith("4 of 17 members: temperatures lie outside")
+        assert lines[1].startswith("with the values of the building: zones.room: the surfaces cannot enclose")
     np.testing.assert_array_equal(store.to_dataframe()["outside"].to_numpy(), whole["outside"].to_numpy())
     assert whole["outside"].attrs["units"] == "K"

@@ -1,4 +1,4 @@
-"""No report of other inputs is left where a study runs."""
+"""A report stays until a new one replaces it, and one of other inputs is said to be so."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from mascarin.errors import SolverError
 from mascarin.report import Series, write
 from mascarin.study.storage import Workspace
 
@@ -27,19 +28,45 @@ def test_a_report_of_the_same_inputs_stays(out: Path) -> None:
         assert (out / "report.html").exists()
 
 
-def test_a_report_of_other_inputs_is_removed_before_anything_is_computed(out: Path) -> None:
-    # The study may be interrupted at any later time: the old report is no longer there.
+def test_a_report_of_other_inputs_stays_until_a_new_one_replaces_it(out: Path) -> None:
+    report = out / "report.html"
+    before = report.read_bytes()
     with (
-        pytest.warns(UserWarning, match=r"different: building.*the old report is removed"),
+        pytest.warns(UserWarning, match=r"different: building.*the earlier report stays"),
+        Workspace(out, INPUTS | {"building": "c"}) as workspace,
+    ):
+        # Another command of the folder, which writes no report.
+        workspace.record("calibration", [])
+    assert report.read_bytes() == before
+    with Workspace(out, INPUTS | {"building": "c"}) as workspace:
+        write(report, {"title": "New"}, Series("2024-01-01T00:00", 900.0))
+        workspace.record("study", [report])
+    assert report.read_bytes() != before
+
+
+def test_a_study_that_fails_says_that_the_report_is_an_earlier_one(out: Path) -> None:
+    before = (out / "report.html").read_bytes()
+    with (
+        pytest.warns(UserWarning, match="computed again|earlier state") as said,
+        pytest.raises(SolverError),
         Workspace(out, INPUTS | {"building": "c"}),
     ):
-        assert not (out / "report.html").exists()
+        raise SolverError("step 4 did not converge")
+    assert "report.html: of an earlier state of the study; it was not replaced" in str(said[-1].message)
+    assert (out / "report.html").read_bytes() == before
+    # The inputs are those of the last run now, and the report is still not theirs.
+    with (
+        pytest.warns(UserWarning, match="of an earlier state of the study"),
+        pytest.raises(SolverError),
+        Workspace(out, INPUTS | {"building": "c"}),
+    ):
+        raise SolverError("step 4 did not converge")
 
 
-def test_a_report_without_a_record_of_its_inputs_is_removed(out: Path) -> None:
-    (out / ".work" / "results.json").unlink()
-    with Workspace(out, INPUTS):
-        assert not (out / "report.html").exists()
+def test_a_study_of_the_same_inputs_that_fails_says_nothing_of_the_report(out: Path) -> None:
+    with pytest.raises(SolverError), Workspace(out, INPUTS):
+        raise SolverError("step 4 did not converge")
+    assert (out / "report.html").exists()
 
 
 def test_another_page_of_that_name_stays(tmp_path: Path) -> None:

@@ -67,19 +67,20 @@ def replacing(path: Path, kind: str = "") -> Iterator[BinaryIO]:
     """
     _require_possible(path, kind)
     _remove_old(path.parent)
-    handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=_END, dir=path.parent)
-    draft = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        draft.chmod(_usual_mode())
-        identity.require_no_input(path, kind)
-        draft.replace(path)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+    with _named(path):
+        handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=_END, dir=path.parent)
+        draft = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            draft.chmod(_usual_mode())
+            identity.require_no_input(path, kind)
+            draft.replace(path)
+        except BaseException:
+            draft.unlink(missing_ok=True)
+            raise
     identity.written(path)
     _flush_folder(path.parent)
 
@@ -92,6 +93,28 @@ def _require_possible(path: Path, kind: str) -> None:
         raise InputError(f"{path}: found {found}, expected a file to write; choose another name")
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"cannot write {path.name}: no such folder", str(path.parent))
+    if path.is_dir() and not path.is_symlink():
+        raise InputError(f"{path}: found a folder, expected a file to write; choose another name")
+
+
+@contextlib.contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Put the name of the file into errors that have that of its temporary file, or none."""
+    try:
+        yield
+    except Exception as error:
+        draft = re.compile(
+            rf"(?:{re.escape(str(path.parent))}[/\\])?{re.escape(_prefix(path))}[a-z0-9_]{{8}}{re.escape(_END)}"
+            rf"(?:[/\\]{re.escape(path.name)})?"
+        )
+        if isinstance(error, OSError) and error.errno is not None:
+            if error.filename is None or draft.fullmatch(str(error.filename)):
+                raise OSError(error.errno, error.strerror, str(path)) from error
+        else:
+            error.args = tuple(
+                draft.sub(lambda _: str(path), text) if isinstance(text, str) else text for text in error.args
+            )
+        raise
 
 
 def _prefix(path: Path) -> str:
@@ -124,7 +147,10 @@ def drafted(path: Path, kind: str = "") -> Iterator[Path]:
     """
     _require_possible(path, kind)
     _remove_old(path.parent)
-    with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=_END, dir=path.parent) as folder:
+    with (
+        _named(path),
+        tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=_END, dir=path.parent) as folder,
+    ):
         draft = Path(folder) / path.name
         yield draft
         with draft.open("rb+") as file:

@@ -66,7 +66,7 @@ def below(values: T, limit: Any) -> Any:
     >>> below(20.0 - 4e-15, 20.0), below(19.9, 20.0)
     (False, True)
     """
-    return values < limit - TOLERANCE
+    return above(_mirrored(values), _mirrored(limit))
 
 
 def at_most(values: T, limit: Any) -> Any:
@@ -112,7 +112,12 @@ def at_least(values: T, limit: Any) -> Any:
     >>> at_least(0.6 - 1e-16, 0.6), at_least(0.59, 0.6)
     (True, False)
     """
-    return values >= limit - TOLERANCE
+    return at_most(_mirrored(values), _mirrored(limit))
+
+
+def _mirrored(values: Any) -> Any:
+    """Values with the other sign: what is below a limit is above it there, to the last bit."""
+    return -values
 
 
 def excess(values: Any, limit: Any) -> npt.NDArray[np.float64]:
@@ -159,5 +164,4 @@ def shortfall(values: Any, limit: Any) -> npt.NDArray[np.float64]:
     >>> shortfall(np.array([19.0, 20.0 - 4e-15]), 20.0)
     array([1., 0.])
     """
-    beyond = np.asarray(limit - values, dtype=np.float64)
-    return np.where(beyond <= TOLERANCE, 0.0, beyond)
+    return excess(_mirrored(values), _mirrored(limit))

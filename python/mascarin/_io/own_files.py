@@ -148,22 +148,44 @@ def remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def json_of(text: str | bytes) -> Any:
+def json_of(text: str | bytes, *, finite: bool = False) -> Any:
     """JSON whose nesting is bounded.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The text.
+    finite : bool
+        Whether NaN, infinities and numbers beyond the largest are refused.
 
     Raises
     ------
     DamagedError
-        It is no JSON, or nested too deeply.
+        It is no JSON, nested too deeply, or a number is not finite.
+
+    Examples
+    --------
+    >>> json_of("[1, 1e999]", finite=True)
+    Traceback (most recent call last):
+    mascarin._io.own_files.DamagedError: it is no JSON (found the number 1e999)
     """
+    number = _finite if finite else None
     try:
-        found = json.loads(text)
-        depth = _depth(found)
+        content = json.loads(text, parse_constant=number, parse_float=number)
+        depth = _depth(content)
     except (ValueError, RecursionError) as error:
         raise DamagedError(f"it is no JSON ({error})") from None
     if depth > DEEPEST:
         raise DamagedError(f"its JSON has {depth} levels")
-    return found
+    return content
+
+
+def _finite(text: str) -> float:
+    """A number of JSON; Python writes and reads three words that are no numbers."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"found the number {text}")
+    return value
 
 
 def _depth(found: Any) -> int:

@@ -18,7 +18,7 @@ from mascarin.building.mesh import Mesh, choose
 from mascarin.building.parameters import parameters
 from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.plausibility import warnings
-from mascarin.building.ratings import WindowRating, window_ratings
+from mascarin.building.ratings import WindowRating, require_accepted, window_ratings
 from mascarin.building.self_shading import in_words
 from mascarin.building.site import wind_factor
 from mascarin.building.surface import Side
@@ -56,6 +56,11 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         Zones, surfaces with U values, constructions with their mesh, time constants; then warnings and
         assumptions, which start with ``warning:`` and ``assumed:``.
 
+    Raises
+    ------
+    InputError
+        A run would refuse the building, whatever the weather.
+
     Examples
     --------
     >>> from mascarin import examples
@@ -63,6 +68,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     >>> check(load(examples.FOLDER / "lgi" / "building.yaml"))[0]
     'LGI cell: 2 zones, 13 surfaces, 333 parameters'
     """
+    require_accepted(building, step_seconds)
     mesh, ratings = choose(building, step_seconds), window_ratings(building, step_seconds)
     return [
         f"{building.name}: {_count(len(building.zones), 'zone')}, "

@@ -35,6 +35,36 @@ class WindowRating:
     diffuse_transmittance: float
 
 
+def require_accepted(building: Description, step_seconds: float) -> None:
+    """Refuse what a run refuses before its first step, as far as it does not depend on the weather.
+
+    The building is described to the engine and compiled as for a run, and what follows from its values is
+    worked out once: polygons that enclose no zone, cavities without a height, optics that do not fit.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    step_seconds : float
+        Time step of the runs. [s]
+
+    Raises
+    ------
+    InputError
+        As a run has it, with the same words.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> require_accepted(box(), 900.0)
+    """
+    from mascarin.engine_errors import plan_of, translated  # the engine, which a description needs no more of
+
+    described = describe(building, step_seconds)
+    with translated():
+        plan_of(described.json).window_ratings(described.values)
+
+
 def window_ratings(building: Description, step_seconds: float = 900.0) -> dict[str, WindowRating]:
     """U value, solar heat gain and transmittance of the glass of every window, without its frame.
 

@@ -2,14 +2,15 @@
 
 A record is a text file of JSON lines. The first line identifies the problem; each further line
 holds one evaluation: the parameter values, the cost of each sensor and, where the method needs them, the
-residuals; or the exact derivatives at parameter values, where they were computed. A line that is incomplete
-because the program was killed is removed, and the file is continued from there.
+residuals; or the exact derivatives at parameter values, where they were computed. Each line is sealed
+(`_io.own_records`). A line that is incomplete because the program was killed is removed, and the file is
+continued from there; what a damaged line held is computed again, with a warning.
 """
 
 from __future__ import annotations
 
 import base64
-import json
+import warnings
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,13 +20,21 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin._io import own_files
+from mascarin import __version__
+from mascarin._io import atomic, own_files, own_records
 from mascarin.calibration.cost import Cost
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
 
-_FORMAT = 1
+_KIND = f"record of a calibration of version {__version__}"
+_FORMAT = 2
+#: Beginning of the first line, in every format.
+_BEGIN = b'{"mascarin_record":'
+
+
+class ForeignRecordError(InputError):
+    """A file that is no record, or that of another calibration: it is not overwritten."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +83,8 @@ class Evaluator:
 
     Raises
     ------
-    InputError
-        When the record belongs to another problem.
+    ForeignRecordError
+        When the record belongs to another problem, or the file is no record, such as a link.
 
     Examples
     --------
@@ -171,7 +180,7 @@ class Evaluator:
             self._slopes[key] = self.cost.problem.jacobian(x)
             if self._path is not None:
                 entry = {"x": x.tolist(), "j": _packed(self._slopes[key])}
-                self._file.write((json.dumps(entry, allow_nan=False) + "\n").encode())
+                self._file.write(own_records.sealed(self._head, entry).encode())
                 self._file.flush()
         return self._slopes[key]
 
@@ -240,81 +249,94 @@ class Evaluator:
         }
         if residuals is not None:
             entry["r"] = _packed(residuals)
-        return json.dumps(entry, allow_nan=False) + "\n"
+        return own_records.sealed(self._head, entry)
 
     def _open(self, path: Path) -> None:
-        """Read the record, remove an incomplete last line, and open the file to append."""
-        whole = 0
+        """Read the record, without what is damaged or incomplete, and open the file to append."""
         if path.is_symlink() or (path.exists() and not path.is_file()):
-            raise InputError(
+            raise ForeignRecordError(
                 f"{path}: found no regular file, expected a record or nothing; name another file"
             )
-        if path.exists():
-            whole = self._read(path)
+        lines = self._read(path) if path.exists() else []
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = path.open("r+b" if path.exists() else "w+b")
-        self._file.truncate(whole)
-        self._file.seek(whole)
-        if whole == 0:
-            self._file.write((json.dumps(self._header()) + "\n").encode())
-            self._file.flush()
+        if lines:
+            self._head = own_records.seal_of(lines[0].decode())
+        else:
+            first = own_records.sealed(_KIND, self._header())
+            self._head, lines = own_records.seal_of(first), [first.encode()]
+        content = b"".join(lines)
+        if not path.exists() or path.read_bytes() != content:
+            atomic.write(path, content)
+        self._file = path.open("ab")
 
-    def _read(self, path: Path) -> int:
-        """Read complete lines and return their number of bytes."""
-        whole = 0
-        with path.open("rb") as file:
-            for number, line in enumerate(file, start=1):
-                if not line.endswith(b"\n"):
-                    break
-                entry = _parsed(path, number, line)
-                if number == 1:
-                    self._check_header(path, entry)
-                else:
-                    self._take(path, number, entry)
-                whole += len(line)
-        return whole
+    def _read(self, path: Path) -> list[bytes]:
+        """The sound lines of a record; nothing where all of it is to be computed again."""
+        start = own_records.first_line(path)
+        try:
+            entry = own_records.opened(_KIND, start)
+        except own_files.DamagedError:
+            begin = path.read_bytes()[: len(_BEGIN)]
+            if not _BEGIN.startswith(begin):
+                raise ForeignRecordError(
+                    f"{path}: the first line is not that of a record of a calibration; name another file"
+                ) from None
+            if start:  # otherwise it was being written when the process was killed
+                _warn(path, "it is damaged or of another version", "everything is computed again")
+            return []
+        self._check_header(path, entry)
+        damages: list[str] = []
+        lines = [start]
 
-    def _check_header(self, path: Path, found: dict[str, Any]) -> None:
+        def note(number: int, reason: str) -> None:
+            damages.append(f"line {number}: {reason}")
+
+        for number, line, evaluation in own_records.further(path, note):
+            try:
+                self._take(evaluation)
+            except (LookupError, TypeError, ValueError, OverflowError) as error:
+                note(number, str(error) or type(error).__name__)
+            else:
+                lines.append(line)
+        if damages:
+            _warn(path, f"damaged lines: {len(damages)} ({damages[0]})", "what was in them is computed again")
+        return lines
+
+    def _check_header(self, path: Path, header: dict[str, Any]) -> None:
         expected = self._header()
-        if found.get("mascarin_record") != _FORMAT:
-            raise InputError(
-                f"{path}: the first line is not that of a record of a calibration; name another file"
-            )
-        differing = [key for key in expected if found.get(key) != expected[key]]
+        differing = [key for key in expected if header.get(key) != expected[key]]
         if differing:
             msg = (
                 f"{path}: this record belongs to another calibration (differing: {', '.join(differing)}); "
                 f"name another file, or remove this one to start again"
             )
-            raise InputError(msg)
+            raise ForeignRecordError(msg)
 
-    def _take(self, path: Path, number: int, entry: dict[str, Any]) -> None:
+    def _take(self, entry: dict[str, Any]) -> None:
+        """Remember an evaluation, or slopes, of the record.
+
+        Raises
+        ------
+        LookupError, TypeError, ValueError
+            It is none of this problem, or a number is not finite.
+        """
         problem = self.cost.problem
+        x = np.array(entry["x"], dtype=np.float64)
+        if x.shape != (len(problem.parameters),):
+            raise ValueError("it has another number of parameters")
         if "j" in entry:
-            self._take_slopes(path, number, entry)
+            slopes = _unpacked(entry["j"], (*problem.measured.shape, len(problem.parameters)))
+            if not np.isfinite(slopes).all():
+                raise ValueError("a derivative is not finite")
+            self._slopes[x.tobytes()] = slopes
             return
-        try:
-            x = np.array(entry["x"], dtype=np.float64)
-            costs = np.array([np.nan if c is None else c for c in entry["c"]], dtype=np.float64)
-            residuals = None
-            if "r" in entry:
-                residuals = _unpacked(entry["r"], problem.measured.shape)
-            fits = x.shape == (len(problem.parameters),) and costs.shape == (len(problem.sensors),)
-        except (KeyError, TypeError, ValueError, OverflowError):
-            fits = False
-        if not fits:
-            msg = f"{path}:{number}: not an evaluation of this problem; remove the line or name another file"
-            raise InputError(msg)
+        costs = np.array([np.nan if c is None else c for c in entry["c"]], dtype=np.float64)
+        if costs.shape != (len(problem.sensors),):
+            raise ValueError("it has another number of sensors")
+        residuals = _unpacked(entry["r"], problem.measured.shape) if "r" in entry else None
+        # Both are undefined where the run failed, and only there.
+        if residuals is not None and np.isfinite(residuals).all() != np.isfinite(costs).all():
+            raise ValueError("a residual is not finite")
         self._remember(x, costs, residuals)
-
-    def _take_slopes(self, path: Path, number: int, entry: dict[str, Any]) -> None:
-        shape = self.cost.problem.measured.shape
-        try:
-            x = np.array(entry["x"], dtype=np.float64)
-            self._slopes[x.tobytes()] = _unpacked(entry["j"], (*shape, len(self.cost.problem.parameters)))
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
-            msg = f"{path}:{number}: not slopes of this problem; remove the line or name another file"
-            raise InputError(msg) from error
 
 
 def _packed(values: Floats) -> str:
@@ -326,13 +348,5 @@ def _unpacked(text: str, shape: tuple[int, ...]) -> Floats:
     return np.frombuffer(base64.b64decode(text, validate=True), dtype="<f8").reshape(shape).astype(float)
 
 
-def _parsed(path: Path, number: int, line: bytes) -> dict[str, Any]:
-    try:
-        entry = own_files.json_of(line)
-    except own_files.DamagedError as error:
-        msg = f"{path}:{number}: not a line of JSON ({error}); remove the line or name another file"
-        raise InputError(msg) from error
-    if not isinstance(entry, dict):
-        msg = f"{path}:{number}: expected a JSON object"
-        raise InputError(msg)
-    return entry
+def _warn(path: Path, damage: str, remedy: str) -> None:
+    warnings.warn(f"{path}: the record of a calibration: {damage}; {remedy}", stacklevel=2)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from mascarin.commands.inputs import AsJson, Flag, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.places import lines_named
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -30,7 +31,9 @@ def check(
     """
     from mascarin.building import check as findings
 
-    lines = findings(read_building(building, settings), seconds(step))
+    described = read_building(building, settings)
+    with lines_named(building):
+        lines = findings(described, seconds(step))
     if not as_json:
         print("\n".join(lines))
         return

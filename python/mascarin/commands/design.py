@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import AsJson, Flag, Outside
 from mascarin.commands.output import print_json, print_table
 
@@ -28,10 +29,9 @@ def design(
     """Compare designs: which product, how much, where.
 
     Runs all designs in all climates, compares the best over samples of what is uncertain, and writes
-    tables and a
-    report. After an interruption the same command continues and gives the same files. Ends with exit code
-    1 where the
-    energy balance of a run does not close.
+    tables and a report. After an interruption the same command continues and gives the same files. Ends with
+    exit code 1 where a run failed or is not sound: its energy balance does not close, or a temperature has
+    no cause.
 
     Parameters
     ----------
@@ -83,7 +83,10 @@ def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     from mascarin.simulation.judgement import all_sound
 
     found = results.summary()
-    code = 0 if all(all_sound(table) for table in (results.sampled, results.nominal)) else 1
+    sound = all(all_sound(table) for table in (results.sampled, results.nominal))
+    code = exit_code(warnings=results.warnings, sound=sound, failed=found["failed"])
+    if found["failed"]:
+        print(f"{found['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:
@@ -96,7 +99,5 @@ def _print(results: DesignResults, out: Path, as_json: bool) -> int:
             for number, row in enumerate(rows, start=1)
         ]
         print_table(("rank", "design", "mean", "sd", ""), table)
-    if found["failed"]:
-        print(f"{found['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
     print(f"report: {out / 'report.html'}")
     return code

@@ -180,6 +180,8 @@ def _target(out: Path | None, building: Path) -> Path:
         raise InputError(f"--out: found '{out}'; expected a file that ends with .yaml")
     if not out.parent.is_dir():
         raise InputError(f"--out: found no folder '{out.parent}'; expected a file in a folder that exists")
+    if out.is_dir():
+        raise InputError(f"--out: found the folder '{out}'; expected a file to write: choose another name")
     if out.resolve() == building.resolve():
         raise InputError(f"--out: found '{out}', the building itself; expected another file")
     return out

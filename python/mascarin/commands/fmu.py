@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import Outside, Settings, Step, matching_outputs, read_building, seconds
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
@@ -38,12 +39,13 @@ def fmu(
     settings: Settings = None,
     allow_outside: Outside = False,
     fmi: Literal["3.0", "2.0"] = "3.0",
-) -> None:
+) -> int:
     """Write a building as a unit for co-simulation (FMU).
 
     The unit contains the engine and the weather, and needs no Python. Programs such as Modelica tools and
     FMPy run it step by step and exchange values with it. Without inputs its outputs are those of
-    'mascarin run', to the bit. Its first 30 days are run once for the warnings of a run.
+    'mascarin run', to the bit. Its first 30 days are run once for the warnings of a run. Ends with
+    exit code 1 where that run is not sound.
 
     Parameters
     ----------
@@ -104,8 +106,10 @@ def fmu(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,
             scheme=scheme, outputs=matching_outputs(described, outputs),
         )  # fmt: skip
-        for line in of_short_run(simulation):
+        lines = of_short_run(simulation)
+        for line in lines:
             print(f"warning: {line}", file=sys.stderr)
         export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
     size = out.stat().st_size / 2**20
     print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)
+    return exit_code(warnings=lines)

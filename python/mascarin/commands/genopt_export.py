@@ -8,6 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import Outside
 
 
@@ -60,9 +61,10 @@ def genopt(
     print(write_project(study, out, options))
     opened = Study.from_yaml(locate(study), allow_outside=allow_outside)
     # Each evaluation is a process of its own, which says nothing: what holds for the runs is said here.
-    for line in of_nominal(opened.short()):
+    lines = of_nominal(opened.short())
+    for line in lines:
         print(f"warning: {line}", file=sys.stderr)
-    return 0
+    return exit_code(warnings=lines)
 
 
 def cost(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
     Columns,
@@ -68,7 +69,7 @@ def run(
     """Simulate a building with a weather file.
 
     Writes the time series to a file, or prints minimum, mean and maximum of each and the energy balance.
-    Ends with exit code 1 where the energy balance does not close.
+    Ends with exit code 1 where the energy balance does not close or a temperature has no cause.
 
     Parameters
     ----------
@@ -117,7 +118,7 @@ def run(
             scheme=scheme, initial=_start(initial), more=report is not None,
         )  # fmt: skip
         if out is not None and report is None and interval is None and not as_json:
-            return 0 if _stored(simulation, out).sound else 1
+            return exit_code(sound=_stored(simulation, out).sound)
         results = _simulated(simulation)
         if report is not None:
             _write_report(report, simulation, results, {"Building": building, "Weather": weather})
@@ -130,7 +131,7 @@ def run(
         print_json(_summary(results))
     elif out is None:
         _print(results)
-    return 0 if results.sound else 1
+    return exit_code(sound=results.sound)
 
 
 def _start(temperature: float | None) -> float | Literal["repeat"]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from cyclopts import Parameter
 
 from mascarin._io.numbers import beside_limit, with_interval
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import AsJson, Outside
 from mascarin.commands.output import number, print_json, print_table
 
@@ -35,7 +36,7 @@ def study(
     Five steps: compare the uncalibrated model with the measurements, sensitivity analysis, calibration,
     comparison of the calibrated model, validation on days that were not used. After an interruption the same
     command continues the work and gives the same result. Exits with 1 when the calibrated model misses a
-    criterion.
+    criterion, or a run is not sound.
 
     Parameters
     ----------
@@ -52,10 +53,13 @@ def study(
     results = opened.run(out, figures=figures, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
-    _print_warnings(run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants}))
+    lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
+    if results.sensitivity is not None:
+        lines += [f"sensitivity analysis: {line}" for line in results.sensitivity.warnings]
+    _print_warnings(lines)
     _print_summary(opened, results, out)
     verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
-    return _exit_code(verdicts, sound=results.nominal.results.sound and results.fitted.results.sound)
+    return _exit_code(verdicts, lines)
 
 
 def sensitivity(
@@ -66,11 +70,12 @@ def sensitivity(
     method: Literal["spectral", "rbd-fast", "sobol", "morris"] | None = None,
     allow_outside: Outside = False,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Run the sensitivity analysis of a study.
 
     Varies every parameter that has a range, on the days of the calibration. After an interruption the same
-    command continues the work; the whole study uses its results.
+    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: its
+    energy balance does not close, or a temperature has no cause.
 
     Parameters
     ----------
@@ -85,9 +90,10 @@ def sensitivity(
 
     content = steps.sensitivity(_open(file, allow_outside), out, method=method)
     _print_warnings(content["warnings"])
+    code = exit_code(warnings=content["warnings"])
     if as_json:
         print_json(content)
-        return
+        return code
     rows: list[tuple[str | float, ...]] = []
     for output, found in content["sensitivity"].items():
         ranked = sorted(found.items(), key=lambda item: -(item[1]["share"] or 0.0))
@@ -96,6 +102,7 @@ def sensitivity(
             for path, value in ranked[:_SHOWN]
         ]
     print_table(("sensor", "parameter", "S1", "low", "high"), rows)
+    return code
 
 
 def calibrate(
@@ -110,7 +117,7 @@ def calibrate(
 
     The calibration alone, and the errors of the calibrated model on days that were not used. After an
     interruption the same command continues the work; the whole study uses its results. Exits with 1 when the
-    calibrated model misses a criterion.
+    calibrated model misses a criterion, or a run is not sound.
 
     Parameters
     ----------
@@ -140,7 +147,7 @@ def calibrate(
         _print_scores(content)
         for note in content["notes"]:
             print(f"note: {note['text']}", file=sys.stderr)
-    return _exit_code(_verdicts(content, "fitted"), sound=content["sound"])
+    return _exit_code(_verdicts(content, "fitted"), content["warnings"], sound=content["sound"])
 
 
 def validate(
@@ -153,7 +160,8 @@ def validate(
 ) -> int:
     """Compare the uncalibrated model with measurements.
 
-    Only the first step of a study: nothing is calibrated. Exits with 1 when a criterion is missed.
+    Only the first step of a study: nothing is calibrated. Exits with 1 when a criterion is missed, or the run
+    is not sound.
 
     Parameters
     ----------
@@ -171,7 +179,7 @@ def validate(
         print_json(content)
     else:
         _print_scores(content)
-    return _exit_code(_verdicts(content, "nominal"), sound=content["sound"])
+    return _exit_code(_verdicts(content, "nominal"), content["warnings"], sound=content["sound"])
 
 
 def _open(file: str, allow_outside: bool) -> Study:
@@ -218,8 +226,8 @@ def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]
     return [verdict for verdict in content["criteria"] if verdict["model"] == model]
 
 
-def _exit_code(verdicts: Sequence[Mapping[str, Any]], *, sound: bool) -> int:
-    """Print the criteria that are missed; return the exit code, 1 also where a run is not sound."""
+def _exit_code(verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[str], *, sound: bool = True) -> int:
+    """Print the criteria that are missed; return the exit code."""
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
@@ -230,7 +238,7 @@ def _exit_code(verdicts: Sequence[Mapping[str, Any]], *, sound: bool) -> int:
         print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
     if verdicts:
         print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
-    return 1 if missed or not sound else 0
+    return exit_code(warnings=warnings, sound=sound, missed=len(missed))
 
 
 def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:

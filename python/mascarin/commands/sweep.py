@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
+from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
     Columns,
@@ -24,6 +25,7 @@ from mascarin.commands.inputs import (
     seconds,
 )
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, SolverError
 
@@ -63,7 +65,8 @@ def sweep(
     """Simulate a building with many parameter values.
 
     Each row of the samples is one member of the ensemble. After an interruption the same command continues.
-    Ends with exit code 1 where the energy balance of a member does not close.
+    Ends with exit code 1 where a member failed or is not sound: its energy balance does not close, or a
+    temperature has no cause.
 
     Parameters
     ----------
@@ -112,7 +115,7 @@ def sweep(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
         allow_outside=allow_outside,
     )  # fmt: skip
-    with Progress("members") as progress:
+    with lines_named(building), Progress("members") as progress:
         store = sweep_into(
             out,
             described,
@@ -183,7 +186,12 @@ def _print(store: Store, as_json: bool) -> int:
     }
     for line in result["warnings"]:
         print(f"warning: {line}", file=sys.stderr)
-    code = 0 if store.sound() else 1
+    code = exit_code(warnings=result["warnings"], sound=store.sound(), failed=len(failed))
+    if len(failed):
+        # Failures are in the results, and shown here so that they are not overlooked.
+        print(
+            f"{len(failed)} members failed; the first, {failed.index[0]}: {failed.iloc[0]}", file=sys.stderr
+        )
     if as_json:
         print_json(result)
         return code
@@ -193,9 +201,4 @@ def _print(store: Store, as_json: bool) -> int:
         print(f"single precision: {line}")
     residual = result["closure"]
     print(f"{len(table)} members, largest relative energy-balance residual {residual:.1e}; in {store.path}")
-    if len(failed):
-        # Failures are in the results, and shown here so that they are not overlooked.
-        print(
-            f"{len(failed)} members failed; the first, {failed.index[0]}: {failed.iloc[0]}", file=sys.stderr
-        )
     return code

@@ -110,6 +110,9 @@ def export(
     )
     described = fmi3(model) if version == "3.0" else fmi2(model)
     files = {"modelDescription.xml": described, **library, **resources}
+    # No seals as in `_io.own_files`: each entry has the checksum of the archive, a unit is a result for
+    # programs of others, which unpack it and may set start values in its description, and the library
+    # compares its resources with their format, sizes and names (`crates/fmu/src/contents.rs`).
     with atomic.replacing(Path(path)) as target, zipfile.ZipFile(target, "w") as archive:
         for name, content in files.items():
             entry = zipfile.ZipInfo(name, _DATE)

@@ -6,17 +6,20 @@ import csv
 import hashlib
 import io
 import json
+import warnings
 from collections import defaultdict, deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from mascarin._io import atomic, identity, own_files
+from mascarin._io import atomic, identity, own_files, own_records
 from mascarin.errors import InputError
 from mascarin.genopt.project import Project
 
-FORMAT = 1
+FORMAT = 2
+#: Runs of a program of the user do not depend on the version of Mascarin.
+_KIND = "log of a search"
 _END = '{"end":'
 Key = tuple[int, tuple[float, ...], tuple[int, ...]]
 
@@ -54,22 +57,19 @@ class Record:
     replayed: bool = False
     logged: bool = False
 
-    def line(self) -> str:
-        """The record as one line of JSON."""
+    def entry(self) -> dict[str, Any]:
+        """The record as the content of one line."""
         step, x, choices = self.key
-        return json.dumps(
-            {
-                "number": self.number,
-                "step": step,
-                "x": x,
-                "choices": choices,
-                "costs": self.costs,
-                "seconds": round(self.seconds, 4),
-                "attempts": self.attempts,
-                "reason": self.reason,
-            },
-            separators=(",", ":"),
-        )
+        return {
+            "number": self.number,
+            "step": step,
+            "x": x,
+            "choices": choices,
+            "costs": self.costs,
+            "seconds": round(self.seconds, 4),
+            "attempts": self.attempts,
+            "reason": self.reason,
+        }
 
 
 def fingerprint(project: Project) -> dict[str, str]:
@@ -116,6 +116,7 @@ class Log:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._head = ""
         self._file: TextIO | None = None
 
     def begin(self, digests: Mapping[str, str]) -> None:
@@ -129,11 +130,13 @@ class Log:
         identity.require_no_input(self.path)
         if self.path.exists():
             self.path.replace(self.path.with_suffix(".previous.jsonl"))
+        first = own_records.sealed(_KIND, {"format": FORMAT, "project": dict(digests)})
+        self._head = own_records.seal_of(first)
         self._file = self.path.open("w", encoding="utf-8")
-        self._put(json.dumps({"format": FORMAT, "project": dict(digests)}))
+        self._write(first)
 
     def resume(self, digests: Mapping[str, str]) -> list[Record]:
-        """Read an earlier log and continue it.
+        """Read an earlier log and continue it; a run whose line is damaged is made again, with a warning.
 
         Parameters
         ----------
@@ -148,43 +151,57 @@ class Log:
         Raises
         ------
         InputError
-            There is no log, or it belongs to another project.
+            There is no log, its first line is damaged, or it belongs to another project.
         """
         if not self.path.exists():
             msg = f"there is no log '{self.path}' to resume from; start without --resume"
             raise InputError(msg)
-        data = self.path.read_bytes()
-        # A line without an end was being written when the run was killed.
-        whole = data[: data.rfind(b"\n") + 1]
         try:
-            lines = whole.decode("utf-8").splitlines()
-        except UnicodeDecodeError as error:
-            msg = (
-                f"{self.path}: damaged, it is not text ({error.reason}); remove it or start without --resume"
-            )
-            raise InputError(msg) from error
-        if not lines:
+            first = own_records.first_line(self.path)
+        except own_files.DamagedError as error:
+            raise InputError(f"{self.path}: {error}; remove it or start without --resume") from None
+        if not first:
             self.begin(digests)
             return []
-        _compare(self.path, lines[0], digests)
-        records = [
-            _record(self.path, i, line)
-            for i, line in enumerate(lines[1:], start=2)
-            if not line.startswith(_END)
-        ]
-        if len(whole) < len(data):
-            with self.path.open("r+b") as file:
-                file.truncate(len(whole))
+        _compare(self.path, first, digests)
+        self._head = own_records.seal_of(first.decode())
+        records, lines = self._read([first])
+        content = b"".join(lines)
+        if self.path.read_bytes() != content:
+            atomic.write(self.path, content)
         self._file = self.path.open("a", encoding="utf-8")
         return records
 
+    def _read(self, lines: list[bytes]) -> tuple[list[Record], list[bytes]]:
+        """Runs and sound lines of a log; damaged lines are warned of."""
+        records: list[Record] = []
+        damages: list[str] = []
+
+        def note(number: int, reason: str) -> None:
+            damages.append(f"line {number}: {reason}")
+
+        for number, line, entry in own_records.further(self.path, note):
+            if "end" not in entry:
+                try:
+                    records.append(_record(entry))
+                except (ValueError, OverflowError) as error:
+                    note(number, str(error))
+                    continue
+            lines.append(line)
+        if damages:
+            warnings.warn(
+                f"{self.path}: damaged lines: {len(damages)} ({damages[0]}); these simulations are run again",
+                stacklevel=3,
+            )
+        return records, lines
+
     def add(self, record: Record) -> None:
         """Append a run."""
-        self._put(record.line())
+        self._put(record.entry())
 
     def end(self, reason: str) -> None:
         """Write that the optimization has ended."""
-        self._put(json.dumps({"end": reason}))
+        self._put({"end": reason})
 
     def close(self) -> None:
         """Close the file."""
@@ -192,10 +209,15 @@ class Log:
             self._file.close()
             self._file = None
 
-    def _put(self, line: str) -> None:
-        """Write one line at once."""
+    def _put(self, entry: Mapping[str, Any]) -> None:
+        """Write one line."""
         if self._file is not None:
-            self._file.write(line + "\n")
+            self._write(own_records.sealed(self._head, entry))
+
+    def _write(self, line: str) -> None:
+        """Write a line at once."""
+        if self._file is not None:
+            self._file.write(line)
             self._file.flush()
 
 
@@ -338,20 +360,19 @@ def _row(project: Project, r: Record) -> list[Any]:
     return [r.number or None, status, step, *x, *chosen, *costs, r.seconds, r.attempts, r.reason]
 
 
-def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
+def _compare(path: Path, line: bytes, digests: Mapping[str, str]) -> None:
     """Check that a log belongs to this project."""
     try:
-        head = own_files.json_of(line)
-        own_files.require(head if isinstance(head, dict) else {}, {"project": dict, "format": int})
-        known = head["project"]
-        version = head["format"]
+        head = own_records.opened(_KIND, line)
+        own_files.require(head, {"project": dict, "format": int})
     except own_files.DamagedError as error:
-        msg = f"{path}:1: not a log of evaluations; remove it or start without --resume"
+        msg = (
+            f"{path}:1: not the first line of a log of evaluations ({error}); remove it or start "
+            "without --resume"
+        )
         raise InputError(msg) from error
-    if version != FORMAT:
-        msg = f"{path}:1: format {version}, this version reads {FORMAT}; start without --resume"
-        raise InputError(msg)
-    changed = sorted(k for k in {*known, *digests} if known.get(k) != digests.get(k))
+    before = head["project"]
+    changed = sorted(k for k in {*before, *digests} if before.get(k) != digests.get(k))
     if changed:
         msg = (
             f"{path}: results of another project: changed since then: {', '.join(changed)}. "
@@ -360,24 +381,25 @@ def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
         raise InputError(msg)
 
 
-def _record(path: Path, number: int, line: str) -> Record:
-    """A record from its line."""
-    try:
-        d = own_files.json_of(line)
-        _check(d if isinstance(d, dict) else {})
-        return Record(
-            (d["step"], tuple(d["x"]), tuple(d["choices"])),
-            None if d["costs"] is None else tuple(d["costs"]),
-            d["seconds"],
-            d["attempts"],
-            d["reason"],
-            d["number"],
-            replayed=True,
-            logged=True,
-        )
-    except (ValueError, OverflowError) as error:
-        msg = f"{path}:{number}: broken line ({error}); remove it to continue from the others"
-        raise InputError(msg) from error
+def _record(entry: Mapping[str, Any]) -> Record:
+    """A record from its line.
+
+    Raises
+    ------
+    DamagedError
+        It is damaged.
+    """
+    _check(entry)
+    return Record(
+        (entry["step"], tuple(entry["x"]), tuple(entry["choices"])),
+        None if entry["costs"] is None else tuple(entry["costs"]),
+        entry["seconds"],
+        entry["attempts"],
+        entry["reason"],
+        entry["number"],
+        replayed=True,
+        logged=True,
+    )
 
 
 def _check(found: Mapping[str, Any]) -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mascarin import __version__
-from mascarin._io import identity
+from mascarin._io import atomic, identity
 from mascarin._io.locks import FolderLock, writing
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
@@ -432,10 +432,8 @@ def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: 
             lines += ["", title, *(f"{i}: {t}" for i, t in enumerate(texts, start=1))]
     # A log that cannot be written must not hide the error that it would contain.
     with contextlib.suppress(OSError, InputError):
-        identity.require_no_input(project.folder / LOG_NAME)
-        (project.folder / LOG_NAME).write_text(
-            "\n".join(lines) + "\n", encoding="utf-8", errors="surrogateescape"
-        )
+        text = "\n".join(lines) + "\n"
+        atomic.write(project.folder / LOG_NAME, text.encode("utf-8", "surrogateescape"))
 
 
 def summary(outcome: Outcome) -> list[str]:

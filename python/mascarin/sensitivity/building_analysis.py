@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
+    from mascarin.simulation.compiled import EnsembleRun
     from mascarin.simulation.initial import Initial
     from mascarin.simulation.options import Precision, Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
@@ -232,15 +233,19 @@ def sensitivity_analysis(
         runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
     remarks: list[str] = []
+    judged: list[Array] = []
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
-            records = run_samples(simulation, runs.paths, x, first, every=every, precision=precision)
+            run = run_samples(simulation, runs.paths, x, first, every=every, precision=precision)
+            records = run.records
             taken.add(first, records)
+            judged.append(np.array([run.residuals, run.outside]))
             if first == 0 and precision == "single":
                 remarks = _single_precision(simulation, runs.paths, x, records, every)
             report(first + len(x), len(runs))
     found = taken.result(confidence=confidence)
-    said = (*found.warnings, *remarks, *of_base(of_nominal(simulation)))
+    members = ensemble_warnings(*np.concatenate(judged, axis=1), precision=precision)
+    said = (*found.warnings, *members, *remarks, *of_base(of_nominal(simulation)))
     return replace(found, times=simulation.index[::every], warnings=said)
 
 
@@ -249,7 +254,7 @@ def _single_precision(
 ) -> list[str]:
     """How far outputs of some runs in single precision are from those in double precision: a line each."""
     some = members_to_check(len(samples))
-    double = run_samples(simulation, paths, samples[some], 0, every=every)
+    double = run_samples(simulation, paths, samples[some], 0, every=every).records
     outputs = simulation.outputs
     names, units = [one.name for one in outputs], [one.unit for one in outputs]
     return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
@@ -303,7 +308,7 @@ def run_samples(
     start: int = 0,
     every: int = 1,
     precision: Precision = "double",
-) -> Array:
+) -> EnsembleRun:
     """Run consecutive members of a plan.
 
     Parameters
@@ -323,8 +328,8 @@ def run_samples(
 
     Returns
     -------
-    ndarray, shape (m, T, S)
-        [unit of each output]
+    EnsembleRun
+        Its records have the shape (m, T, S); no member has failed.
 
     Raises
     ------
@@ -333,15 +338,13 @@ def run_samples(
     """
     vectors = simulation.varied(paths, samples)
     run = simulation.ensemble(vectors, record_from=start, record_every=every, precision=precision)
-    for line in ensemble_warnings(run.residuals, run.outside, first, precision):
-        warnings.warn(f"sensitivity analysis: {line}", stacklevel=2)
     if run.failures:
         failed = run.failures[0]
         raise SolverError(
             f"sensitivity analysis: run {first + failed.member} failed: {failed.reason} Its parameters: "
             + ", ".join(f"{p}={v:g}" for p, v in zip(paths, samples[failed.member], strict=True))
         )
-    return run.records
+    return run
 
 
 def checked_range(building: Building, path: str, span: tuple[float, float]) -> tuple[float, float]:

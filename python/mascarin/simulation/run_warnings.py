@@ -6,8 +6,9 @@ then gives its warnings.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -22,6 +23,13 @@ if TYPE_CHECKING:
     from mascarin.simulation.vapour import VapourLedger
 
     Array = npt.NDArray[np.float64]
+
+#: Words of the warnings of `EnergyLedger`, `Judgement`, `ensemble_warnings` and `of_nominal` that say that a
+#: run is not sound or has failed. Warnings travel as texts: through files, kept results and other processes.
+_UNSOUND: Final = re.compile(
+    r"energy balance (does|of \d+ of \d+ members does) not close|do not use (these|their) results|"
+    r"a run with the values of the building failed"
+)
 
 
 def collected(
@@ -107,6 +115,24 @@ def of_members(
             f"(root mean square) in member {first + worst}: take a shorter step"
         )
     return found
+
+
+def says_unsound(warnings: Iterable[str]) -> bool:
+    """Whether a warning says that a run is not sound or has failed.
+
+    Parameters
+    ----------
+    warnings : iterable of str
+        Warnings of runs, of members of ensembles, or of the run with the values of the building.
+
+    Examples
+    --------
+    >>> says_unsound(["roof: 70.0 degC ...: do not use these results. Take a step of 15 min"])
+    True
+    >>> says_unsound(["roof: the layer pcm stayed solid"])
+    False
+    """
+    return any(_UNSOUND.search(line) for line in warnings)
 
 
 def of_base(warnings: Sequence[str]) -> list[str]:

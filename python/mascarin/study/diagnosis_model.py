@@ -54,10 +54,11 @@ class Store:
     def array(self, key: object, make: Callable[[], Array]) -> Array:
         """The stored array of a key, or a new one, which is stored."""
         name = f"diagnosis-{hashlib.sha256(repr(key).encode()).hexdigest()[:20]}"
-        for _, values in self._workspace.kept(name):
-            return values
+        for _, arrays in self._workspace.kept(name):
+            if "values" in arrays:
+                return arrays["values"]
         values = make()
-        self._workspace.keep(name, 0, values)
+        self._workspace.keep(name, 0, {"values": values})
         return values
 
     def value(self, key: object, make: Callable[[], Any]) -> Any:

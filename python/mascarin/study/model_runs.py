@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io import own_files
 from mascarin.calibration import profiles
+from mascarin.calibration.evaluations import ForeignRecordError
 from mascarin.progress import Progress, reporting
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.run_warnings import of_base
@@ -182,16 +185,25 @@ class ModelRuns:
             )
         simulation = setup.short(variant)
         with reporting(self._progress, f"calibration ({label})") as report:
+            record = self._workspace.path(f"evaluations-{_safe(label)}.jsonl")
+
+            def search() -> Calibration:
+                return identify(
+                    simulation, stated, plan, record=record, progress=_searching(report), tolerance=tolerance
+                )
 
             def make() -> Calibration:
-                return identify(
-                    simulation,
-                    stated,
-                    plan,
-                    record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
-                    progress=_searching(report),
-                    tolerance=tolerance,
-                )
+                try:
+                    return search()
+                except ForeignRecordError:
+                    # The folder is our own: what is in the place of the record came from somewhere else.
+                    warnings.warn(
+                        f"{record}: found something else than the record of this calibration; it is removed, "
+                        "and everything in it is computed again",
+                        stacklevel=2,
+                    )
+                    own_files.remove(record)
+                    return search()
 
             # The record has the evaluations; the search through them and the intervals take seconds as well.
             what = (stated.fingerprint(), stated.parameters, plan.model_dump_json(), tolerance)

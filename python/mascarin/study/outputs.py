@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mascarin.study.storage import Workspace
 
 
-def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> None:
+def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> list[Path]:
     """Write everything but the report into the folder of the study.
 
     Parameters
@@ -44,6 +44,11 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
         The folder.
     figures : bool
         Whether figures are written.
+
+    Returns
+    -------
+    list of Path
+        All results, the report among them: `Workspace.record` takes them when it is there.
     """
     out = workspace.out
     comfort = rated(findings)
@@ -51,13 +56,12 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
-    written = [
+    return [
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,
         *(out / name for name in WRITTEN),
     ]
-    workspace.record("study", written)
 
 
 def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
+from mascarin.simulation.judgement import ensemble_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -153,21 +155,31 @@ def analyze(
     taken = collector(runs, names, [output.unit for output in simulation.outputs])
     done = np.zeros(len(runs), dtype=bool)
     name = f"sensitivity-{plan.method}"
-    for first, values in workspace.kept(name):
+    # Relative energy-balance residual [-] and `Judgement.outside` [K] of each run.
+    judged = np.full((2, len(runs)), np.nan)
+    for first, arrays in workspace.kept(name):
+        values, verdicts = arrays.get("values"), arrays.get("judged")
+        if values is None or verdicts is None or verdicts.shape != (2, len(values)):
+            continue
         taken.add(first, values)
-        done[first : first + len(values)] = True
+        last = first + len(values)
+        judged[:, first:last] = verdicts
+        done[first:last] = True
     skipped = round(lead_seconds / simulation.step_seconds)
     every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        records = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
-        workspace.keep(name, first, records)
-        taken.add(first, records)
-        done[first : first + len(samples)] = True
+        run = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
+        last = first + len(samples)
+        judged[:, first:last] = run.residuals, run.outside
+        workspace.keep(name, first, {"values": run.records, "judged": judged[:, first:last]})
+        taken.add(first, run.records)
+        done[first:last] = True
         pace.update(len(samples), time.monotonic() - began)
         progress(int(done.sum()), len(runs))
-    return taken.result()
+    found = taken.result()
+    return replace(found, warnings=(*found.warnings, *ensemble_warnings(*judged)))
 
 
 class _Pace:

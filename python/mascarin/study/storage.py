@@ -42,7 +42,7 @@ _RESULT: Final = re.compile(
     + "|".join(re.escape(name) for name in (*WRITTEN, *OF_STEPS))
     + ")"
 )
-_REMOVED: Final = ", and the old report is removed"
+_STAYS: Final = "; the earlier report stays until a new one replaces it"
 
 
 class Workspace:
@@ -75,12 +75,12 @@ class Workspace:
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
         manifest, text = self.folder / "manifest.json", json.dumps(inputs, indent=1, sort_keys=True)
-        removed = self._remove_old_report()
+        self._earlier = self._report_is_earlier()
         changed = _changed(manifest, inputs)
         if changed:
             warnings.warn(
                 f"{out}: found results of other inputs (different: {', '.join(changed)}); they "
-                f"cannot be used, so everything is computed again{_REMOVED if removed else ''}",
+                f"cannot be used, so everything is computed again{_STAYS if self._earlier else ''}",
                 stacklevel=3,
             )
             self._clear("*.npy")
@@ -97,8 +97,14 @@ class Workspace:
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Release the lock."""
+        """Release the lock; after an error, say which report there is."""
         self._lock.release()
+        if error[0] is not None and self._earlier:
+            warnings.warn(
+                f"{self.out / REPORT}: of an earlier state of the study; it was not replaced, because this "
+                "run did not end",
+                stacklevel=2,
+            )
 
     def record(self, command: str, files: Iterable[Path]) -> None:
         """Note the files that a command wrote; remove its older files, and those of a study of other inputs.
@@ -119,7 +125,7 @@ class Workspace:
         }
         kept[command] = {"inputs": self._inputs, "files": written}
         named = {name for entry in kept.values() for name in entry["files"]}
-        for name in {name for entry in before.values() for name in entry["files"]} - named:
+        for name in {name for entry in before.values() for name in entry["files"]} - named - {REPORT}:
             self._remove(name)
         atomic.write(self.path("results.json"), json.dumps(kept, indent=1))
 
@@ -145,18 +151,15 @@ class Workspace:
             identity.require_no_input(file)
             file.unlink()
 
-    def _remove_old_report(self) -> bool:
-        """Remove a report that is not known to be one of these inputs; return whether there was one.
+    def _report_is_earlier(self) -> bool:
+        """Whether there is a report that is not known to be one of these inputs.
 
-        This is done before anything is computed: an interrupted study leaves no report of other inputs.
+        It stays until a new one replaces it: a study that fails takes no result from the user.
         """
         report = self.out / REPORT
         if report.is_symlink() or not (report.is_file() and is_report(report)):
             return False
-        current = self._recorded().get("study", {}).get("inputs") == self._inputs
-        if not current:
-            report.unlink()
-        return not current
+        return self._recorded().get("study", {}).get("inputs") != self._inputs
 
     def _clear(self, names: str) -> None:
         for file in self.folder.glob(names):
@@ -166,17 +169,17 @@ class Workspace:
         """File of an intermediate result."""
         return self.folder / name
 
-    def keep(self, name: str, first: int, values: Array) -> None:
-        """Save outputs of consecutive runs under the number of the first."""
+    def keep(self, name: str, first: int, arrays: Mapping[str, Array]) -> None:
+        """Save arrays of consecutive runs under the number of the first."""
         file = f"{name}-{first:09d}.npy"
-        own_files.write(self.path(file), file, own_files.packed(None, {"values": values}))
+        own_files.write(self.path(file), file, own_files.packed(None, arrays))
 
-    def kept(self, name: str) -> Iterator[tuple[int, Array]]:
-        """Outputs saved so far, by number of their first run; unreadable files are removed."""
+    def kept(self, name: str) -> Iterator[tuple[int, dict[str, Array]]]:
+        """Arrays saved so far, by number of their first run; unreadable files are removed."""
         for file in sorted(self.folder.glob(f"{name}-*.npy")):
             try:
                 _, arrays = own_files.unpacked(own_files.read(file, file.name))
-                yield int(file.stem.rsplit("-", 1)[1]), arrays["values"]
+                yield int(file.stem.rsplit("-", 1)[1]), arrays
             except (ValueError, LookupError, OSError):
                 own_files.remove(file)
 

@@ -278,8 +278,9 @@ class Study(Setup):
                 return self._carried_out(workspace, progress)
         with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
             results = self._carried_out(workspace, progress)
-            write_all(results, workspace, figures=figures)
+            written = write_all(results, workspace, figures=figures)
             report.write(workspace.out / "report.html", *read_folder(workspace.out))
+            workspace.record("study", written)
             workspace.drop("sensitivity")
             workspace.drop("diagnosis")
             workspace.drop(NAME)

@@ -39,6 +39,8 @@ Array = npt.NDArray[np.float64]
 
 #: An area below this share of the square of its length is a line, for the engine, too [-].
 SLENDER = 1e-9
+#: Coordinates of a surveyor's grid have 7 digits; squares of larger ones lose the millimetres of a wall [m].
+FARTHEST = 1e9
 
 
 @dataclass(frozen=True)
@@ -281,6 +283,11 @@ def _checked(name: str, vertices: tuple[Sequence[float], ...]) -> Polygon:
             raise InputError(
                 f"surface '{name}': vertex {number} is {list(vertex)}; expected three finite coordinates "
                 "[x east, y north, z up] in metres"
+            )
+        if max(abs(float(c)) for c in vertex) > FARTHEST:
+            raise InputError(
+                f"surface '{name}': vertex {number} is {list(vertex)}; expected coordinates within "
+                f"{FARTHEST:g} m of the origin: write them in metres, about a point near the building"
             )
         corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
     polygon = Polygon(name, tuple(corners))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from mascarin._io import atomic
 from mascarin.verification.bestest.catalogue import CASES, FOLDER, Case
 
 Point = tuple[float, float, float]
@@ -50,7 +51,7 @@ def write_all() -> None:
     """Write every building file again."""
     FOLDER.mkdir(exist_ok=True)
     for case in CASES.values():
-        case.file.write_text(text(case), encoding="utf-8")
+        atomic.write(case.file, text(case))
 
 
 # ------------------------------------------------------------------ parts of a file
