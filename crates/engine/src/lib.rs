@@ -46,7 +46,13 @@ pub mod march {
     pub use crate::step::{Counters, Scheme};
 }
 
-pub use run::{physical_limits, ratings, stepwise};
+pub use run::{physical_limits, ratings, stepwise, validity};
+
+/// Laws that are written as text.
+pub mod formula {
+    pub use crate::physics::convection::{FormulaFault, LawNumber, LawText};
+    pub use crate::physics::formula::{Fault, Position};
+}
 
 /// Quantities to record.
 pub mod probe {

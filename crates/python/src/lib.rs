@@ -1,6 +1,7 @@
 //! The module `mascarin._engine`: conversion, release of the GIL, progress, Ctrl-C and errors. No physics.
 
 mod errors;
+mod formula;
 mod options;
 mod plan;
 mod psychrometrics;
@@ -35,6 +36,8 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(fmu_library, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_formula, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::formula_values, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::saturation_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::condensing_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::humidity_ratio, module)?)?;

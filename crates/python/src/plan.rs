@@ -8,6 +8,7 @@ use mascarin_engine::march::{Run, Watch, march_streamed};
 use mascarin_engine::physical_limits::Outlier;
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
+use mascarin_engine::validity::OutOfRange;
 use mascarin_engine::vapour::VapourFlow;
 use mascarin_engine::{batch, state_space};
 use numpy::{
@@ -242,6 +243,8 @@ pub fn describe_run<'py>(
         .as_ref()
         .map(|Outlier { step, place, temperature, bound }| (*step, place.as_str(), *temperature, *bound));
     result.set_item("outlier", outlier)?;
+    let out_of_range: Vec<_> = run.out_of_range.iter().map(law_out_of_range).collect();
+    result.set_item("out_of_range", out_of_range)?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.warm_up_change)?;
     result.set_item("iterations", run.counters.iterations)?;
@@ -251,4 +254,9 @@ pub fn describe_run<'py>(
     result.set_item("largest_change", run.counters.largest_change)?;
     result.set_item("largest_residual", run.counters.largest_residual)?;
     Ok(result)
+}
+
+/// Place, steps, first step, difference [K] and wind [m/s] of a law that was used where it does not hold.
+fn law_out_of_range(law: &OutOfRange) -> (&str, usize, usize, f64, f64) {
+    (&law.place, law.steps, law.first, law.difference, law.wind)
 }

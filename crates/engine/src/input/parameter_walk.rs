@@ -7,9 +7,9 @@ use core::fmt::{Display, Write};
 
 use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth, Description,
-    DirectedFlow, Door, Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl,
-    HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
-    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
+    DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap, Glazing, Humidity,
+    HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve,
+    Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
     Sorption, SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation,
     VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
@@ -239,8 +239,10 @@ walk!(Convection by variant {
     Doe2 { factor, roughness } plain {},
     Iso15099 { length, factor } plain {},
     Power { upward, downward } plain {},
+    Formula { numbers } plain { formula, valid },
 });
 walk!(PowerLaw { a, b, n, c, m } plain {});
+walk!(FormulaNumber { value } plain { name });
 walk!(Sensor { depth } plain { name, surface });
 
 walk!(Humidity { initial, lewis, zones, buffers, recoveries } plain {});

@@ -13,6 +13,7 @@ pub mod physical_limits;
 pub mod ratings;
 pub mod stepwise;
 pub mod streamed;
+pub mod validity;
 mod warm_up;
 
 pub(crate) use action::Action;

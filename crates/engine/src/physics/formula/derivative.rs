@@ -1,0 +1,233 @@
+//! Derivatives of a graph by its variable, and powers as roots and products.
+
+use std::collections::HashMap;
+
+use super::graph::{Graph, Id, Level, Node};
+
+/// Fractions of exponents whose powers are roots.
+const ROOTS: [f64; 7] = [0.5, 0.25, 0.75, 1.0 / 3.0, 2.0 / 3.0, 1.0 / 6.0, 5.0 / 6.0];
+/// Exponents this close are the same: `4/3 - 1` has another last bit than `1/3`.
+const SAME: f64 = 1e-15;
+/// Largest exponent that is made of roots and products.
+const LARGEST: f64 = 9.0;
+
+impl Graph {
+    /// The derivative of a part by the variable; `slopes`: those of the inputs.
+    pub(crate) fn derivative(&mut self, id: Id, slopes: &HashMap<Id, Id>, known: &mut HashMap<Id, Id>) -> Id {
+        if let Some(&slope) = slopes.get(&id).or_else(|| known.get(&id)) {
+            return slope;
+        }
+        if self.level(id) < Level::Iteration {
+            return self.constant(0.0);
+        }
+        let mut of = |graph: &mut Self, id: Id| graph.derivative(id, slopes, known);
+        let slope = match self.node(id) {
+            Node::Constant(_) | Node::Input(_) => self.constant(0.0),
+            Node::Plus(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                self.plus(da, db)
+            }
+            Node::Minus(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                self.minus(da, db)
+            }
+            Node::Negative(a) => {
+                let da = of(self, a);
+                self.negative(da)
+            }
+            Node::Times(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                let (left, right) = (self.times(da, b), self.times(a, db));
+                self.plus(left, right)
+            }
+            Node::Over(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                let lost = self.times(id, db);
+                let rest = self.minus(da, lost);
+                self.over(rest, b)
+            }
+            Node::Power(base, exponent) => {
+                let (dbase, dexponent) = (of(self, base), of(self, exponent));
+                self.power_slope(id, [base, exponent], [dbase, dexponent])
+            }
+            Node::Sqrt(a) => {
+                let (da, half) = (of(self, a), self.constant(0.5));
+                let relative = self.over(da, id);
+                self.times(half, relative)
+            }
+            Node::InverseCbrt(a) => {
+                let (da, third) = (of(self, a), self.constant(-1.0 / 3.0));
+                let (relative, factor) = (self.over(da, a), self.times(third, id));
+                self.times(factor, relative)
+            }
+            Node::Exp(a) => {
+                let da = of(self, a);
+                self.times(id, da)
+            }
+            Node::Ln(a) => {
+                let da = of(self, a);
+                self.over(da, a)
+            }
+            Node::Sin(a) => {
+                let (da, cosine) = (of(self, a), self.cos(a));
+                self.times(cosine, da)
+            }
+            Node::Cos(a) => {
+                let (da, sine) = (of(self, a), self.sin(a));
+                let product = self.times(sine, da);
+                self.negative(product)
+            }
+            Node::Min(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                self.choose([b, a], db, da)
+            }
+            Node::Max(a, b) => {
+                let (da, db) = (of(self, a), of(self, b));
+                self.choose([a, b], db, da)
+            }
+            Node::Choose { less, yes, no } => {
+                let (yes, no) = (of(self, yes), of(self, no));
+                self.choose(less, yes, no)
+            }
+        };
+        known.insert(id, slope);
+        slope
+    }
+
+    /// `x^y (y' ln x + y x'/x)`.
+    fn power_slope(&mut self, power: Id, [base, exponent]: [Id; 2], [dbase, dexponent]: [Id; 2]) -> Id {
+        let relative = self.over(dbase, base);
+        let share = self.times(exponent, relative);
+        let sum = if self.folded(dexponent) == Some(0.0) {
+            share
+        } else {
+            let logarithm = self.ln(base);
+            let product = self.times(dexponent, logarithm);
+            self.plus(share, product)
+        };
+        self.times(power, sum)
+    }
+
+    /// The same part with powers replaced by roots, products, exponentials and logarithms.
+    pub(crate) fn lowered(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
+        if let Some(&done) = known.get(&id) {
+            return done;
+        }
+        let mut of = |graph: &mut Self, id: Id| graph.lowered(id, known);
+        let done = match self.node(id) {
+            Node::Constant(_) | Node::Input(_) => id,
+            Node::Plus(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.plus(a, b)
+            }
+            Node::Minus(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.minus(a, b)
+            }
+            Node::Times(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.times(a, b)
+            }
+            Node::Over(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.over(a, b)
+            }
+            Node::Min(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.min(a, b)
+            }
+            Node::Max(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.max(a, b)
+            }
+            Node::Power(base, exponent) => {
+                let (base, exponent) = (of(self, base), of(self, exponent));
+                self.lowered_power(base, exponent)
+            }
+            Node::Negative(a) => {
+                let a = of(self, a);
+                self.negative(a)
+            }
+            Node::Sqrt(a) => {
+                let a = of(self, a);
+                self.sqrt(a)
+            }
+            Node::InverseCbrt(a) => {
+                let a = of(self, a);
+                self.inverse_cbrt(a)
+            }
+            Node::Exp(a) => {
+                let a = of(self, a);
+                self.exp(a)
+            }
+            Node::Ln(a) => {
+                let a = of(self, a);
+                self.ln(a)
+            }
+            Node::Sin(a) => {
+                let a = of(self, a);
+                self.sin(a)
+            }
+            Node::Cos(a) => {
+                let a = of(self, a);
+                self.cos(a)
+            }
+            Node::Choose { less, yes, no } => {
+                let less = less.map(|id| of(self, id));
+                let (yes, no) = (of(self, yes), of(self, no));
+                self.choose(less, yes, no)
+            }
+        };
+        known.insert(id, done);
+        done
+    }
+
+    fn lowered_power(&mut self, base: Id, exponent: Id) -> Id {
+        if let Some(value) = self.folded(exponent) {
+            let (whole, fraction) = (value.abs().floor(), value.abs().fract());
+            let root = ROOTS.iter().find(|root| (*root - fraction).abs() < SAME);
+            if let Some(&root) = root
+                && whole < LARGEST
+            {
+                let root = self.root(base, root);
+                let whole = self.constant(whole);
+                let product = self.power(base, whole);
+                let power = self.times(root, product);
+                if value > 0.0 {
+                    return power;
+                }
+                let one = self.constant(1.0);
+                return self.over(one, power);
+            }
+        }
+        let logarithm = self.ln(base);
+        let product = self.times(exponent, logarithm);
+        self.exp(product)
+    }
+
+    /// A root of a positive part.
+    fn root(&mut self, base: Id, exponent: f64) -> Id {
+        let third = |graph: &mut Self| {
+            let inverse = graph.inverse_cbrt(base);
+            [inverse, graph.times(base, inverse)]
+        };
+        if exponent == 0.5 {
+            return self.sqrt(base);
+        }
+        if exponent == 0.25 || exponent == 0.75 {
+            let half = self.sqrt(base);
+            let quarter = self.sqrt(half);
+            return if exponent == 0.25 { quarter } else { self.times(half, quarter) };
+        }
+        let [inverse, two_thirds] = third(self);
+        if exponent == 2.0 / 3.0 {
+            return two_thirds;
+        }
+        let one_third = self.times(two_thirds, inverse);
+        if exponent == 1.0 / 3.0 {
+            return one_third;
+        }
+        let half = self.sqrt(if exponent == 1.0 / 6.0 { one_third } else { base });
+        if exponent == 1.0 / 6.0 { half } else { self.times(half, one_third) }
+    }
+}

@@ -1,0 +1,54 @@
+//! Laws written as text: a formula is read once, and computed with any kind of number.
+//!
+//! | file | contents |
+//! |---|---|
+//! | [`lexer`] | the words of a formula, each with its line and column |
+//! | [`parser`] | the tree of a formula, with the place of each operation; errors say what to write |
+//! | [`tree`] | that tree, and its plain value as written: not a number where a root or a quotient has none |
+//! | [`graph`] | the same as a graph without repeated parts: constants folded, powers simplified, derivatives |
+//! | `derivative` | derivatives by the variable, powers as roots and products |
+//! | [`program`] | the graph as short instructions for a few registers, computed over [`Real`](crate::number::real::Real) |
+//!
+//! A quantity that uses formulas says which names it has and what is computed when ([`Level`](graph::Level)): what depends on numbers of
+//! the description only is computed once per run, what depends on the wind once per stage.
+
+pub(crate) mod derivative;
+pub(crate) mod graph;
+pub(crate) mod lexer;
+pub(crate) mod parser;
+pub(crate) mod program;
+#[cfg(test)]
+mod tests;
+pub(crate) mod tree;
+
+/// Where a part of a formula is: line and column, both from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Position {
+    /// Line of the text.
+    pub line: u32,
+    /// Character of the line.
+    pub column: u32,
+}
+
+/// What is wrong with a formula, where, and what to do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Where it is.
+    pub at: Position,
+    /// What stands there.
+    pub found: String,
+    /// What may stand there.
+    pub expected: String,
+    /// What to write.
+    pub remedy: String,
+}
+
+impl core::fmt::Display for Fault {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { at: Position { line, column }, found, expected, remedy } = self;
+        if *line > 1 {
+            write!(f, "line {line}, ")?;
+        }
+        write!(f, "column {column}: found {found}, expected {expected}. {remedy}")
+    }
+}
