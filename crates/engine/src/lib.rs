@@ -50,8 +50,9 @@ pub use run::{physical_limits, ratings, stepwise, validity};
 
 /// Laws that are written as text.
 pub mod formula {
-    pub use crate::physics::convection::{FormulaFault, LawNumber, LawText};
-    pub use crate::physics::formula::{Fault, Position};
+    pub use crate::physics::convection::{LawNumber, LawText};
+    pub use crate::physics::formula::{Fault, FormulaFault, Position};
+    pub use crate::physics::pcm::text::CurveText;
 }
 
 /// Quantities to record.

@@ -1,6 +1,6 @@
 //! Laws that are written as text: their faults and their values.
 
-use mascarin_engine::formula::{FormulaFault, LawNumber, LawText};
+use mascarin_engine::formula::{CurveText, FormulaFault, LawNumber, LawText};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -60,6 +60,38 @@ pub fn formula_values<'py>(
         let points: Vec<[f64; 2]> =
             differences.as_slice()?.iter().zip(winds.as_slice()?).map(|(&d, &wind)| [d, wind]).collect();
         let values = law.values(&points);
+        let values = values.map_err(|fault| EngineInputError::new_err(fault.fault.to_string()))?;
+        Ok(PyArray1::from_vec(py, values))
+    })
+}
+
+/// The first fault of a curve of the liquid fraction that is written as text: names and values of its numbers, the melting temperature
+/// [degC] and the range about it in which it melts [K]; none: it is a curve.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+pub fn check_fraction(
+    formula: &str,
+    given: Vec<(String, f64)>,
+    melting_temperature: f64,
+    range: [f64; 2],
+) -> PyResult<Option<Found>> {
+    caught(|| Ok(CurveText { formula, numbers: &given, melting_temperature, range }.check().err().map(found)))
+}
+
+/// Liquid fractions of such a curve at temperatures [degC]: [-].
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+pub fn fraction_values<'py>(
+    py: Python<'py>,
+    formula: &str,
+    given: Vec<(String, f64)>,
+    melting_temperature: f64,
+    range: [f64; 2],
+    temperatures: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    caught(|| {
+        let curve = CurveText { formula, numbers: &given, melting_temperature, range };
+        let values = curve.fractions(temperatures.as_slice()?);
         let values = values.map_err(|fault| EngineInputError::new_err(fault.fault.to_string()))?;
         Ok(PyArray1::from_vec(py, values))
     })

@@ -38,6 +38,8 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
     module.add_function(wrap_pyfunction!(formula::check_formula, module)?)?;
     module.add_function(wrap_pyfunction!(formula::formula_values, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_fraction, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::fraction_values, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::saturation_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::condensing_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(psychrometrics::humidity_ratio, module)?)?;

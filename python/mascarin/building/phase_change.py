@@ -4,39 +4,17 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
+from mascarin.building.closed_law import CUT, ClosedLaw
 from mascarin.building.curves import as_many, monotone, rising
+from mascarin.building.formula_curve import FormulaCurve
 from mascarin.building.number import Number, Remark, problem
-from mascarin.building.part import Part, fault, insist
-
-#: Fraction of the transition cut off at each end of a curve with tails, where hysteresis needs an end.
-CUT: Final = 1e-3
-
-
-class ClosedLaw(Part):
-    """A law of the liquid fraction by a formula, about the melting temperature."""
-
-    #: Whether the fraction reaches 0 and 1 only at infinity.
-    tails: ClassVar[bool] = False
-
-    @property
-    def half_width(self) -> float:
-        """Half-width of the melting range [K]."""
-        raise TypeError("each law defines its width")
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, relative to the melting temperature, without tails [K]."""
-        raise TypeError("each law defines its reach")
-
-    def fraction(self, above: float) -> float:
-        """Liquid fraction at a distance above the melting temperature [K]."""
-        raise TypeError("each law defines its fraction")
+from mascarin.building.part import Part, Shorthand, fault, insist
 
 
 class TanhLaw(ClosedLaw):
@@ -414,13 +392,16 @@ Law = Annotated[
     | TriangleLaw
     | FractionsLaw
     | TableLaw
-    | CapacityLaw,
+    | CapacityLaw
+    | FormulaCurve,
     Field(discriminator="kind"),
+    Shorthand(implied=("formula", "text")),
 ]
 #: Laws of the liquid fraction alone, which hysteresis needs.
 FractionLaw = Annotated[
-    TanhLaw | SmoothStepLaw | GaussianLaw | GumbelLaw | LinearLaw | TriangleLaw | FractionsLaw,
+    TanhLaw | SmoothStepLaw | GaussianLaw | GumbelLaw | LinearLaw | TriangleLaw | FractionsLaw | FormulaCurve,
     Field(discriminator="kind"),
+    Shorthand(implied=("formula", "text")),
 ]
 
 

@@ -8,10 +8,11 @@ from typing import Any, Final
 
 from pydantic_core import InitErrorDetails
 
+from mascarin.building.closed_law import CUT, ClosedLaw
 from mascarin.building.melting import Melting
 from mascarin.building.number import Number
 from mascarin.building.part import Location, fault
-from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
+from mascarin.building.phase_change import CapacityLaw, FractionLaw, FractionsLaw, TableLaw
 from mascarin.building.phases import phase
 
 #: Largest relative difference of a latent heat from that of its table [-].

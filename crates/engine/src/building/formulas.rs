@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
-use crate::input::description::{Convection, Description, Facing, Side};
+use crate::input::description::{Convection, Description, Facing, Material, MeltingCurve, PcmLaw, Side};
 use crate::physics::convection::formula_text::FormulaText;
+use crate::physics::pcm::text::FractionText;
 
 /// The law of each surface that is written as text.
 pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<FormulaText>>>, EngineError> {
@@ -23,6 +24,28 @@ pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<For
     }
     texts.sort_by_key(|(id, _)| id.index());
     Ok(texts.into_iter().map(|(_, text)| text).collect())
+}
+
+/// Refuses melting curves whose text cannot be read.
+pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError> {
+    for (index, material) in description.materials.iter().enumerate() {
+        let Material::Pcm { law, .. } = material else { continue };
+        let curves: Vec<&MeltingCurve> = match law {
+            PcmLaw::Melting { curve, .. } => vec![curve],
+            PcmLaw::Hysteresis { heating, cooling, .. } => vec![heating, cooling],
+            PcmLaw::Tabulated { .. } => Vec::new(),
+        };
+        for curve in curves {
+            let MeltingCurve::Text { formula, numbers, range, .. } = curve else { continue };
+            let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
+            let refuse = |text: String| EngineError::Description(format!("material {index}, melting curve: {text}"));
+            FractionText::new(formula, &names).map_err(|found| refuse(found.fault.to_string()))?;
+            if !(range[0] < range[1] && range.iter().all(|end| end.is_finite())) {
+                return Err(refuse(format!("found the range {range:?}, expected one that rises")));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The law of a side; sides with the same text share it.

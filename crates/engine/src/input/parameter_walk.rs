@@ -148,6 +148,7 @@ walk!(MeltingCurve by variant {
     Linear { melting_temperature, width } plain {},
     Triangle { melting_temperature, below, above } plain {},
     Fractions { temperature_shift } plain { temperatures, fractions },
+    Text { melting_temperature, numbers } plain { formula, range },
 });
 
 walk!(Construction { layers, glazing, blind } plain { name });

@@ -3,9 +3,9 @@
 //! The text is computed as written, without rounding, on a grid of differences (-60 to 60 K) and winds (0 to 30 m/s), wherever it
 //! says that it is valid: with the values of its numbers, and with the ends of their ranges.
 
-use super::formula_text::{DIFFERENCE, FormulaFault, FormulaText, WIND, WINDWARD};
+use super::formula_text::{DIFFERENCE, FormulaText, WIND, WINDWARD};
 use crate::physics::formula::lexer::fault;
-use crate::physics::formula::{Fault, Position};
+use crate::physics::formula::{Fault, FormulaFault, Position};
 
 /// Largest difference of the grid [K].
 const FARTHEST: f64 = 60.0;

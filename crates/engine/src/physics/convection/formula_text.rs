@@ -21,7 +21,7 @@ use crate::physics::formula::lexer::fault;
 use crate::physics::formula::parser::{self, Names};
 use crate::physics::formula::program::{Program, TooLong};
 use crate::physics::formula::tree::{Condition, Tree};
-use crate::physics::formula::{Fault, Position};
+use crate::physics::formula::{FormulaFault, Position};
 
 /// Names that the side of a surface gives, by their places in [`Tree`].
 pub(crate) const VARIABLES: [&str; 7] = ["dT", "V", "windward", "tilt", "upward", "area", "density"];
@@ -80,15 +80,6 @@ pub(crate) enum Number {
     Density,
     /// By its place among the numbers of the law.
     Given(usize),
-}
-
-/// Which text of a law a fault is in.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FormulaFault {
-    /// `formula`, `valid`, or the name of a number.
-    pub key: String,
-    /// What is wrong.
-    pub fault: Fault,
 }
 
 impl FormulaText {

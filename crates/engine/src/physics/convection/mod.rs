@@ -61,6 +61,5 @@ pub(crate) mod wind;
 
 pub use correlation::Placement;
 pub use formula_check::{LawNumber, LawText};
-pub use formula_text::FormulaFault;
 pub use law::SurfaceConvection;
 pub use wind::{Forced, Wind, WindTerms};

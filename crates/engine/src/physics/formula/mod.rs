@@ -43,6 +43,15 @@ pub struct Fault {
     pub remedy: String,
 }
 
+/// Which text of a law a fault is in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FormulaFault {
+    /// `formula`, `valid`, or the name of a number.
+    pub key: String,
+    /// What is wrong.
+    pub fault: Fault,
+}
+
 impl core::fmt::Display for Fault {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { at: Position { line, column }, found, expected, remedy } = self;

@@ -56,7 +56,7 @@ fn faults_have_a_place_and_a_remedy() {
         ("2dT", 1, "Write 2*d"),
         ("2.3·dT", 4, "Write * for a product"),
         ("|dT|^0.3", 1, "abs(x)"),
-        ("h = 2", 1, "the name 'h'"),
+        ("h*2", 1, "the name 'h'"),
         ("2 = 3", 3, "no equals sign"),
         ("2 + ", 5, "Something is missing"),
         ("2 + *3", 5, "found '*'"),
