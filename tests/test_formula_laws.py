@@ -1,4 +1,4 @@
-"""Convection written as text: the same runs as built-in laws, parameters by path, and faults with their place."""
+"""Convection and melting as text: the runs of built-in laws, parameters by path, faults with their place."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ from mascarin.fmu import export
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.validation.sensors import Sensor
+from mascarin.verification.analytical import setup
 
 TARP = (
-    "f*if(abs(upward) < 1e-6, 1.31, if(dT*upward > 0, 9.482/(7.238 - abs(upward)), 1.810/(1.382 + abs(upward))))"
-    "*abs(dT)^(1/3)"
+    "f*if(abs(upward) < 1e-6, 1.31, if(dT*upward > 0, 9.482/(7.238 - abs(upward)), "
+    "1.810/(1.382 + abs(upward))))*abs(dT)^(1/3)"
 )
 MOWITT = "f*sqrt((0.84*abs(dT)^(1/3))^2 + (if(windward, 3.26*V^0.89, 3.55*V^0.617))^2)"
 OUTSIDE = "surfaces.facade.outside.convection"
@@ -155,7 +156,7 @@ def test_two_numbers_are_calibrated_on_data_made_by_the_law() -> None:
     )  # fmt: skip
     for k, (path, value) in enumerate(truth.items()):
         assert found.low[k] < value < found.high[k]
-        assert found.values[path] == pytest.approx(value, rel=0.1)
+        assert found.values[path] == pytest.approx(value, rel=0.1)  # noqa: PD011
 
 
 def test_a_sensitivity_names_the_numbers() -> None:
@@ -251,3 +252,92 @@ def test_a_law_gives_its_coefficients() -> None:
     assert law.coefficient([8.0, -8.0], 2.0) == pytest.approx(2.3 * 8.0**0.33 + 3.1 * 2.0**0.8)
     with pytest.raises(InputError, match="formula: column 1"):
         FormulaLaw(formula="dTT").coefficient(2.0)
+
+
+BOARD = """\
+name: board
+site: {latitude: 48, longitude: 2, altitude: 100, timezone: UTC}
+materials:
+  wax: {kind: pcm, conductivity: 0.2, density: 850, specific_heat: [2000, 2200], latent_heat: 120000,
+        melting_temperature: {value: 23.5, range: [22, 25]}, law: %s}
+constructions: {wall: {layers: [{material: wax, thickness: 0.02}]}}
+surfaces:
+  w: {construction: wall, area: 1, tilt: 90, outside: {measured: air, convection: 20}, inside: {adiabatic: true}}
+"""
+LOGISTIC = (
+    '{formula: "1/(1 + exp(-2*(T - Tm)/w))", w: {value: 0.8, unit: K, range: [0.5, 1.2]}, '
+    "range: [-18, 18], source: own}"
+)
+
+
+def board(law: str, folder: Path) -> Building:
+    file = folder / "board.yaml"
+    file.write_text(BOARD % law, "utf-8")
+    return mc.load(file)
+
+
+def melting(building: Building, **options: Any) -> Simulation:
+    hours = np.arange(73)
+    climate = setup.climate(3600.0, {"air": 23.0 + 6.0 * np.sin(hours * np.pi / 12.0)})
+    outputs = ["w.inside_temperature", "w.outside_flux"]
+    return Simulation(building, climate, step="15min", outputs=outputs, initial=20.0, **options)
+
+
+def test_tanh_as_text_melts_as_the_built_in_law(tmp_path: Path) -> None:
+    built_in, text = (melting(board(law, tmp_path)).run() for law in ("{kind: tanh, width: 0.8}", LOGISTIC))
+    assert np.ptp(built_in["w.inside_temperature"].to_numpy()) > 3.0
+    assert np.abs(text.records[:, 0] - built_in.records[:, 0]).max() < 1e-6
+    assert text.energy.closes
+
+
+def test_derivatives_of_a_melting_curve_as_text(tmp_path: Path) -> None:
+    run = melting(board(LOGISTIC, tmp_path))
+    paths = ["materials.wax.law.w", "materials.wax.melting_temperature"]
+    slopes = run.jacobian_vector(paths)[1]
+    for k, path in enumerate(paths):
+        value = run.building.parameter(path).value
+        low, high = (run.jacobian_vector(paths, run.vector({path: value + sign * 1e-5}))[0] for sign in (-1, 1))
+        quotient = (high - low) / 2e-5
+        assert np.abs(slopes[k]).max() > 0.01
+        assert np.abs(quotient - slopes[k]).max() < 1e-4 * np.abs(slopes[k]).max()
+
+
+def test_members_of_a_sweep_of_a_melting_curve_have_the_bits_of_runs_alone(tmp_path: Path) -> None:
+    building = board(LOGISTIC, tmp_path)
+    run = melting(building)
+    widths = np.linspace(0.5, 1.2, 9)
+    vectors = np.array([run.vector({"materials.wax.law.w": width}) for width in widths])
+    found = run.ensemble(vectors).records
+    for member in (0, 5, 8):
+        alone = run.run({"materials.wax.law.w": widths[member]}).records
+        assert np.array_equal(found[member], alone)
+
+
+def test_a_melting_curve_with_two_steps_and_hysteresis(tmp_path: Path) -> None:
+    double = (
+        '{formula: "s*(0.5 + 0.5*tanh((T - Tm + 2)/w)) + (1 - s)*(0.5 + 0.5*tanh((T - Tm - 2)/w))", s: 0.3, '
+        "w: 0.3, range: [-6, 6]}"
+    )
+    law = double + ", hysteresis: {model: curve_switch, freezing_temperature: 22}"
+    for text in (double, law):
+        run = melting(board(text, tmp_path)).run()
+        assert run.energy.closes
+    assert board(double, tmp_path).materials["wax"].law.fraction(0.0) == pytest.approx(0.3, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1, range: [-2, 2]}', "an end of the range"),
+        ('{formula: "1/(1 + exp((T - Tm)/w))", w: 1, range: [-8, 8]}', "an end of the range"),
+        ('{formula: "1/(1 + exp(-(T - Tm)/q))", w: 1, range: [-8, 8]}', "the name 'q' (column 23 of the text)"),
+        ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: {value: 1, range: [0.2, 6]}, range: [-8, 8]}', "with w = 6"),
+        ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1, range: [8, -8]}', "Swap them"),
+        ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1}', "Add 'range:'"),
+    ],
+)
+def test_curves_that_are_none_are_refused(tmp_path: Path, law: str, words: str) -> None:
+    with pytest.raises(InputError) as error:
+        board(law, tmp_path)
+    assert words in str(error.value), str(error.value)
+    assert "board.yaml:5" in str(error.value) or "board.yaml:4" in str(error.value)

@@ -73,7 +73,7 @@ def check_formula(
     wind: bool,
     side: tuple[float, float, float],
 ) -> tuple[str, int, int, str, str, str] | None:
-    """Key, line, column, found, expected and remedy of the first fault of a coefficient as text; None: a law."""
+    """Key, line, column, found, expected, remedy of the first fault of a coefficient as text; None: a law."""
 
 def check_fraction(
     formula: str, given: list[tuple[str, float]], melting_temperature: float, range: tuple[float, float]

@@ -50,8 +50,8 @@ pub use run::{physical_limits, ratings, stepwise, validity};
 
 /// Laws that are written as text.
 pub mod formula {
-    pub use crate::physics::convection::{LawNumber, LawText};
-    pub use crate::physics::formula::{Fault, FormulaFault, Position};
+    pub use crate::physics::convection::LawText;
+    pub use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
     pub use crate::physics::pcm::text::CurveText;
 }
 

@@ -1,4 +1,4 @@
-"""Laws written as text: values of their numbers that make them no laws, and runs outside of their validity."""
+"""Laws written as text: values that make them no laws, and runs in which they do not hold."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def require_laws(building: Building, vectors: Array, *, positions: Mapping[str, int]) -> None:
-    """Refuse values of the numbers of a law with which it is none; those within their ranges are known to be one.
+    """Refuse values of numbers with which a law is none; within their ranges it was checked before.
 
     Parameters
     ----------

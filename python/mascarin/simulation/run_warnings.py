@@ -64,7 +64,11 @@ def collected(
 
 
 def of_engine(
-    judgement: Judgement, raw: Mapping[str, Any], dated: Callable[[str], str], step_seconds: float, scheme: str
+    judgement: Judgement,
+    raw: Mapping[str, Any],
+    dated: Callable[[str], str],
+    step_seconds: float,
+    scheme: str,
 ) -> list[str]:
     """Warnings of checks that the engine makes of a run.
 

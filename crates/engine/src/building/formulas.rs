@@ -38,7 +38,8 @@ pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError>
         for curve in curves {
             let MeltingCurve::Text { formula, numbers, range, .. } = curve else { continue };
             let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
-            let refuse = |text: String| EngineError::Description(format!("material {index}, melting curve: {text}"));
+            let refuse =
+                |text: String| EngineError::Description(format!("material {index}, melting curve: {text}"));
             FractionText::new(formula, &names).map_err(|found| refuse(found.fault.to_string()))?;
             if !(range[0] < range[1] && range.iter().all(|end| end.is_finite())) {
                 return Err(refuse(format!("found the range {range:?}, expected one that rises")));

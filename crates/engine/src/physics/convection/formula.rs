@@ -46,7 +46,7 @@ impl<S: Real> Formula<S> {
             Number::Given(place) => given[place],
         };
         let known: Vec<S> = text.run_numbers.iter().map(number).collect();
-        let numbers = text.run.compute_all(&[], &known).into();
+        let numbers = text.run.compute_all(&known).into();
         let limits = [-FARTHEST, FARTHEST].map(S::constant);
         let mut law = Self { text: Arc::clone(text), numbers, limits };
         if text.buoyant {

@@ -5,7 +5,8 @@
 
 use super::formula_text::{DIFFERENCE, FormulaText, WIND, WINDWARD};
 use crate::physics::formula::lexer::fault;
-use crate::physics::formula::{Fault, FormulaFault, Position};
+use crate::physics::formula::units::{self, Unit};
+use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
 
 /// Largest difference of the grid [K].
 const FARTHEST: f64 = 60.0;
@@ -17,19 +18,18 @@ const WINDS: [f64; 7] = [0.0, 0.2, 1.0, 3.0, 8.0, 15.0, 30.0];
 const LARGEST: f64 = 1e5;
 /// Rounding of a flow, as a part of it.
 const ROUNDING: f64 = 1e-9;
+/// Units of the names of a side, in their order; an angle may be in degrees or not.
+const SIDE_UNITS: [Option<Unit>; 7] = [
+    Some(units::KELVIN),
+    Some(units::SPEED),
+    Some(units::NONE),
+    None,
+    Some(units::NONE),
+    Some(units::AREA),
+    Some(units::DENSITY),
+];
 /// With more numbers that have ranges not all ends of them are combined.
 const COMBINED: usize = 4;
-
-/// A number of a law.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LawNumber {
-    /// Its name.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Lowest and highest value.
-    pub range: Option<[f64; 2]>,
-}
 
 /// A coefficient as text, at a side of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +61,7 @@ impl LawText<'_> {
         let side = [0.0, 0.0, 0.0, self.tilt, upward, self.area, self.density];
         let nominal: Vec<f64> = self.numbers.iter().map(|number| number.value).collect();
         let mut names: Vec<f64> = side.into_iter().chain(nominal.clone()).collect();
+        self.check_units(&text, &names)?;
         if !self.sweep(&text, &mut names)? {
             let found = "no difference of -60 to 60 K and no wind of 0 to 30 m/s at which it is valid";
             let fault = fault(START, found, "some at which it is", "Correct 'valid'.");
@@ -90,6 +91,15 @@ impl LawText<'_> {
                 text.tree.value(&names)
             })
             .collect())
+    }
+
+    fn check_units(&self, text: &FormulaText, values: &[f64]) -> Result<(), FormulaFault> {
+        let Some(units) = units::of_numbers(&SIDE_UNITS, self.numbers)? else { return Ok(()) };
+        let at = |key: &str, fault: Fault| FormulaFault { key: key.to_owned(), fault };
+        let stated = units::Stated { units: &units, values, variables: WINDWARD + 1 };
+        stated.check(&text.tree, units::COEFFICIENT).map_err(|fault| at("formula", fault))?;
+        let valid = text.valid.as_ref();
+        valid.map_or(Ok(()), |valid| stated.check_condition(valid)).map_err(|fault| at("valid", fault))
     }
 
     fn read(&self) -> Result<FormulaText, FormulaFault> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::correlation::Placement;
-use super::formula_check::{LawNumber, LawText};
+use super::formula_check::LawText;
 use super::formula_text::FormulaText;
 use super::{SurfaceConvection, Wind, WindTerms};
 use crate::input::description::{Convection, FormulaNumber, ParamId, PowerLaw};
@@ -12,6 +12,7 @@ use crate::number::dual::Dual;
 use crate::number::elementary::cos_of_degrees;
 use crate::number::lanes::Lanes;
 use crate::number::real::Real;
+use crate::physics::formula::LawNumber;
 
 /// Air density [kg/m3].
 const DENSITY: f64 = 1.17;
@@ -207,7 +208,7 @@ fn check(formula: &str, valid: Option<&str>, numbers: &[LawNumber], wind: bool) 
 }
 
 fn number(name: &str, value: f64, range: Option<[f64; 2]>) -> LawNumber {
-    LawNumber { name: name.into(), value, range }
+    LawNumber { name: name.into(), value, range, unit: None }
 }
 
 #[test]
@@ -236,4 +237,37 @@ fn laws_that_are_none_are_refused() {
     let fault = check("3 + c*abs(dT)^n*3", None, &ranged, false).unwrap_err();
     assert!(fault.contains("c = -1"), "{fault}");
     assert!(check("2*dT", None, &[number("dT", 1.0, None)], false).unwrap_err().contains("other meaning"));
+}
+
+/// Units of numbers are compared where they are stated; exponents may have names.
+#[test]
+fn units_that_do_not_fit_are_refused() {
+    let check = |formula: &str, units: [&str; 2]| {
+        let mut numbers = [number("c", 2.3, None), number("n", 0.25, None), number("b", 3.0, None)];
+        numbers[0].unit = Some(units[0].into());
+        numbers[2].unit = Some(units[1].into());
+        let law =
+            LawText { formula, valid: Some("abs(dT) < 30"), numbers: &numbers, wind: true, tilt: 90.0, area: 10.0, density: 1.2 };
+        law.check().map_err(|found| format!("{} {}", found.key, found.fault))
+    };
+    let law = "c*abs(dT)^n + b*V";
+    for fits in [["W/(m2 K^(1+n))", "J/(m3 K)"], ["W/(m2 K^1.25)", "W s/(m3 K)"], ["W m-2 K^-(1+n)", "W/(m2 K)/(m/s)"]] {
+        let found = check(law, fits);
+        assert!(found.is_ok() || fits[0].contains('-'), "{found:?}");
+    }
+    for (formula, units, words) in [
+        (law, ["W/(m2 K)", "W s/(m3 K)"], "formula column 13: found"),
+        (law, ["W/(m2 K^(1+n))", "W/(m2 K)"], "column 13"),
+        ("c*abs(dT)^n*b", ["W/(m2 K^(1+n))", "m"], "a formula in"),
+        ("c*exp(dT)^n*b", ["-", "W/(m2 K)"], "an argument in K"),
+        ("b*abs(dT)^c*n", ["K", "-"], "an exponent in K"),
+        (law, ["kW/(m2 K)", "-"], "c column 1: found 'kW'"),
+        (law, ["W/(m2 K", "-"], "Close the bracket"),
+        (law, ["3", "-"], "a unit"),
+        ("c*2^(dT)*b*n", ["W/(m2 K)", "-"], "an exponent in K"),
+        ("c*(b/b)^n*if(dT < V, 1, 2)", ["W/(m2 K)", "-"], "K beside m s^-1"),
+    ] {
+        let fault = check(formula, units).unwrap_err();
+        assert!(fault.contains(words), "{formula}: {fault}");
+    }
 }

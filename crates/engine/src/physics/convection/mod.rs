@@ -60,6 +60,6 @@ mod testing;
 pub(crate) mod wind;
 
 pub use correlation::Placement;
-pub use formula_check::{LawNumber, LawText};
+pub use formula_check::LawText;
 pub use law::SurfaceConvection;
 pub use wind::{Forced, Wind, WindTerms};

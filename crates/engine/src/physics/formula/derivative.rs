@@ -35,6 +35,10 @@ impl Graph {
                 let da = of(self, a);
                 self.negative(da)
             }
+            Node::Times(a, b) if self.level(a) < Level::Iteration && self.is_power(b) => {
+                let relative = self.relative_slope(b, slopes, known);
+                self.times(id, relative)
+            }
             Node::Times(a, b) => {
                 let (da, db) = (of(self, a), of(self, b));
                 let (left, right) = (self.times(da, b), self.times(a, db));
@@ -46,9 +50,9 @@ impl Graph {
                 let rest = self.minus(da, lost);
                 self.over(rest, b)
             }
-            Node::Power(base, exponent) => {
-                let (dbase, dexponent) = (of(self, base), of(self, exponent));
-                self.power_slope(id, [base, exponent], [dbase, dexponent])
+            Node::Power(..) => {
+                let relative = self.relative_slope(id, slopes, known);
+                self.times(id, relative)
             }
             Node::Sqrt(a) => {
                 let (da, half) = (of(self, a), self.constant(0.5));
@@ -94,18 +98,22 @@ impl Graph {
         slope
     }
 
-    /// `x^y (y' ln x + y x'/x)`.
-    fn power_slope(&mut self, power: Id, [base, exponent]: [Id; 2], [dbase, dexponent]: [Id; 2]) -> Id {
+    fn is_power(&self, id: Id) -> bool {
+        matches!(self.node(id), Node::Power(..))
+    }
+
+    /// The slope of a power over the power, `y' ln x + y x'/x`.
+    fn relative_slope(&mut self, id: Id, slopes: &HashMap<Id, Id>, known: &mut HashMap<Id, Id>) -> Id {
+        let Node::Power(base, exponent) = self.node(id) else { return self.constant(0.0) };
+        let [dbase, dexponent] = [base, exponent].map(|part| self.derivative(part, slopes, known));
         let relative = self.over(dbase, base);
         let share = self.times(exponent, relative);
-        let sum = if self.folded(dexponent) == Some(0.0) {
-            share
-        } else {
-            let logarithm = self.ln(base);
-            let product = self.times(dexponent, logarithm);
-            self.plus(share, product)
-        };
-        self.times(power, sum)
+        if self.folded(dexponent) == Some(0.0) {
+            return share;
+        }
+        let logarithm = self.ln(base);
+        let product = self.times(dexponent, logarithm);
+        self.plus(share, product)
     }
 
     /// The same part with powers replaced by roots, products, exponentials and logarithms.

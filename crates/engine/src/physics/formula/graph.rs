@@ -182,6 +182,13 @@ impl Graph {
             (Some(1.0), _) => return b,
             _ => {}
         }
+        // Constants are multiplied with each other.
+        if self.level(a) == Level::Text
+            && let Node::Over(above, below) = self.node(b)
+        {
+            let above = self.times(a, above);
+            return self.over(above, below);
+        }
         // What depends on less is multiplied first.
         if let Node::Times(first, second) = self.node(b)
             && self.level(first) < self.level(second)
@@ -252,22 +259,29 @@ impl Graph {
             && value.abs() <= LARGEST_WHOLE
             && !matches!(self.node(base), Node::Power(..))
         {
-            return self.whole_power(base, value);
-        }
-        let base = self.rounded_square(base);
-        let base = self.safe(base);
-        match self.node(base) {
-            Node::Power(inside, inner) if self.of(inside).positive => {
-                let product = self.times(inner, exponent);
-                return self.power(inside, product);
-            }
-            Node::Times(a, b)
-                if self.level(a) < self.level(b) && self.of(a).positive && self.of(b).positive =>
+            if let Node::Times(a, b) = self.node(base)
+                && self.level(a) < self.level(b)
             {
                 let (a, b) = (self.power(a, exponent), self.power(b, exponent));
                 return self.times(a, b);
             }
-            _ => {}
+            return self.whole_power(base, value);
+        }
+        // Where the one factor is positive, the other one must be, too.
+        if let Node::Times(a, b) = self.node(base)
+            && self.level(a) < self.level(b)
+            && (self.of(a).positive || self.of(b).positive)
+        {
+            let (a, b) = (self.power(a, exponent), self.power(b, exponent));
+            return self.times(a, b);
+        }
+        let base = self.rounded_square(base);
+        let base = self.safe(base);
+        if let Node::Power(inside, inner) = self.node(base)
+            && self.of(inside).positive
+        {
+            let product = self.times(inner, exponent);
+            return self.power(inside, product);
         }
         if let (Some(x), Some(y)) = (self.folded(base), known) {
             return self.constant(Real::powf(x, y));

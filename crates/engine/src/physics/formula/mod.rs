@@ -5,6 +5,7 @@
 //! | [`lexer`] | the words of a formula, each with its line and column |
 //! | [`parser`] | the tree of a formula, with the place of each operation; errors say what to write |
 //! | [`tree`] | that tree, and its plain value as written: not a number where a root or a quotient has none |
+//! | [`units`] | whether the units of its numbers fit together |
 //! | [`graph`] | the same as a graph without repeated parts: constants folded, powers simplified, derivatives |
 //! | `derivative` | derivatives by the variable, powers as roots and products |
 //! | [`program`] | the graph as short instructions for a few registers, computed over [`Real`](crate::number::real::Real) |
@@ -20,6 +21,7 @@ pub(crate) mod program;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tree;
+pub(crate) mod units;
 
 /// Where a part of a formula is: line and column, both from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -50,6 +52,19 @@ pub struct FormulaFault {
     pub key: String,
     /// What is wrong.
     pub fault: Fault,
+}
+
+/// A number of a law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawNumber {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Lowest and highest value.
+    pub range: Option<[f64; 2]>,
+    /// Its unit; none: not stated.
+    pub unit: Option<String>,
 }
 
 impl core::fmt::Display for Fault {

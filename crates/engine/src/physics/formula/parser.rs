@@ -62,7 +62,9 @@ pub(crate) fn condition(text: &str, names: Names<'_>) -> Result<Condition, Fault
     Ok(condition)
 }
 
-struct Parser<'a> {
+/// A place in the words of a formula.
+#[derive(Debug)]
+pub(super) struct Parser<'a> {
     tokens: Vec<Token>,
     place: usize,
     depth: usize,
@@ -70,7 +72,7 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(text: &str, names: Names<'a>) -> Result<Self, Fault> {
+    pub(super) fn new(text: &str, names: Names<'a>) -> Result<Self, Fault> {
         let tokens = words(text)?;
         if tokens.len() == 1 {
             return Err(fault(tokens[0].at, "nothing", "a formula", "Write one, such as 2.3*abs(dT)^0.24."));
@@ -78,19 +80,19 @@ impl<'a> Parser<'a> {
         Ok(Self { tokens, place: 0, depth: 0, names })
     }
 
-    fn word(&self) -> &Word {
+    pub(super) fn word(&self) -> &Word {
         &self.tokens[self.place].word
     }
 
-    fn at(&self) -> Position {
+    pub(super) fn at(&self) -> Position {
         self.tokens[self.place].at
     }
 
-    fn advance(&mut self) {
+    pub(super) fn advance(&mut self) {
         self.place = (self.place + 1).min(self.tokens.len() - 1);
     }
 
-    fn take(&mut self, sign: &str) -> bool {
+    pub(super) fn take(&mut self, sign: &str) -> bool {
         let found = matches!(self.word(), Word::Sign(word) if *word == sign);
         if found {
             self.advance();
@@ -107,7 +109,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Begins something inside of something.
-    fn deeper(&mut self) -> Result<(), Fault> {
+    pub(super) fn deeper(&mut self) -> Result<(), Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {
             let expected = format!("at most {DEEPEST} inside each other");
@@ -116,7 +118,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn close(&mut self, opened: Position) -> Result<(), Fault> {
+    pub(super) fn close(&mut self, opened: Position) -> Result<(), Fault> {
         if self.take(")") {
             return Ok(());
         }
@@ -261,7 +263,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn signed(&mut self) -> Result<Tree, Fault> {
+    pub(super) fn signed(&mut self) -> Result<Tree, Fault> {
         self.deeper()?;
         let at = self.at();
         let tree = if self.take("-") {

@@ -10,6 +10,8 @@ use crate::number::real::Real;
 
 /// Registers of a program; what needs more is refused.
 const REGISTERS: usize = 32;
+/// Registers of the usual program.
+const FEW: usize = 8;
 /// Operands from this on are numbers that were computed before.
 const NUMBERS: u8 = 32;
 /// How many numbers there may be.
@@ -45,6 +47,8 @@ struct Instruction {
 pub(crate) struct Program {
     code: Vec<Instruction>,
     results: Vec<u8>,
+    /// How many registers are used.
+    registers: usize,
 }
 
 /// A formula that needs more registers or numbers than there are.
@@ -82,6 +86,7 @@ impl Program {
             free[computed[&id] as usize] = !last.contains_key(&id);
         }
         let mut code = Vec::with_capacity(order.len());
+        let mut registers = inputs.len();
         for (place, &id) in order.iter().enumerate() {
             let operands = graph.operands(id);
             let mut of = [0; 4];
@@ -96,11 +101,12 @@ impl Program {
             }
             let to = free.iter().position(|free| *free).ok_or(TooLong)?;
             free[to] = false;
+            registers = registers.max(to + 1);
             let to = u8::try_from(to).map_err(|_| TooLong)?;
             computed.insert(id, to);
             code.push(Instruction { code: code_of(graph.node(id)), to, of });
         }
-        Ok(Self { code, results: parts.iter().map(|part| computed[part]).collect() })
+        Ok(Self { code, results: parts.iter().map(|part| computed[part]).collect(), registers })
     }
 
     /// How many results it has.
@@ -108,15 +114,13 @@ impl Program {
         self.results.len()
     }
 
-    /// The registers after the instructions; `number`: those that were computed before.
+    /// Does all instructions.
     #[inline(always)]
-    fn registers<V: Real>(&self, inputs: &[V], number: &impl Fn(usize) -> V) -> [V; REGISTERS] {
-        let mut registers = [V::zero(); REGISTERS];
-        registers[..inputs.len()].copy_from_slice(inputs);
+    fn fill<V: Real, const SIZE: usize>(&self, registers: &mut [V; SIZE], number: &impl Fn(usize) -> V) {
         for Instruction { code, to, of } in &self.code {
             macro_rules! get {
                 ($k:literal) => {
-                    operand(of[$k], &registers, number)
+                    operand(of[$k], registers, number)
                 };
             }
             let value = match code {
@@ -135,38 +139,59 @@ impl Program {
                 Code::Max => get!(0).max(get!(1)),
                 Code::Choose => V::select(get!(0).lt(get!(1)), get!(2), get!(3)),
             };
-            registers[*to as usize % REGISTERS] = value;
+            registers[*to as usize % SIZE] = value;
         }
-        registers
     }
 
-    /// A fixed number of results.
+    #[inline(always)]
+    fn execute<V: Real, const SIZE: usize, const N: usize>(
+        &self,
+        inputs: &[V],
+        number: &impl Fn(usize) -> V,
+    ) -> [V; N] {
+        let mut registers = [V::zero(); SIZE];
+        registers[..inputs.len()].copy_from_slice(inputs);
+        self.fill(&mut registers, number);
+        let mut results = [V::zero(); N];
+        for (result, &place) in results.iter_mut().zip(&self.results) {
+            *result = operand(place, &registers, number);
+        }
+        results
+    }
+
+    /// A fixed number of results, at most as many as it has.
     #[inline(always)]
     pub(crate) fn compute<V: Real, const N: usize>(
         &self,
         inputs: &[V],
         number: impl Fn(usize) -> V,
     ) -> [V; N] {
-        let registers = self.registers(inputs, &number);
-        core::array::from_fn(
-            #[inline(always)]
-            |k| operand(self.results[k], &registers, &number),
-        )
+        // Setting registers to zero takes as long as some instructions.
+        if self.registers <= FEW {
+            self.execute::<V, FEW, N>(inputs, &number)
+        } else {
+            self.execute::<V, REGISTERS, N>(inputs, &number)
+        }
     }
 
-    /// All results.
+    /// All results of a program without inputs.
     // One copy only: it is used once per run.
     #[inline(never)]
-    pub(crate) fn compute_all<S: Real>(&self, inputs: &[S], numbers: &[S]) -> Vec<S> {
+    pub(crate) fn compute_all<S: Real>(&self, numbers: &[S]) -> Vec<S> {
         let number = |place: usize| numbers[place];
-        let registers = self.registers(inputs, &number);
+        let mut registers = [S::zero(); REGISTERS];
+        self.fill(&mut registers, &number);
         self.results.iter().map(|&result| operand(result, &registers, &number)).collect()
     }
 }
 
 #[inline(always)]
-fn operand<V: Real>(place: u8, registers: &[V; REGISTERS], number: &impl Fn(usize) -> V) -> V {
-    if place < NUMBERS { registers[place as usize % REGISTERS] } else { number((place - NUMBERS) as usize) }
+fn operand<V: Real, const SIZE: usize>(
+    place: u8,
+    registers: &[V; SIZE],
+    number: &impl Fn(usize) -> V,
+) -> V {
+    if place < NUMBERS { registers[place as usize % SIZE] } else { number((place - NUMBERS) as usize) }
 }
 
 /// Parts in an order in which each comes after what it is made of.
@@ -197,5 +222,13 @@ fn code_of(node: Node) -> Code {
         Node::Min(..) => Code::Min,
         Node::Max(..) => Code::Max,
         Node::Choose { .. } => Code::Choose,
+    }
+}
+
+#[cfg(test)]
+impl Program {
+    /// Instructions and registers.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.code.len(), self.registers]
     }
 }

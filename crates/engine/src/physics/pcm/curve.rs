@@ -123,9 +123,11 @@ impl<S: Real> Curve<S> {
             }
             MeltingCurve::Text { melting_temperature, formula, range, numbers } => {
                 let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
-                let given = core::iter::once(*melting_temperature).chain(numbers.iter().map(|number| number.value));
+                let given =
+                    core::iter::once(*melting_temperature).chain(numbers.iter().map(|number| number.value));
                 let given: Vec<S> = given.map(|id| values.get(id)).collect();
-                let text = FractionText::new(formula, &names).expect("a plan reads the formulas of its materials");
+                let text =
+                    FractionText::new(formula, &names).expect("a plan reads the formulas of its materials");
                 let text = Text::new(text, &given, *range);
                 let width = text.width;
                 of(Shape::Text(Box::new(text)), *melting_temperature, width)

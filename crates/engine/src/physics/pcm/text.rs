@@ -15,7 +15,8 @@ use crate::physics::formula::lexer::fault;
 use crate::physics::formula::parser::{self, Names};
 use crate::physics::formula::program::{Program, TooLong};
 use crate::physics::formula::tree::Tree;
-use crate::physics::formula::{Fault, FormulaFault, Position};
+use crate::physics::formula::units;
+use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
 
 /// Names of a curve before those of its numbers.
 const VARIABLES: [&str; 2] = ["T", "Tm"];
@@ -64,12 +65,21 @@ impl FractionText {
         for (place, name) in usable.iter().enumerate() {
             if !tree.uses(place) {
                 let found = format!("a formula without {name}");
-                let fault = fault(START, found, "one that depends on it", &format!("Use {name} in the formula."));
+                let fault =
+                    fault(START, found, "one that depends on it", &format!("Use {name} in the formula."));
                 return Err(at(if place < VARIABLES.len() { "formula" } else { name }, fault));
             }
         }
         compile(tree, usable.len() - 1).map_err(|TooLong| {
-            at("formula", fault(START, "a formula that needs too many numbers at once", "fewer operations", "Simplify it."))
+            at(
+                "formula",
+                fault(
+                    START,
+                    "a formula that needs too many numbers at once",
+                    "fewer operations",
+                    "Simplify it.",
+                ),
+            )
         })
     }
 
@@ -117,7 +127,8 @@ fn compile(tree: Tree, numbers: usize) -> Result<FractionText, TooLong> {
     let inputs: Vec<Id> = (0..numbers)
         .map(|k| graph.input(u8::try_from(k + 1).unwrap_or(u8::MAX), Level::Run, false))
         .collect();
-    let mut leaf = |_: &mut Graph, name: usize, _: bool| if name == 0 { temperature } else { inputs[name - 1] };
+    let mut leaf =
+        |_: &mut Graph, name: usize, _: bool| if name == 0 { temperature } else { inputs[name - 1] };
     let value = graph.tree(&tree, false, &mut leaf);
     let one = graph.constant(1.0);
     let slope = graph.derivative(value, &HashMap::from([(temperature, one)]), &mut HashMap::new());
@@ -162,8 +173,8 @@ fn collect(graph: &Graph, parts: &[Id], found: &mut Vec<Id>) {
 pub struct CurveText<'a> {
     /// The liquid fraction.
     pub formula: &'a str,
-    /// Names and values of its numbers.
-    pub numbers: &'a [(String, f64)],
+    /// Its numbers; their ranges are not used.
+    pub numbers: &'a [LawNumber],
     /// Melting temperature [degC].
     pub melting_temperature: f64,
     /// Where it melts, about the melting temperature [K].
@@ -176,7 +187,9 @@ impl CurveText<'_> {
     /// # Errors
     /// The first fault of the text, or the first temperature at which it is no curve of a liquid fraction.
     pub fn check(&self) -> Result<(), FormulaFault> {
-        self.read()?.check(self.range, &self.given())
+        let (text, given) = (self.read()?, self.given());
+        self.check_units(&text, &given)?;
+        text.check(self.range, &given)
     }
 
     /// Liquid fractions at temperatures [degC], as in a run.
@@ -189,12 +202,23 @@ impl CurveText<'_> {
     }
 
     fn read(&self) -> Result<FractionText, FormulaFault> {
-        let names: Vec<&str> = self.numbers.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = self.numbers.iter().map(|number| number.name.as_str()).collect();
         FractionText::new(self.formula, &names)
     }
 
+    fn check_units(&self, text: &FractionText, given: &[f64]) -> Result<(), FormulaFault> {
+        let values: Vec<f64> = core::iter::once(given[0]).chain(given.iter().copied()).collect();
+        let variables = [Some(units::KELVIN); VARIABLES.len()];
+        let units = units::of_numbers(&variables, self.numbers)?;
+        let Some(units) = units else { return Ok(()) };
+        let stated = units::Stated { units: &units, values: &values, variables: 1 };
+        let at = |fault| FormulaFault { key: "formula".into(), fault };
+        stated.check(&text.tree, units::NONE).map_err(at)
+    }
+
     fn given(&self) -> Vec<f64> {
-        core::iter::once(self.melting_temperature).chain(self.numbers.iter().map(|number| number.1)).collect()
+        let numbers = self.numbers.iter().map(|number| number.value);
+        core::iter::once(self.melting_temperature).chain(numbers).collect()
     }
 }
 
@@ -224,7 +248,7 @@ impl<S: Real> Text<S> {
             Given::Number(place) => given[place],
         });
         let known: Vec<S> = known.collect();
-        let numbers = text.run.compute_all(&[], &known).into();
+        let numbers = text.run.compute_all(&known).into();
         let ends = range.map(|distance| given[0] + S::constant(distance));
         let (zero, one) = (S::zero(), S::one());
         let mut curve =
