@@ -6,6 +6,7 @@ use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
 use crate::number::real::{Mask, Real};
+use crate::physics::convection::SurfaceConvection;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
@@ -36,7 +37,8 @@ impl Validity {
     /// Nothing is watched in runs of several members, or with derivatives.
     pub(crate) fn new<S: Real>(model: &Model<'_, S>) -> Self {
         let single = S::LANES == 1 && !S::DERIVATIVES;
-        let limited = |surface: &SurfaceId| model.convection(*surface).is_some_and(|law| law.limited());
+        let limited =
+            |surface: &SurfaceId| model.convection(*surface).is_some_and(SurfaceConvection::limited);
         let surfaces: Vec<_> =
             model.plan.surfaces.ids().filter(|surface| single && limited(surface)).collect();
         Self { found: vec![None; surfaces.len()], surfaces }

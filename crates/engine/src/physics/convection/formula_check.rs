@@ -3,6 +3,8 @@
 //! The text is computed as written, without rounding, on a grid of differences (-60 to 60 K) and winds (0 to 30 m/s), wherever it
 //! says that it is valid: with the values of its numbers, and with the ends of their ranges.
 
+use core::fmt::Write;
+
 use super::formula_text::{DIFFERENCE, FormulaText, WIND, WINDWARD};
 use crate::physics::formula::lexer::fault;
 use crate::physics::formula::units::{self, Unit};
@@ -195,16 +197,17 @@ impl LawText<'_> {
 
     /// A point in words.
     fn point(&self, text: &FormulaText, names: &[f64]) -> String {
+        // Writing to a string cannot fail.
         let mut words = format!("at dT = {:.3} K", names[DIFFERENCE]);
         if text.uses(WIND) {
-            words += &format!(", V = {} m/s", names[WIND]);
+            let _ = write!(words, ", V = {} m/s", names[WIND]);
         }
         if text.uses(WINDWARD) {
             words += if names[WINDWARD] > 0.5 { ", windward" } else { ", leeward" };
         }
         for (number, value) in self.numbers.iter().zip(&names[super::formula_text::VARIABLES.len()..]) {
             if number.range.is_some() {
-                words += &format!(", {} = {value}", number.name);
+                let _ = write!(words, ", {} = {value}", number.name);
             }
         }
         words

@@ -246,12 +246,23 @@ fn units_that_do_not_fit_are_refused() {
         let mut numbers = [number("c", 2.3, None), number("n", 0.25, None), number("b", 3.0, None)];
         numbers[0].unit = Some(units[0].into());
         numbers[2].unit = Some(units[1].into());
-        let law =
-            LawText { formula, valid: Some("abs(dT) < 30"), numbers: &numbers, wind: true, tilt: 90.0, area: 10.0, density: 1.2 };
+        let law = LawText {
+            formula,
+            valid: Some("abs(dT) < 30"),
+            numbers: &numbers,
+            wind: true,
+            tilt: 90.0,
+            area: 10.0,
+            density: 1.2,
+        };
         law.check().map_err(|found| format!("{} {}", found.key, found.fault))
     };
     let law = "c*abs(dT)^n + b*V";
-    for fits in [["W/(m2 K^(1+n))", "J/(m3 K)"], ["W/(m2 K^1.25)", "W s/(m3 K)"], ["W m-2 K^-(1+n)", "W/(m2 K)/(m/s)"]] {
+    for fits in [
+        ["W/(m2 K^(1+n))", "J/(m3 K)"],
+        ["W/(m2 K^1.25)", "W s/(m3 K)"],
+        ["W m-2 K^-(1+n)", "W/(m2 K)/(m/s)"],
+    ] {
         let found = check(law, fits);
         assert!(found.is_ok() || fits[0].contains('-'), "{found:?}");
     }

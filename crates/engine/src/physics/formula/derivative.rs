@@ -20,82 +20,79 @@ impl Graph {
         if self.level(id) < Level::Iteration {
             return self.constant(0.0);
         }
-        let mut of = |graph: &mut Self, id: Id| graph.derivative(id, slopes, known);
         let slope = match self.node(id) {
-            Node::Constant(_) | Node::Input(_) => self.constant(0.0),
-            Node::Plus(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                self.plus(da, db)
-            }
-            Node::Minus(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                self.minus(da, db)
-            }
-            Node::Negative(a) => {
-                let da = of(self, a);
-                self.negative(da)
-            }
             Node::Times(a, b) if self.level(a) < Level::Iteration && self.is_power(b) => {
                 let relative = self.relative_slope(b, slopes, known);
                 self.times(id, relative)
-            }
-            Node::Times(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                let (left, right) = (self.times(da, b), self.times(a, db));
-                self.plus(left, right)
-            }
-            Node::Over(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                let lost = self.times(id, db);
-                let rest = self.minus(da, lost);
-                self.over(rest, b)
             }
             Node::Power(..) => {
                 let relative = self.relative_slope(id, slopes, known);
                 self.times(id, relative)
             }
-            Node::Sqrt(a) => {
-                let (da, half) = (of(self, a), self.constant(0.5));
-                let relative = self.over(da, id);
-                self.times(half, relative)
-            }
-            Node::InverseCbrt(a) => {
-                let (da, third) = (of(self, a), self.constant(-1.0 / 3.0));
-                let (relative, factor) = (self.over(da, a), self.times(third, id));
-                self.times(factor, relative)
-            }
-            Node::Exp(a) => {
-                let da = of(self, a);
-                self.times(id, da)
-            }
-            Node::Ln(a) => {
-                let da = of(self, a);
-                self.over(da, a)
-            }
-            Node::Sin(a) => {
-                let (da, cosine) = (of(self, a), self.cos(a));
-                self.times(cosine, da)
-            }
-            Node::Cos(a) => {
-                let (da, sine) = (of(self, a), self.sin(a));
-                let product = self.times(sine, da);
-                self.negative(product)
-            }
-            Node::Min(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                self.choose([b, a], db, da)
-            }
-            Node::Max(a, b) => {
-                let (da, db) = (of(self, a), of(self, b));
-                self.choose([a, b], db, da)
-            }
             Node::Choose { less, yes, no } => {
-                let (yes, no) = (of(self, yes), of(self, no));
+                let [yes, no] = [yes, no].map(|part| self.derivative(part, slopes, known));
                 self.choose(less, yes, no)
+            }
+            node => {
+                let of: Vec<Id> =
+                    self.operands(id).iter().map(|&part| self.derivative(part, slopes, known)).collect();
+                match of[..] {
+                    [da, db] => self.slope_of_two(id, node, [da, db]),
+                    [da] => self.slope_of_one(id, node, da),
+                    _ => self.constant(0.0),
+                }
             }
         };
         known.insert(id, slope);
         slope
+    }
+
+    /// The slope of an operation of two parts from their slopes.
+    fn slope_of_two(&mut self, id: Id, node: Node, [da, db]: [Id; 2]) -> Id {
+        match node {
+            Node::Plus(..) => self.plus(da, db),
+            Node::Minus(..) => self.minus(da, db),
+            Node::Times(a, b) => {
+                let (left, right) = (self.times(da, b), self.times(a, db));
+                self.plus(left, right)
+            }
+            Node::Over(_, b) => {
+                let lost = self.times(id, db);
+                let rest = self.minus(da, lost);
+                self.over(rest, b)
+            }
+            Node::Min(a, b) => self.choose([b, a], db, da),
+            Node::Max(a, b) => self.choose([a, b], db, da),
+            _ => self.constant(0.0),
+        }
+    }
+
+    /// The slope of a function of one part from its slope.
+    fn slope_of_one(&mut self, id: Id, node: Node, da: Id) -> Id {
+        match node {
+            Node::Negative(_) => self.negative(da),
+            Node::Sqrt(_) => {
+                let (relative, half) = (self.over(da, id), self.constant(0.5));
+                self.times(half, relative)
+            }
+            Node::InverseCbrt(a) => {
+                let (relative, third) = (self.over(da, a), self.constant(-1.0 / 3.0));
+                let factor = self.times(third, id);
+                self.times(factor, relative)
+            }
+            Node::Exp(_) => self.times(id, da),
+            Node::Ln(a) => self.over(da, a),
+            Node::Sin(a) => {
+                let cosine = self.cos(a);
+                self.times(cosine, da)
+            }
+            Node::Cos(a) => {
+                let sine = self.sin(a);
+                let product = self.times(sine, da);
+                self.negative(product)
+            }
+            _ => self.constant(0.0),
+        }
     }
 
     fn is_power(&self, id: Id) -> bool {
@@ -121,70 +118,24 @@ impl Graph {
         if let Some(&done) = known.get(&id) {
             return done;
         }
-        let mut of = |graph: &mut Self, id: Id| graph.lowered(id, known);
-        let done = match self.node(id) {
-            Node::Constant(_) | Node::Input(_) => id,
-            Node::Plus(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.plus(a, b)
-            }
-            Node::Minus(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.minus(a, b)
-            }
-            Node::Times(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.times(a, b)
-            }
-            Node::Over(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.over(a, b)
-            }
-            Node::Min(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.min(a, b)
-            }
-            Node::Max(a, b) => {
-                let (a, b) = (of(self, a), of(self, b));
-                self.max(a, b)
-            }
-            Node::Power(base, exponent) => {
-                let (base, exponent) = (of(self, base), of(self, exponent));
-                self.lowered_power(base, exponent)
-            }
-            Node::Negative(a) => {
-                let a = of(self, a);
-                self.negative(a)
-            }
-            Node::Sqrt(a) => {
-                let a = of(self, a);
-                self.sqrt(a)
-            }
-            Node::InverseCbrt(a) => {
-                let a = of(self, a);
-                self.inverse_cbrt(a)
-            }
-            Node::Exp(a) => {
-                let a = of(self, a);
-                self.exp(a)
-            }
-            Node::Ln(a) => {
-                let a = of(self, a);
-                self.ln(a)
-            }
-            Node::Sin(a) => {
-                let a = of(self, a);
-                self.sin(a)
-            }
-            Node::Cos(a) => {
-                let a = of(self, a);
-                self.cos(a)
-            }
-            Node::Choose { less, yes, no } => {
-                let less = less.map(|id| of(self, id));
-                let (yes, no) = (of(self, yes), of(self, no));
-                self.choose(less, yes, no)
-            }
+        let of: Vec<Id> = self.operands(id).iter().map(|&part| self.lowered(part, known)).collect();
+        let done = match (self.node(id), &of[..]) {
+            (Node::Plus(..), &[a, b]) => self.plus(a, b),
+            (Node::Minus(..), &[a, b]) => self.minus(a, b),
+            (Node::Times(..), &[a, b]) => self.times(a, b),
+            (Node::Over(..), &[a, b]) => self.over(a, b),
+            (Node::Min(..), &[a, b]) => self.min(a, b),
+            (Node::Max(..), &[a, b]) => self.max(a, b),
+            (Node::Power(..), &[base, exponent]) => self.lowered_power(base, exponent),
+            (Node::Negative(_), &[a]) => self.negative(a),
+            (Node::Sqrt(_), &[a]) => self.sqrt(a),
+            (Node::InverseCbrt(_), &[a]) => self.inverse_cbrt(a),
+            (Node::Exp(_), &[a]) => self.exp(a),
+            (Node::Ln(_), &[a]) => self.ln(a),
+            (Node::Sin(_), &[a]) => self.sin(a),
+            (Node::Cos(_), &[a]) => self.cos(a),
+            (Node::Choose { .. }, &[a, b, yes, no]) => self.choose([a, b], yes, no),
+            _ => id,
         };
         known.insert(id, done);
         done

@@ -8,6 +8,7 @@
 //! | [`units`] | whether the units of its numbers fit together |
 //! | [`graph`] | the same as a graph without repeated parts: constants folded, powers simplified, derivatives |
 //! | `derivative` | derivatives by the variable, powers as roots and products |
+//! | [`reading`] | from the tree to the graph |
 //! | [`program`] | the graph as short instructions for a few registers, computed over [`Real`](crate::number::real::Real) |
 //!
 //! A quantity that uses formulas says which names it has and what is computed when ([`Level`](graph::Level)): what depends on numbers of
@@ -18,6 +19,7 @@ pub(crate) mod graph;
 pub(crate) mod lexer;
 pub(crate) mod parser;
 pub(crate) mod program;
+pub(crate) mod reading;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tree;

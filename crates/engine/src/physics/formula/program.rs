@@ -186,11 +186,7 @@ impl Program {
 }
 
 #[inline(always)]
-fn operand<V: Real, const SIZE: usize>(
-    place: u8,
-    registers: &[V; SIZE],
-    number: &impl Fn(usize) -> V,
-) -> V {
+fn operand<V: Real, const SIZE: usize>(place: u8, registers: &[V; SIZE], number: &impl Fn(usize) -> V) -> V {
     if place < NUMBERS { registers[place as usize % SIZE] } else { number((place - NUMBERS) as usize) }
 }
 

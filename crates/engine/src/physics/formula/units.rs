@@ -88,15 +88,13 @@ fn factor(parser: &mut Parser<'_>, values: &[f64]) -> Result<Unit, Fault> {
 fn named(name: &str, at: Position) -> Result<Unit, Fault> {
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let exponent: f64 = name[letters.len()..].parse().unwrap_or(1.0);
-    match KNOWN.iter().find(|(known, _)| *known == letters) {
-        Some((_, unit)) => Ok(unit.map(|part| part * exponent)),
-        None => {
-            let known: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
-            let expected = format!("a unit made of {}", known.join(", "));
-            let remedy = "Convert the number to these units, without prefixes: 0.05 m for 5 cm.";
-            Err(fault(at, format!("'{name}'"), &expected, remedy))
-        }
+    if let Some((_, unit)) = KNOWN.iter().find(|(known, _)| *known == letters) {
+        return Ok(unit.map(|part| part * exponent));
     }
+    let known: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
+    let expected = format!("a unit made of {}", known.join(", "));
+    let remedy = "Convert the number to these units, without prefixes: 0.05 m for 5 cm.";
+    Err(fault(at, format!("'{name}'"), &expected, remedy))
 }
 
 fn combined(a: Unit, b: Unit, sign: f64) -> Unit {
@@ -178,7 +176,9 @@ impl Stated<'_> {
             Condition::Less(of) => self.alike(of[1].at, &of[..]).map(|_| ()),
             Condition::Flag(_) => Ok(()),
             Condition::Not(of) => self.check_condition(of),
-            Condition::Both(of) | Condition::Either(of) => of.iter().try_for_each(|of| self.check_condition(of)),
+            Condition::Both(of) | Condition::Either(of) => {
+                of.iter().try_for_each(|of| self.check_condition(of))
+            }
         }
     }
 
@@ -221,14 +221,19 @@ impl Stated<'_> {
 
     fn power(&self, at: Position, of: &[Tree; 2]) -> Result<Option<Unit>, Fault> {
         let [base, exponent] = [self.unit(&of[0])?, self.unit(&of[1])?];
-        self.require_none(of[1].at, exponent, "an exponent")?;
+        require_none(of[1].at, exponent, "an exponent")?;
         let Some(base) = base else { return Ok(None) };
         if same(base, NONE) {
             return Ok(Some(NONE));
         }
         if (0..self.variables).any(|name| of[1].uses(name)) {
             let remedy = "Divide the base by a number of its unit.";
-            return Err(fault(at, format!("a power of {} that changes", shown(base)), "a base without unit", remedy));
+            return Err(fault(
+                at,
+                format!("a power of {} that changes", shown(base)),
+                "a base without unit",
+                remedy,
+            ));
         }
         let exponent = of[1].value(self.values);
         Ok(Some(base.map(|part| part * exponent)))
@@ -244,21 +249,27 @@ impl Stated<'_> {
             Function::Min | Function::Max => self.alike(at, of),
             Function::Sqrt => scaled(0.5),
             Function::Cbrt => scaled(1.0 / 3.0),
-            Function::Exp | Function::Log | Function::Log10 | Function::Sin | Function::Cos | Function::Tanh => {
+            Function::Exp
+            | Function::Log
+            | Function::Log10
+            | Function::Sin
+            | Function::Cos
+            | Function::Tanh => {
                 let unit = self.unit(&of[0])?;
-                self.require_none(at, unit, "an argument")?;
+                require_none(at, unit, "an argument")?;
                 Ok(Some(NONE))
             }
         }
     }
+}
 
-    fn require_none(&self, at: Position, unit: Option<Unit>, what: &str) -> Result<(), Fault> {
-        match unit {
-            Some(unit) if !same(unit, NONE) => {
-                let remedy = "Divide it by a number of the same unit.";
-                Err(fault(at, format!("{what} in {}", shown(unit)), &format!("{what} without unit"), remedy))
-            }
-            _ => Ok(()),
+/// Refuses a unit where none may be.
+fn require_none(at: Position, unit: Option<Unit>, what: &str) -> Result<(), Fault> {
+    match unit {
+        Some(unit) if !same(unit, NONE) => {
+            let remedy = "Divide it by a number of the same unit.";
+            Err(fault(at, format!("{what} in {}", shown(unit)), &format!("{what} without unit"), remedy))
         }
+        _ => Ok(()),
     }
 }

@@ -225,7 +225,7 @@ impl CurveText<'_> {
 /// A curve with its numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Text<S> {
-    text: FractionText,
+    law: FractionText,
     numbers: Box<[S]>,
     /// Temperatures between which it melts [degC].
     ends: [S; 2],
@@ -251,8 +251,16 @@ impl<S: Real> Text<S> {
         let numbers = text.run.compute_all(&known).into();
         let ends = range.map(|distance| given[0] + S::constant(distance));
         let (zero, one) = (S::zero(), S::one());
-        let mut curve =
-            Self { text, numbers, ends, start: zero, gain: one, steepest: ends[0], width: one, bend: zero };
+        let mut curve = Self {
+            law: text,
+            numbers,
+            ends,
+            start: zero,
+            gain: one,
+            steepest: ends[0],
+            width: one,
+            bend: zero,
+        };
         let [low, high] = ends.map(|end| curve.raw(end)[0]);
         (curve.start, curve.gain) = (low, one / (high - low));
         curve.survey(range);
@@ -281,7 +289,7 @@ impl<S: Real> Text<S> {
     /// The formula and its derivative.
     #[inline(always)]
     fn raw(&self, temperature: S) -> [S; 2] {
-        self.text.curve.compute(
+        self.law.curve.compute(
             &[temperature],
             #[inline(always)]
             |place| self.numbers[place],
