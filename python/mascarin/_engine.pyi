@@ -23,9 +23,13 @@ __all__ = [
     "Plan",
     "Trajectory",
     "_panic",
+    "check_formula",
+    "check_fraction",
     "condensing_pressure",
     "dew_point",
     "fmu_library",
+    "formula_values",
+    "fraction_values",
     "globe_temperature",
     "humidity_ratio",
     "interrupt",
@@ -117,6 +121,38 @@ def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
 
 def output_table() -> str:
     """The table of outputs, a JSON list of rows."""
+
+def check_formula(
+    formula: str,
+    valid: str | None,
+    given: list[tuple[str, float, tuple[float, float] | None]],
+    wind: bool,
+    side: tuple[float, float, float],
+) -> tuple[str, int, int, str, str, str] | None:
+    """Key, line, column, found, expected, remedy of the first fault of a coefficient as text; None: a law."""
+
+def check_fraction(
+    formula: str, given: list[tuple[str, float]], melting_temperature: float, range: tuple[float, float]
+) -> tuple[str, int, int, str, str, str] | None:
+    """First fault of a curve of the liquid fraction as text, as `check_formula` has it; None: a curve."""
+
+def fraction_values(
+    formula: str,
+    given: list[tuple[str, float]],
+    melting_temperature: float,
+    range: tuple[float, float],
+    temperatures: _Array,
+) -> _Array:
+    """Liquid fractions of a curve as text at temperatures [degC]: [-]."""
+
+def formula_values(
+    formula: str,
+    given: list[tuple[str, float, tuple[float, float] | None]],
+    side: tuple[float, float, float],
+    differences: _Array,
+    winds: _Array,
+) -> _Array:
+    """Coefficients of a law as text at differences [K] and winds [m/s], as written: [W/(m2 K)]."""
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""

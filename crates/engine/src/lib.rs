@@ -32,3 +32,10 @@ pub use input::{description, forcing, values};
 pub use physics::{constants, globe, pcm, psychrometrics, standard_air};
 pub use step::control::RunControl;
 pub use step::{Counters, Scheme, state};
+
+/// Laws that are written as text.
+pub mod formula {
+    pub use crate::physics::convection::LawText;
+    pub use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
+    pub use crate::physics::pcm::text::CurveText;
+}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::run::physical_limits::Outlier;
 use mascarin_engine::run::stepwise::StepByStep;
+use mascarin_engine::run::validity::OutOfRange;
 use self_cell::self_cell;
 
 use crate::contents::Contents;
@@ -87,6 +88,11 @@ impl Running {
     /// The first temperature that was outside of its causes by more than the scheme's overshoot.
     pub(crate) fn outlier(&self) -> Option<Outlier> {
         self.with_dependent(|_, run| run.outlier().cloned())
+    }
+
+    /// Laws written as text that were used where they do not hold.
+    pub(crate) fn out_of_range(&self) -> Vec<OutOfRange> {
+        self.with_dependent(|_, run| run.out_of_range().cloned().collect())
     }
 
     /// All numbers that the steps to come depend on.

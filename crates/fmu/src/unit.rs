@@ -409,8 +409,21 @@ impl Unit {
         format!("in the step from {} s: {reason}", self.time())
     }
 
-    /// Ends the run; gives a remark on its energy balance, and on a temperature without a cause.
+    /// Ends the run; gives a remark on its energy balance, on a temperature without a cause, and on laws used where they do not hold.
     pub fn terminate(&mut self) -> String {
+        let laws = self.running.as_ref().map(Running::out_of_range).unwrap_or_default();
+        let beyond = laws.iter().map(|law| {
+            format!(
+                "; warning: {}: its law of convection does not hold in {} steps, from step {} on (farthest at dT = {:.1} K and {:.1} m/s)",
+                law.place, law.steps, law.first, law.difference, law.wind
+            )
+        });
+        let beyond: String = beyond.collect();
+        self.judged() + &beyond
+    }
+
+    /// Ends the run; a remark on its energy balance, and on a temperature without a cause.
+    fn judged(&mut self) -> String {
         self.mode = Mode::Terminated;
         let closure = self.running.as_ref().map_or(0.0, Running::closure);
         let balance =

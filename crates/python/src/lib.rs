@@ -1,6 +1,7 @@
 //! The module `mascarin._engine`: conversion, release of the GIL, progress, Ctrl-C and errors. No physics.
 
 mod errors;
+mod formula;
 mod options;
 mod physics;
 mod plan;
@@ -42,6 +43,10 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(fmu_library, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_formula, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::formula_values, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_fraction, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::fraction_values, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
     physics::add(module)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;

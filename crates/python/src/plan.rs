@@ -11,6 +11,7 @@ use mascarin_engine::run::ensemble;
 use mascarin_engine::run::physical_limits::Outlier;
 use mascarin_engine::run::ratings::window_ratings;
 use mascarin_engine::run::{Run, simulate_in_blocks};
+use mascarin_engine::run::validity::OutOfRange;
 use mascarin_engine::vapour::VapourFlow;
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -244,6 +245,8 @@ pub fn describe_run<'py>(
         .as_ref()
         .map(|Outlier { step, place, temperature, bound }| (*step, place.as_str(), *temperature, *bound));
     result.set_item("outlier", outlier)?;
+    let out_of_range: Vec<_> = run.out_of_range.iter().map(law_out_of_range).collect();
+    result.set_item("out_of_range", out_of_range)?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.warm_up_change)?;
     result.set_item("iterations", run.counters.iterations)?;
@@ -253,4 +256,9 @@ pub fn describe_run<'py>(
     result.set_item("largest_change", run.counters.largest_change)?;
     result.set_item("largest_residual", run.counters.largest_residual)?;
     Ok(result)
+}
+
+/// Place, steps, first step, difference [K] and wind [m/s] of a law that was used where it does not hold.
+fn law_out_of_range(law: &OutOfRange) -> (&str, usize, usize, f64, f64) {
+    (&law.place, law.steps, law.first, law.difference, law.wind)
 }

@@ -14,6 +14,7 @@ from mascarin.building.convection import (
     AlamdariHammond,
     Constant,
     Doe2,
+    FormulaLaw,
     Iso15099,
     LinearWind,
     Measured,
@@ -50,6 +51,7 @@ from mascarin.building.outputs import Output
 from mascarin.building.parameters import Parameter
 from mascarin.building.phase_change import (
     CapacityLaw,
+    FormulaCurve,
     FractionsLaw,
     GaussianLaw,
     GumbelLaw,
@@ -141,6 +143,8 @@ __all__ = [
     "Exposure",
     "FilledGap",
     "FloorSun",
+    "FormulaCurve",
+    "FormulaLaw",
     "FractionDays",
     "FractionPoint",
     "FractionSchedule",

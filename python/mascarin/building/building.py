@@ -28,8 +28,7 @@ from mascarin.building.parameters import Parameter, listed, lookup, parameters, 
 from mascarin.building.part import Part, insist, is_number, plain_value
 from mascarin.building.references import sources
 from mascarin.building.replacing import piece_at, put, replaced_at, without_parts
-from mascarin.building.rules import faults
-from mascarin.building.ties import faults as tie_faults
+from mascarin.building.rules import faults, faults_of_values
 from mascarin.building.ties import spread, spread_ranges, with_tied
 from mascarin.building.yaml_document import read
 from mascarin.building.yaml_text import text_of
@@ -94,7 +93,7 @@ class Building(Description):
         insist(*faults(building))
         for section, derive in DERIVED.items():
             building._fill(**{section: derive(building)})
-        insist(*(tie_faults(building, parameters(building)) if building.ties else ()))
+        insist(*faults_of_values(building))
         return building
 
     # --- from and to files and mappings ---------------------------------------------------------------------

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from mascarin._io.memory import uncollected
 from mascarin.building.air import density, heat_capacity
+from mascarin.building.closed_law import CUT, ClosedLaw
 from mascarin.building.description import Description
 from mascarin.building.driven import Driven
 from mascarin.building.glazing import Glazing, SimpleGlazing
@@ -16,7 +17,7 @@ from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.measured_sun import measured_lines
 from mascarin.building.mesh import Mesh, choose
 from mascarin.building.parameters import parameters
-from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
+from mascarin.building.phase_change import FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.plausibility import warnings
 from mascarin.building.ratings import WindowRating, require_accepted, window_ratings
 from mascarin.building.self_shading import in_words

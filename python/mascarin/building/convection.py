@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from mascarin.building import quantities as q
+from mascarin.building.formula_law import FormulaLaw
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Part, Shorthand
 
@@ -169,15 +170,32 @@ class Power(Part):
 
 
 Convection = Annotated[
-    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Iso15099 | Power | Measured,
+    Constant
+    | LinearWind
+    | AlamdariHammond
+    | PaperEq5
+    | Tarp
+    | Mowitt
+    | Doe2
+    | Iso15099
+    | Power
+    | Measured
+    | FormulaLaw,
     Field(discriminator="kind"),
-    Shorthand(word="kind", number="coefficient", kind="constant"),
+    Shorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
 ]
 
 
 def measured_column(convection: Convection | None) -> str | None:
     """Column of a measured coefficient; None for any other."""
     return convection.column if isinstance(convection, Measured) else None
+
+
+def by_wind_direction(convection: Convection | None) -> bool:
+    """Whether a coefficient depends on the direction of the wind."""
+    if isinstance(convection, FormulaLaw):
+        return convection.uses("windward")
+    return isinstance(convection, Tarp | Mowitt | Doe2)
 
 
 #: Description of the fields that hold a coefficient.

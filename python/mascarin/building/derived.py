@@ -8,7 +8,16 @@ from contextlib import contextmanager
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
-from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
+from mascarin.building.convection import (
+    AlamdariHammond,
+    Convection,
+    Doe2,
+    FormulaLaw,
+    Iso15099,
+    PaperEq5,
+    Tarp,
+)
+from mascarin.building.formula_law import LENGTH, PERIMETER
 from mascarin.building.humidity import with_all_zones
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Location, NotDerivableError, derived_number, fault, insist, refuse
@@ -180,7 +189,23 @@ def _derived_convection(
                 return convection.model_copy(update=_wind_facts(convection, area, polygon))
         case Doe2(roughness=None) if outdoors:
             return convection.model_copy(update=_usual_roughness(Doe2))
+        case FormulaLaw():
+            with _located_below("convection"):
+                numbers = _of_shape(convection, area, tilt, polygon)
+            return convection.model_copy(update={"numbers": {**convection.numbers, **numbers}})
     return convection
+
+
+def _of_shape(law: FormulaLaw, area: float, tilt: float, polygon: Polygon | None) -> dict[str, Number]:
+    """Length and perimeter of a surface, where a formula uses them and has no values of its own."""
+    found = {}
+    if law.uses(LENGTH) and LENGTH not in law.numbers:
+        length, source = _length(area, tilt, polygon)
+        found[LENGTH] = derived_number(AlamdariHammond, LENGTH, length, source)
+    if law.uses(PERIMETER) and PERIMETER not in law.numbers:
+        edge, source = _perimeter(area, polygon)
+        found[PERIMETER] = derived_number(Tarp, PERIMETER, edge, source)
+    return found
 
 
 def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
@@ -214,13 +239,16 @@ def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, N
     if tarp.roughness is None:
         facts |= _usual_roughness(Tarp)
     if tarp.perimeter is None:
-        edge = 4.0 * math.sqrt(area)
-        facts["perimeter"] = (
-            derived_number(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
-            if polygon is None
-            else derived_number(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
-        )
+        edge, source = _perimeter(area, polygon)
+        facts["perimeter"] = derived_number(Tarp, "perimeter", edge, source)
     return facts
+
+
+def _perimeter(area: float, polygon: Polygon | None) -> tuple[float, str]:
+    """Perimeter [m]; without vertices, that of a square."""
+    if polygon is None:
+        return 4.0 * math.sqrt(area), Remark("perimeter of a square of this area")
+    return polygon.perimeter, _FROM_VERTICES
 
 
 def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:

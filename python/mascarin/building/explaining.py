@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
 
 from mascarin.errors import InputError
 
 Place = tuple[str | int, ...]
+
+#: Last step of the place of a text's first column, beside the line of the text.
+COLUMN: Final = "(column)"
 
 
 class Line(int):
@@ -45,13 +48,18 @@ def explained(
         To be raised by the caller.
     """
     found = sorted(
-        (_where(place, lines or {}, name), _dotted(place, plain), _sentences(dict(fault)))
+        (
+            (*_where(place, lines or {}, name), _column(place, lines or {}, fault.get("ctx", {}))),
+            _dotted(place, plain),
+            _sentences(dict(fault)),
+        )
         for fault in error.errors(include_url=False)
         for place in [_place(fault["loc"], plain)]
     )
     blocks = []
-    for (file, line), dotted, sentences in dict.fromkeys(found):
+    for (file, line, column), dotted, sentences in dict.fromkeys(found):
         where = f"{file}:{line}" if line else file
+        where += f":{column}" if column else ""
         blocks.append(f"{where}: {dotted or 'the whole description'}\n{sentences}")
     if len(blocks) > 1:
         blocks.insert(0, f"{name}: {len(blocks)} faults")
@@ -116,6 +124,12 @@ def _where(place: Place, lines: Mapping[Place, int], name: str) -> tuple[str, in
         if line is not None:
             return getattr(line, "file", name), int(line)
     return name, 0
+
+
+def _column(place: Place, lines: Mapping[Place, int], context: Mapping[str, Any]) -> int:
+    """Column of a fault inside of a text of one line in the file; 0 where it is not known."""
+    first = lines.get((*place, COLUMN), 0)
+    return int(first) + context["column"] - 1 if first and context.get("text_line") == 1 else 0
 
 
 def _dotted(place: Place, plain: Any) -> str:

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin.building.convection import (
     AlamdariHammond,
+    Convection,
     Doe2,
+    FormulaLaw,
     Iso15099,
     LinearWind,
     Mowitt,
     PaperEq5,
     Power,
     Tarp,
+    by_wind_direction,
 )
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
@@ -35,11 +38,12 @@ Reasons = Iterator[tuple[str, str]]
 
 @dataclass(frozen=True)
 class SurfaceSide:
-    """One side of a surface and the tilt of its own normal [deg]."""
+    """One side of a surface, the tilt of its own normal [deg] and its area [m2]."""
 
     path: str
     side: Side | WindowOutside | WindowInside
     tilt: float
+    area: float = 0.0
 
     @property
     def windy(self) -> bool:
@@ -49,6 +53,8 @@ class SurfaceSide:
             return False
         if isinstance(film, Power):
             return film.upward.c > 0.0 or film.downward.c > 0.0
+        if isinstance(film, FormulaLaw):
+            return film.uses("V") or film.uses("windward")
         return isinstance(film, LinearWind | Tarp | Mowitt | Doe2)
 
     @property
@@ -96,8 +102,9 @@ def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
     window = building.windows[name]
     tilt = float(building.surfaces[window.surface].tilt or 0.0)
     outer = outer_side(window, building.surfaces[window.surface])
-    yield SurfaceSide(f"windows.{name}.outside", outer, tilt)
-    yield SurfaceSide(f"windows.{name}.inside", window.inside, 180.0 - tilt)
+    area = float(window.area or 0.0)
+    yield SurfaceSide(f"windows.{name}.outside", outer, tilt, area)
+    yield SurfaceSide(f"windows.{name}.inside", window.inside, 180.0 - tilt, area)
 
 
 def _behind_walls(building: Description) -> Reasons:
@@ -142,8 +149,9 @@ def _behind_walls(building: Description) -> Reasons:
 
 def _sides(name: str, surface: Surface) -> Iterator[SurfaceSide]:
     tilt = float(surface.tilt or 0.0)
-    yield SurfaceSide(f"surfaces.{name}.outside", surface.outside, tilt)
-    yield SurfaceSide(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
+    area = float(surface.area or 0.0)
+    yield SurfaceSide(f"surfaces.{name}.outside", surface.outside, tilt, area)
+    yield SurfaceSide(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt, area)
 
 
 def _unused(building: Description) -> Reasons:
@@ -220,6 +228,9 @@ def _on_side(item: SurfaceSide, obstructed: set[str]) -> Reasons:
         )
     if isinstance(side.convection, Doe2) and windless:
         yield f"{path}.convection.roughness", "there is no wind on this side"
+    if isinstance(side.convection, FormulaLaw):
+        only = (name for name in side.convection.numbers if name not in side.convection.names_of_formula)
+        yield from ((f"{path}.convection.{name}", "it only says where the law holds") for name in only)
     if isinstance(side.convection, Power):
         yield from _in_power(item, side.convection)
 
@@ -251,17 +262,22 @@ def _in_direction(building: Description, name: str, surface: Surface) -> Reasons
     reasons = ["which surfaces of a zone lie in one plane"] if by_direction else []
     if surface.tilt in (0.0, 180.0):
         yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
-    elif not (
-        sunlit or any(item.windy and isinstance(item.side.convection, Tarp | Mowitt | Doe2) for item in both)
-    ):
+    elif not (sunlit or any(item.windy and by_wind_direction(item.side.convection) for item in both)):
         yield f"surfaces.{name}.azimuth", _only(reasons)
     skyward = any(item.sees_sky and _sky_by_tilt(item) for item in both)
-    tilted = any(isinstance(item.side.convection, Tarp | Doe2 | Iso15099) for item in both)
+    tilted = any(_by_tilt(item.side.convection) for item in both)
     if not (sunlit or skyward or tilted):
         yield (
             f"surfaces.{name}.tilt",
             _only([*reasons, *(["vertical or horizontal convection"] if buoyant else [])]),
         )
+
+
+def _by_tilt(film: Convection | None) -> bool:
+    """Whether a coefficient changes with every change of the tilt."""
+    if isinstance(film, FormulaLaw):
+        return film.uses("tilt") or film.uses("upward")
+    return isinstance(film, Tarp | Doe2 | Iso15099)
 
 
 def _sky_by_tilt(item: SurfaceSide) -> bool:

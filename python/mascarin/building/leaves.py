@@ -35,12 +35,20 @@ def steps(part: Any) -> Iterator[tuple[str, Any]]:
     """Pieces of a part, each with its step in a path: layers by name, points by position."""
     if isinstance(part, Part):
         fields = part.__dict__
+        if part.inline:
+            return _inlined(part)
         return ((key, fields[key]) for key in _keys(type(part)))
     if isinstance(part, Mapping):
         return iter(part.items())
     if isinstance(part, tuple):
         return ((getattr(piece, "name", str(index)), piece) for index, piece in enumerate(part))
     return iter(())
+
+
+def _inlined(part: Part) -> Iterator[tuple[str, Any]]:
+    for key in _keys(type(part)):
+        value = part.__dict__[key]
+        yield from value.items() if key in part.inline else ((key, value),)
 
 
 @cache

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pydantic import Field
 
 from mascarin.building import quantities as q
+from mascarin.building.closed_law import ClosedLaw
 from mascarin.building.part import Part
 from mascarin.building.phase_change import (
     CapacityLaw,
-    ClosedLaw,
     FractionLaw,
     FractionsLaw,
     Hysteresis,

@@ -11,11 +11,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mascarin.building.closed_law import ClosedLaw
+from mascarin.building.formula_curve import FormulaCurve
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.number import Interval
 from mascarin.building.parameters import resolve
-from mascarin.building.phase_change import ClosedLaw, Law, TanhLaw, TriangleLaw
+from mascarin.building.phase_change import Law, TanhLaw, TriangleLaw
 from mascarin.building.phases import Phases, phase
 
 if TYPE_CHECKING:
@@ -162,6 +164,6 @@ def _width(law: Law, path: str, worst: _Worst) -> float:
     if isinstance(law, TriangleLaw):
         below, above = worst.ends(f"{path}.below", law.below), worst.ends(f"{path}.above", law.above)
         return 0.5 * (below[0] + above[0])
-    if isinstance(law, ClosedLaw):
+    if isinstance(law, ClosedLaw) and not isinstance(law, FormulaCurve):
         return worst.ends(f"{path}.width", law.half_width)[0]
     return law.half_width

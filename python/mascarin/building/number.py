@@ -115,6 +115,8 @@ class Number(float):
         """The number as in a file: a word, a plain number, or a mapping with range and source."""
         word = self._word()
         notes: dict[str, Any] = {"value": word or _whole(self)}
+        if self.quantity is not None:
+            notes |= self.quantity.notes()
         if self.range is not None:
             notes["range"] = [_whole(end) for end in self.range]
         if self.source is not None and not isinstance(self.source, Remark):
@@ -304,6 +306,10 @@ class Quantity:
     limits: Limits = field(default=Limits())
     words: Mapping[str, float] = field(default_factory=dict, hash=False)
     whole: bool = False
+
+    def notes(self) -> dict[str, Any]:
+        """What a file has of the quantity beside the value: nothing, where its key says what it is."""
+        return {}
 
     def default_range(self, value: float) -> Interval:
         """Range of a value for which the user gave none."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar, get_args
@@ -63,6 +63,8 @@ class Part(BaseModel, metaclass=PartType):
     has_usual_kind: ClassVar[bool] = False
     #: What to write instead, by a key that does not exist here or whose value is often wrong.
     advice: ClassVar[Mapping[str, str]] = {}
+    #: Fields with parts or numbers by name, which stand in a file and in paths as keys of the part itself.
+    inline: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -114,7 +116,7 @@ class Part(BaseModel, metaclass=PartType):
             if key in self.model_fields_set:
                 value = written_value(getattr(self, key), keep_derived=keep_derived)
                 if value is not None:
-                    fields[key] = value
+                    fields |= value if key in self.inline else {key: value}
         return fields
 
     def in_short(self) -> str:
@@ -169,6 +171,8 @@ class Part(BaseModel, metaclass=PartType):
     def _in_words(cls, fault: dict[str, Any]) -> PydanticCustomError:
         context, key, found = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
         match fault["type"]:
+            case "input" if "text_line" in context:
+                return text_problem(context)
             case "input":
                 plain = context["help"] == CHECK_SIGN
                 help_ = cls.advice.get(key, CHECK_SIGN) if plain else context["help"]
@@ -403,6 +407,22 @@ def fault(location: Location, found: str, expected: str, help_: str) -> InitErro
     return InitErrorDetails(type=problem(found, expected, help_), loc=location, input=None)
 
 
+def text_fault(location: Location, words: Sequence[str], place: tuple[int, int] | None) -> InitErrorDetails:
+    """Describe an error inside of a text; `words`: found, expected, help; `place`: line and column in it."""
+    found, expected, help_ = words
+    context: dict[str, Any] = {"found": found, "expected": expected, "help": help_}
+    if place is not None:
+        line, column = place
+        context |= {"text_line": line, "column": column}
+        context["found"] = f"{found} ({f'line {line}, ' if line > 1 else ''}column {column} of the text)"
+    return InitErrorDetails(type=text_problem(context), loc=location, input=None)
+
+
+def text_problem(context: dict[str, Any]) -> PydanticCustomError:
+    """Make an error with what was found, what was expected, what to do, and where in a text."""
+    return PydanticCustomError("input", "found {found}; expected {expected}. {help}", context)
+
+
 def refuse(*faults: InitErrorDetails) -> NoReturn:
     """Raise the errors."""
     raise merged(list(faults))
@@ -438,11 +458,14 @@ class Shorthand:
         Key that is meant by a single number; none: no single number.
     kind : str, optional
         Kind that a single number implies.
+    implied : tuple of (str, str), optional
+        A key that only one kind has, and that kind, which need not be written then.
     """
 
     word: str | None = None
     number: str | None = None
     kind: str | None = None
+    implied: tuple[str, str] | None = None
 
     def expand(self, raw: Any) -> Any:
         """The whole mapping."""
@@ -450,6 +473,8 @@ class Shorthand:
             return {self.number: raw} | ({"kind": self.kind} if self.kind else {})
         if self.word is not None and isinstance(raw, str):
             return {self.word: raw}
+        if self.implied is not None and isinstance(raw, Mapping) and self.implied[0] in raw:
+            return {"kind": self.implied[1], **raw}
         return raw
 
     def __get_pydantic_core_schema__(

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 from pydantic_core import InitErrorDetails
 
+from mascarin.building.closed_law import CUT, ClosedLaw
 from mascarin.building.melting import Melting
 from mascarin.building.number import Number
 from mascarin.building.part import Location, fault
-from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
+from mascarin.building.phase_change import CapacityLaw, FractionLaw, FractionsLaw, TableLaw
 from mascarin.building.phases import phase
 from mascarin.physics import KELVIN
 

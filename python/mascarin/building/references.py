@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.building.blind import NET_RADIATION
-from mascarin.building.convection import SOURCES
+from mascarin.building.convection import SOURCES, FormulaLaw
 from mascarin.building.glazing import SOURCES as GLASS
 from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
 from mascarin.building.humidity import EMPD, PSYCHROMETRICS
@@ -108,9 +108,10 @@ def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
-    films = (item.side.convection for item in sides(building))
+    films = [item.side.convection for item in sides(building)]
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
+    yield from (film.source for film in films if isinstance(film, FormulaLaw) and film.source)
     if any(item.windy and has_height(item.side) for item in sides(building)):
         yield ASHRAE_WIND
     yield from _of_air(building)

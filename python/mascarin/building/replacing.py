@@ -72,7 +72,7 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
         return
     before = piece_at(at, [path[-1]])
     if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
-        value = Number(value, range=before.range)
+        value = Number(value, range=before.range, quantity=before.quantity)
     holder[key] = value
 
 

@@ -11,12 +11,15 @@ from mascarin.building.air_rules import air_faults
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
 from mascarin.building.course_uses import schedule_uses
 from mascarin.building.derived import shade_outlines
+from mascarin.building.formula_sides import formula_sides
 from mascarin.building.humidity_rules import humidity_faults
 from mascarin.building.material import Resistance
 from mascarin.building.measured_sun import directions_are_known
+from mascarin.building.parameters import parameters
 from mascarin.building.part import Location, fault
 from mascarin.building.set_points import first_crossing
 from mascarin.building.surface import NoLongwave, Side
+from mascarin.building.ties import faults as tie_faults
 from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
 from mascarin.building.zone_surfaces import ZoneSurface, floors
@@ -61,6 +64,14 @@ def faults(building: Description) -> Faults:
     yield from _sun_can_be_absorbed(building)
     yield from _shades_can_act(building)
     yield from directions_are_known(building)
+
+
+def faults_of_values(building: Description) -> Faults:
+    """Errors that show when everything has a value, given or derived: ties, and laws written as text."""
+    if building.ties:
+        yield from tie_faults(building, parameters(building))
+    for side in formula_sides(building):
+        yield from side.faults()
 
 
 def _there_are_surfaces(building: Description) -> Faults:

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
-from mascarin.building.convection import CONVECTION, Convection, Doe2, Mowitt, Tarp
+from mascarin.building.convection import CONVECTION, Convection, by_wind_direction
 from mascarin.building.courses import Columns
 from mascarin.building.names import ConstructionName, MaterialName, Name, ScheduleName, SurfaceName, ZoneName
 from mascarin.building.number import Number, Remark, problem
@@ -394,7 +394,7 @@ class Surface(Part):
 
     def _direction_acts(self) -> bool:
         """Whether solar radiation, wind or the view factors of a zone depend on the azimuth."""
-        windy = isinstance(self.outside.convection, Tarp | Mowitt | Doe2) and self.outside.exposed.wind
+        windy = by_wind_direction(self.outside.convection) and self.outside.exposed.wind
         sun = windy or any(side.sunlit for side in self.sides)
         seen = any(side.zone is not None for side in self.sides)
         return (sun or seen) and self.tilt is not None and 0.0 < self.tilt < 180.0

@@ -14,7 +14,7 @@ from mascarin._io.arguments import require_type
 from mascarin._io.identity import DESCRIPTION
 from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
-from mascarin.building.explaining import Place, explained
+from mascarin.building.explaining import COLUMN, Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
 from mascarin.building.part import Part
 from mascarin.building.yaml_nodes import compose, number_of
@@ -28,6 +28,8 @@ MOST_VALUES = 100_000
 MOST_LEVELS = 50
 #: Longer whole numbers are no quantities; the time to read one grows with the square of its digits.
 MOST_DIGITS = 40
+#: Keys of texts in which an error has a column.
+_FORMULAS = ("formula", "valid")
 #: Halves of surrogate pairs.
 _HALVES = re.compile("[\ud800-\udfff]")
 
@@ -223,6 +225,8 @@ class _Document:
         if len(above) > MOST_LEVELS:
             self._too_deep(node.start_mark.line)
         self.lines.setdefault(place, node.start_mark.line + 1)
+        if place and place[-1] in _FORMULAS and node.id == "scalar" and node.style not in ("|", ">"):
+            self.lines[*place, COLUMN] = node.start_mark.column + 1 + (node.style is not None)
         if node.id == "mapping" and node.tag == "tag:yaml.org,2002:map":
             return dict(self._items(node, place, above | {id(node)}))
         if node.id == "sequence" and node.tag == "tag:yaml.org,2002:seq":

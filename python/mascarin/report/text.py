@@ -21,6 +21,7 @@ _CHOICES = {
     "doe2": "DOE-2",
     "iso15099": "ISO 15099",
     "power": "power law by direction",
+    "text": "a formula of its own",
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",
     "brunt": "Brunt, with clouds",

@@ -7,12 +7,13 @@ then gives its warnings.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin.simulation.coarse import LARGE
+from mascarin.simulation.formula_laws import range_warnings
 from mascarin.simulation.judgement import ensemble_warnings
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from mascarin.simulation.blocks import Watch
     from mascarin.simulation.energy import EnergyLedger
+    from mascarin.simulation.judgement import Judgement
     from mascarin.simulation.vapour import VapourLedger
 
     Array = npt.NDArray[np.float64]
@@ -67,6 +69,36 @@ def collected(
     found = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
     found += [*watch.melting.warnings(), *watch.bends.warnings(step_seconds)]
     return tuple(dict.fromkeys((*found, *building)))
+
+
+def of_engine(
+    judgement: Judgement,
+    raw: Mapping[str, Any],
+    dated: Callable[[str], str],
+    step_seconds: float,
+    scheme: str,
+) -> list[str]:
+    """Warnings of checks that the engine makes of a run.
+
+    Parameters
+    ----------
+    judgement : Judgement
+        Temperatures against their causes.
+    raw : mapping
+        What the engine returns of the run.
+    dated : callable
+        Adds the time to a text that names a step.
+    step_seconds : float
+        Time step. [s]
+    scheme : str
+        Time-stepping scheme.
+
+    Returns
+    -------
+    list of str
+        A temperature without a cause, laws that were used where they do not hold.
+    """
+    return [*judgement.warnings(step_seconds, scheme), *range_warnings(raw, dated)]
 
 
 def of_members(

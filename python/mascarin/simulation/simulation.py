@@ -393,7 +393,7 @@ class Simulation(VectorRuns):
         raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
-        judged = judgement.warnings(self.step_seconds, self.scheme)
+        judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
         parts = {"building": self.building_warnings, "judged": judged}
         return Finished(
             energy=energy,

@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.simulation.compiled import MEMORY, CompiledRun, EnsembleRun, Trajectory
+from mascarin.simulation.formula_laws import require_laws
 from mascarin.simulation.limits import Limits, require_control_times, require_set_points_apart
 
 if TYPE_CHECKING:
@@ -294,6 +295,7 @@ class VectorRuns:
             self.building, vectors, self.compiled.forcing, positions=self._positions,
             channels=self.channels, times=self.times,
         )  # fmt: skip
+        require_laws(self.building, vectors, positions=self._positions)
         if self.building.controls:
             seconds = self.times.last - self.times.first
             require_control_times(self.building, vectors, positions=self._positions, seconds=seconds)

@@ -2,6 +2,7 @@
 
 pub(crate) mod cell;
 pub mod coefficients;
+pub(crate) mod formulas;
 pub mod glazing;
 pub(crate) mod humidity;
 pub mod ids;

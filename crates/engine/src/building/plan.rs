@@ -1,5 +1,8 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
+use std::sync::Arc;
+
+use super::formulas;
 use super::humidity::HumidityPlan;
 use super::ids::{BySurface, SurfaceId};
 pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
@@ -13,6 +16,7 @@ use crate::error::EngineError;
 use crate::input::check::check;
 use crate::input::description::{Description, Facing, Side, Zone};
 use crate::input::forcing::CLIMATE_CHANNELS;
+use crate::physics::convection::formula_text::FormulaText;
 
 /// A compiled description.
 #[derive(Debug, Clone)]
@@ -33,6 +37,8 @@ pub struct Plan {
     pub passages: Vec<Passage>,
     /// Geometry of sun and shade.
     pub solar_geometry: SolarGeometry,
+    /// Convection at each surface where it is written as text.
+    pub(crate) formulas: BySurface<Option<Arc<FormulaText>>>,
     /// Vapour balance of the zones.
     pub(crate) humidity: Option<HumidityPlan>,
     /// Pressure network of its openings.
@@ -66,6 +72,8 @@ impl Plan {
 
     fn compile(description: Description, least_depth: f64, always: bool) -> Result<Self, EngineError> {
         check(&description)?;
+        formulas::check_curves(&description)?;
+        let formulas = formulas::read(&description)?;
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
         for wall in &description.surfaces {
@@ -100,6 +108,7 @@ impl Plan {
         let solar_geometry = SolarGeometry::new(&description, &windows, &zones);
         let (humidity, vents) = (HumidityPlan::new(&description), VentPlan::new(&description));
         Ok(Self {
+            formulas,
             humidity,
             vents,
             description,

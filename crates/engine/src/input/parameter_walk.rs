@@ -7,9 +7,9 @@ use core::fmt::{Display, Write};
 
 use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth, Description,
-    DirectedFlow, Door, Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl,
-    HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
-    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
+    DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap, Glazing, Humidity,
+    HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve,
+    Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
     Sorption, SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation,
     VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
@@ -148,6 +148,7 @@ walk!(MeltingCurve by variant {
     Linear { melting_temperature, width } plain {},
     Triangle { melting_temperature, below, above } plain {},
     Fractions { temperature_shift } plain { temperatures, fractions },
+    Text { melting_temperature, numbers } plain { formula, range },
 });
 
 walk!(Construction { layers, glazing, blind } plain { name });
@@ -239,8 +240,10 @@ walk!(Convection by variant {
     Doe2 { factor, roughness } plain {},
     Iso15099 { length, factor } plain {},
     Power { upward, downward } plain {},
+    Formula { numbers } plain { formula, valid },
 });
 walk!(PowerLaw { a, b, n, c, m } plain {});
+walk!(FormulaNumber { value } plain { name });
 walk!(Sensor { depth } plain { name, surface });
 
 walk!(Humidity { initial, lewis, zones, buffers, recoveries } plain {});

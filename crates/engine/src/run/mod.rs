@@ -13,6 +13,7 @@ pub mod ratings;
 pub mod simulate;
 pub mod simulate_in_blocks;
 pub mod stepwise;
+pub mod validity;
 mod warm_up;
 
 pub(crate) use action::Action;

@@ -10,6 +10,7 @@ use crate::run::options::Options;
 use crate::run::output_limits::{beyond_limits, require_limits};
 use crate::run::outputs::Output;
 use crate::run::physical_limits::{Outlier, PhysicalLimits};
+use crate::run::validity::{OutOfRange, Validity};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::newton::Counters;
@@ -39,6 +40,8 @@ pub struct Run<S: Real> {
     pub outside: S,
     /// Where that was first, in a run of one member.
     pub outlier: Option<Outlier>,
+    /// Laws written as text that were used where they do not hold; empty for several members.
+    pub out_of_range: Vec<OutOfRange>,
 }
 
 /// Runs a plan at a parameter vector.
@@ -98,12 +101,14 @@ pub(crate) fn simulate_observed<'a, S: Real>(
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.outputs.len());
     let mut ledger = Ledger::new();
     let mut limits = PhysicalLimits::new(&state, options.scheme);
+    let mut validity = Validity::new(&stepper.model);
     for action in Action::all(weather.steps(), options) {
         control.check()?;
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
         control.count_step();
         let rows = action.weather_rows(weather, options.scheme);
         limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
+        validity.judge(&stepper, &state, action.step());
         if action.row(options).is_some() {
             let step = stepper.readings();
             records.extend(options.outputs.iter().map(|output| output.read(plan, &step, &state)));
@@ -122,6 +127,7 @@ pub(crate) fn simulate_observed<'a, S: Real>(
         failed: stepper.failed(),
         outside: limits.excess,
         outlier: limits.outlier,
+        out_of_range: validity.found().cloned().collect(),
     })
 }
 

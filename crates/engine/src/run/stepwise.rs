@@ -11,6 +11,7 @@ use crate::run::options::Options;
 use crate::run::output_limits::require_limits;
 use crate::run::physical_limits::{Outlier, PhysicalLimits};
 use crate::run::simulate::prepare;
+use crate::run::validity::{OutOfRange, Validity};
 use crate::run::warm_up::warm_up;
 use crate::step::control::RunControl;
 use crate::step::state::State;
@@ -28,6 +29,7 @@ pub struct StepByStep<'a> {
     state: State<f64>,
     ledger: Ledger<f64>,
     limits: PhysicalLimits<f64>,
+    validity: Validity,
     /// Steps made since the start.
     steps: usize,
 }
@@ -63,7 +65,8 @@ impl<'a> StepByStep<'a> {
         let rows = Action::Balance.weather_rows(&first, options.scheme);
         limits.judge(&mut stepper, &state, rows, (Action::Balance, 0))?;
         let weather = Weather::for_single_run(plan, &Forcing::none(), 0);
-        Ok(Self { plan, options, stepper, weather, state, ledger, limits, steps: 0 })
+        let validity = Validity::new(&stepper.model);
+        Ok(Self { plan, options, stepper, weather, state, ledger, limits, validity, steps: 0 })
     }
 
     /// Makes a step in its weather. The state stays as it was where the step fails; after an impossible one the run cannot go on.
@@ -84,6 +87,7 @@ impl<'a> StepByStep<'a> {
         })?;
         let rows = action.weather_rows(&weather, self.options.scheme);
         limits.judge(stepper, state, rows, (action, self.steps))?;
+        self.validity.judge(&self.stepper, &self.state, self.steps);
         self.steps += 1;
         let mut values = Vec::new();
         self.read(&mut values);
@@ -102,6 +106,11 @@ impl<'a> StepByStep<'a> {
     #[must_use]
     pub fn outlier(&self) -> Option<&Outlier> {
         self.limits.outlier.as_ref()
+    }
+
+    /// Laws written as text that were used where they do not hold.
+    pub fn out_of_range(&self) -> impl Iterator<Item = &OutOfRange> {
+        self.validity.found()
     }
 
     /// Steps made since the start.

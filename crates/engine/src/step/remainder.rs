@@ -40,6 +40,8 @@ pub(crate) struct NonlinearLaws<S> {
     evaluated: Vec<usize>,
     /// Surfaces outdoors, which the sun falls on.
     outdoors: Vec<SurfaceId>,
+    /// How much more convection bends than [`CONVECTION`] says; one at least.
+    bend: S,
     /// What is accepted in this stage.
     limit: Limit<S>,
 }
@@ -57,9 +59,9 @@ struct Limit<S> {
 
 impl<S: Real> Limit<S> {
     #[inline(always)]
-    fn new(remainder: S) -> Self {
-        let root = remainder.scale(1.0 / CONVECTION);
-        Self { remainder, cube: root * root * root, across: remainder.scale(1.0 / SIDES) }
+    fn new(remainder: S, bend: S) -> Self {
+        let (root, across) = (remainder.scale(1.0 / CONVECTION) / bend, remainder.scale(1.0 / SIDES) / bend);
+        Self { remainder, cube: root * root * root, across }
     }
 
     /// Where the remainder of natural convection is accepted; temperature difference from surface to air at the iterate
@@ -85,6 +87,8 @@ impl<S: Real> NonlinearLaws<S> {
                 SurfaceRole::Exterior => exterior.push(surface),
             }
         }
+        let laws = parts.surfaces.nonlinear.iter().filter_map(|&surface| model.convection(surface));
+        let bend = laws.fold(S::one(), |most, law| most.max(law.bend()));
         let estimated = |&w: &usize| coefficients.walls[w].pcm.iter().all(|law| law.curvature().is_some());
         let (estimated, evaluated) = parts.nonlinear_walls.iter().copied().partition(estimated);
         let outdoors =
@@ -95,7 +99,8 @@ impl<S: Real> NonlinearLaws<S> {
             estimated,
             evaluated,
             outdoors: plan.surfaces.ids().filter(outdoors).collect(),
-            limit: Limit::new(S::zero()),
+            bend,
+            limit: Limit::new(S::zero(), S::one()),
         }
     }
 
@@ -106,8 +111,8 @@ impl<S: Real> NonlinearLaws<S> {
         for &surface in &self.outdoors {
             sun = sun.max(stage.conditions.surfaces[surface].solar);
         }
-        self.limit =
-            Limit::new((sun + S::constant(LEAST_FLOW)).scale(stage.tableau.tolerance.remainder.of::<S>()));
+        let flow = sun + S::constant(LEAST_FLOW);
+        self.limit = Limit::new(flow.scale(stage.tableau.tolerance.remainder.of::<S>()), self.bend);
     }
 
     /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].

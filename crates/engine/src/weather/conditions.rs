@@ -89,11 +89,16 @@ impl<S: Real> Conditions<S> {
     pub fn interpolate(&mut self, first: &Self, second: &Self, (fraction, of_sun): (f64, S)) {
         let line = |a: S, b: S| a + (b - a).scale(fraction);
         let rate = |a: S, b: S| line(a, b).max(S::zero());
+        // A part of a law that is written as text may be negative.
+        let part = |a: S, b: S| {
+            let negative = a.lt(S::zero()) | b.lt(S::zero());
+            S::select(negative, line(a, b), rate(a, b))
+        };
         for (at, (a, b)) in self.surfaces.iter_mut().zip(first.surfaces.iter().zip(&second.surfaces)) {
             at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
-            at.forced = [rate(a.forced[0], b.forced[0]), rate(a.forced[1], b.forced[1])];
+            at.forced = [part(a.forced[0], b.forced[0]), part(a.forced[1], b.forced[1])];
         }
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
             at.interpolate(a, b, fraction);

@@ -10,6 +10,7 @@ from mascarin.building.material import Material, PhaseChangeMaterial
 from mascarin.building.part import Part
 from mascarin.building.phase_change import (
     CapacityLaw,
+    FormulaCurve,
     FractionsLaw,
     GumbelLaw,
     SmoothStepLaw,
@@ -74,6 +75,9 @@ def _melting_curve(law: Part, ids: Ids, prefix: str, centre: str) -> Json:
         written["continuity"] = int(law.continuity)
     elif isinstance(law, GumbelLaw):
         written["tail"] = law.tail
+    elif isinstance(law, FormulaCurve):
+        numbers = [{"name": name, "value": ids(f"{prefix}{name}")} for name in law.numbers]
+        written |= {"formula": law.formula, "range": list(law.reach), "numbers": numbers}
     return written
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.convection import Convection, Measured, Power
+from mascarin.building.convection import Convection, FormulaLaw, Measured, Power
 from mascarin.building.courses import temperature_course
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
@@ -79,6 +79,10 @@ def describe_convection(convection: Convection, columns: list[str], ids: Ids) ->
             "upward": fields_of(convection.upward, ids, "convection.upward."),
             "downward": fields_of(convection.downward, ids, "convection.downward."),
         }
+    if isinstance(convection, FormulaLaw):
+        numbers = [{"name": name, "value": ids(f"convection.{name}")} for name in convection.numbers]
+        law = {"formula": convection.formula, "valid": convection.valid, "numbers": numbers}
+        return {"kind": "formula", **law}
     return fields_of(convection, ids, "convection.")
 
 

@@ -49,6 +49,14 @@ MeltingTemperature = Annotated[
         TEMPERATURE,
     ),
 ]
+CurveEnd = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "Distance from the melting temperature at which melting starts or is complete",
+        Fixed("the formula is the liquid fraction between the two"),
+    ),
+]
 MeltingWidth = Annotated[
     Number,
     Quantity(

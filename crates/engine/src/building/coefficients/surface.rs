@@ -99,7 +99,10 @@ impl<S: Real> SurfaceCoefficients<S> {
             density: air::density(plan, values),
         };
         Self {
-            convection: side.convection.as_ref().map(|law| SurfaceConvection::new(values, law, &placement)),
+            convection: side
+                .convection
+                .as_ref()
+                .map(|law| SurfaceConvection::new(values, law, plan.formulas[index].as_ref(), &placement)),
             area_factor: values.get_or(side.area_factor, 1.0),
             upward: placement.upward,
             emissivity: values.get_or(side.emissivity, 0.0),

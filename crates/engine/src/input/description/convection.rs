@@ -83,6 +83,16 @@ pub enum Convection {
         /// Heat flows down.
         downward: PowerLaw,
     },
+    /// As written, see `physics/convection/formula_text.rs`.
+    Formula {
+        /// The coefficient [W/(m2 K)].
+        formula: String,
+        /// Where it is valid; none: everywhere.
+        #[serde(default)]
+        valid: Option<String>,
+        /// Its numbers.
+        numbers: Vec<FormulaNumber>,
+    },
 }
 
 /// Coefficients of [`Convection::Power`].
@@ -103,4 +113,15 @@ pub struct PowerLaw {
 
     /// Exponent of the wind [-].
     pub m: ParamId,
+}
+
+/// A number of a formula.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormulaNumber {
+    /// Its name in the formula.
+    pub name: String,
+
+    /// Its value.
+    pub value: ParamId,
 }

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::convection::FormulaNumber;
 use super::parameter::ParamId;
 
 /// How enthalpy depends on temperature.
@@ -126,6 +127,17 @@ pub enum MeltingCurve {
         fractions: Vec<f64>,
         /// Shifts the curve towards higher temperatures [K].
         temperature_shift: ParamId,
+    },
+    /// As written, see `physics/pcm/text.rs`.
+    Text {
+        /// Melting temperature of the formula [degC].
+        melting_temperature: ParamId,
+        /// The liquid fraction.
+        formula: String,
+        /// Where it melts, about the melting temperature [K].
+        range: [f64; 2],
+        /// Its numbers.
+        numbers: Vec<FormulaNumber>,
     },
 }
 

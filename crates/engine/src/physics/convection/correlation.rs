@@ -49,6 +49,16 @@ pub(crate) trait WindPart<S: Real> {
     /// Whether the temperature contributes nothing.
     const LINEAR: bool = false;
 
+    /// Whether the wind contributes anything to this law.
+    fn depends_on_wind(&self) -> bool {
+        Self::DEPENDS_ON_WIND
+    }
+
+    /// Whether the temperature contributes nothing to this law.
+    fn linear(&self) -> bool {
+        Self::LINEAR
+    }
+
     /// The part without temperature at a wind; `windward`: where it blows onto the surface.
     #[inline(always)]
     fn forced(&self, _wind: &Wind, _windward: S::Mask) -> Forced<S> {

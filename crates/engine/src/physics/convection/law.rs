@@ -1,9 +1,13 @@
 //! The correlation of a surface: any of those of this folder.
 
+use std::sync::Arc;
+
 use super::alamdari_hammond::AlamdariHammond;
 use super::constant::Constant;
 use super::correlation::{Correlation, Placement, WindPart};
 use super::doe2::Doe2;
+use super::formula::Formula;
+use super::formula_text::FormulaText;
 use super::iso15099::Iso15099;
 use super::linear_wind::LinearWind;
 use super::measured::Measured;
@@ -60,13 +64,13 @@ macro_rules! laws {
         impl<S: Real> Law<S> {
             fn depends_on_wind(&self) -> bool {
                 match self {
-                    $(Self::$law(_) => <$law<S> as WindPart<S>>::DEPENDS_ON_WIND,)*
+                    $(Self::$law(law) => law.depends_on_wind(),)*
                 }
             }
 
             fn linear(&self) -> bool {
                 match self {
-                    $(Self::$law(_) => <$law<S> as WindPart<S>>::LINEAR,)*
+                    $(Self::$law(law) => law.linear(),)*
                 }
             }
 
@@ -86,10 +90,27 @@ macro_rules! laws {
     };
 }
 
-laws!(Constant, LinearWind, AlamdariHammond, PaperEq5, Tarp, Mowitt, Doe2, Iso15099, Power, Measured);
+laws!(
+    Constant,
+    LinearWind,
+    AlamdariHammond,
+    PaperEq5,
+    Tarp,
+    Mowitt,
+    Doe2,
+    Iso15099,
+    Power,
+    Measured,
+    Formula
+);
 
 impl<S: Real> Law<S> {
-    fn new(values: &Values<'_, S>, law: &Convection, surface: &Placement<S>) -> Self {
+    fn new(
+        values: &Values<'_, S>,
+        law: &Convection,
+        text: Option<&Arc<FormulaText>>,
+        surface: &Placement<S>,
+    ) -> Self {
         let get = |id| values.get(id);
         match law {
             Convection::Constant { coefficient } => Self::Constant(Constant::new(get(*coefficient))),
@@ -118,6 +139,11 @@ impl<S: Real> Law<S> {
             Convection::Power { upward, downward } => {
                 Self::Power(Power::new(values, [upward, downward], surface))
             }
+            Convection::Formula { numbers, .. } => {
+                let given: Vec<S> = numbers.iter().map(|number| get(number.value)).collect();
+                let text = text.expect("a plan reads the formulas of its sides");
+                Self::Formula(Formula::new(text, &given, surface))
+            }
         }
     }
 }
@@ -140,7 +166,10 @@ impl<S> SurfaceConvection<S> {
 
     /// Whether another surface has the same correlation.
     pub(crate) fn alike(&self, other: &Self) -> bool {
-        core::mem::discriminant(&self.law) == core::mem::discriminant(&other.law)
+        match (&self.law, &other.law) {
+            (Law::Formula(law), Law::Formula(other)) => law.alike(other),
+            (law, other) => core::mem::discriminant(law) == core::mem::discriminant(other),
+        }
     }
 
     /// [`SurfaceConvection::flux`] of numbers that are still to be turned into those to compute with.
@@ -176,9 +205,29 @@ impl<S: Copy> SurfaceConvection<S> {
 }
 
 impl<S: Real> SurfaceConvection<S> {
-    /// Reads the numbers of a correlation for a surface.
-    pub fn new(values: &Values<'_, S>, law: &Convection, surface: &Placement<S>) -> Self {
-        Self { law: Law::new(values, law, surface), upward: surface.upward }
+    /// Reads the numbers of a correlation for a surface; `text`: the formula, where it is written as one.
+    pub(crate) fn new(
+        values: &Values<'_, S>,
+        law: &Convection,
+        text: Option<&Arc<FormulaText>>,
+        surface: &Placement<S>,
+    ) -> Self {
+        Self { law: Law::new(values, law, text, surface), upward: surface.upward }
+    }
+
+    /// How much more the flow of heat bends than that of the published correlations; one at least.
+    pub(crate) fn bend(&self) -> S {
+        if let Law::Formula(law) = &self.law { law.bend() } else { S::one() }
+    }
+
+    /// Whether it says where it is valid.
+    pub(crate) fn limited(&self) -> bool {
+        matches!(&self.law, Law::Formula(law) if law.limited())
+    }
+
+    /// One where it is valid at a difference [K] and a wind at the mast [m/s], else zero.
+    pub(crate) fn valid(&self, d: S, speed: S, windward: S::Mask) -> S {
+        if let Law::Formula(law) = &self.law { law.valid(d, speed, windward) } else { S::one() }
     }
 
     /// The coefficient, where it depends neither on temperature nor on wind.

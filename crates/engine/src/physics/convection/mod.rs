@@ -16,6 +16,7 @@
 //! | [`doe2`] | DOE-2: `MoWiTT` on rough surfaces | outdoors |
 //! | [`iso15099`] | ISO 15099:2003, 8.3.2.2 | indoor surface of a glazing |
 //! | [`power`] | `a + b |d|^n + c V^m` | anywhere |
+//! | [`formula`] | as written in the description ([`formula_text`]) | anywhere |
 //!
 //! [`natural`] holds the terms that several of them are made of, [`wind`] the wind and its part of the coefficient. h is a
 //! function of `d^2 + r^2` with a small r: it is smooth where the heat flow changes its direction, and roots and derivatives of
@@ -40,6 +41,11 @@ mod borders;
 pub(crate) mod constant;
 pub(crate) mod correlation;
 pub(crate) mod doe2;
+pub(crate) mod formula;
+pub(crate) mod formula_check;
+#[cfg(test)]
+mod formula_tests;
+pub(crate) mod formula_text;
 pub(crate) mod iso15099;
 pub(crate) mod law;
 pub(crate) mod linear_wind;
@@ -54,5 +60,6 @@ mod testing;
 pub(crate) mod wind;
 
 pub use correlation::Placement;
+pub use formula_check::LawText;
 pub use law::SurfaceConvection;
 pub use wind::{Forced, Wind, WindTerms};

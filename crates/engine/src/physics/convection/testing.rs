@@ -14,7 +14,7 @@ pub(super) fn id(index: u32) -> ParamId {
 pub(super) fn surface(law: &Convection, numbers: &[f64], upward: f64) -> SurfaceConvection<f64> {
     let inclination = crate::number::elementary::acos(upward.abs()).to_degrees();
     let surface = Placement { area: 1.0, upward, wind_factor: 1.0, inclination, density: 1.2 };
-    SurfaceConvection::new(&Values::new(numbers), law, &surface)
+    SurfaceConvection::new(&Values::new(numbers), law, None, &surface)
 }
 
 /// The coefficient [W/(m2 K)] at a difference [K] and a wind [m/s]; its slope is checked against a difference.

@@ -7,7 +7,7 @@ use crate::number::real::Real;
 pub(super) const MOWITT_EXPONENTS: [f64; 2] = [0.89, 0.617];
 
 /// Wind speeds below this [m/s] count as this: `V^b` has an infinite slope at zero.
-const CALM: f64 = 1e-3;
+pub(super) const CALM: f64 = 1e-3;
 
 /// The part of a coefficient that does not depend on temperature, where heat flows up and where it flows down [W/(m2 K)].
 pub type Forced<S> = [S; 2];
@@ -38,6 +38,7 @@ impl WindTerms {
                 | Convection::LinearWind { .. }
                 | Convection::AlamdariHammond { .. }
                 | Convection::PaperEq5 { .. }
+                | Convection::Formula { .. }
                 | Convection::Iso15099 { .. } => {}
             }
             terms

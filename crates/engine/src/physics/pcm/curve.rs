@@ -2,6 +2,7 @@
 
 use super::normal::normal;
 use super::segments::{Reading, Segments};
+use super::text::{FractionText, Text};
 use crate::input::description::{MeltingCurve, Tail};
 use crate::input::values::Values;
 use crate::number::real::{Logistic, Real};
@@ -77,6 +78,8 @@ enum Shape<S> {
     Triangle([S; 2]),
     /// Read at `T - centre`.
     Measured(Segments),
+    /// As written.
+    Text(Box<Text<S>>),
 }
 
 impl<S: Real> Curve<S> {
@@ -118,6 +121,17 @@ impl<S: Real> Curve<S> {
                 let width = S::constant(0.5 * (measured.last() - measured.first()));
                 of(Shape::Measured(measured), *temperature_shift, width)
             }
+            MeltingCurve::Text { melting_temperature, formula, range, numbers } => {
+                let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
+                let given =
+                    core::iter::once(*melting_temperature).chain(numbers.iter().map(|number| number.value));
+                let given: Vec<S> = given.map(|id| values.get(id)).collect();
+                let text =
+                    FractionText::new(formula, &names).expect("a plan reads the formulas of its materials");
+                let text = Text::new(text, &given, *range);
+                let width = text.width;
+                of(Shape::Text(Box::new(text)), *melting_temperature, width)
+            }
         }
     }
 
@@ -138,6 +152,10 @@ impl<S: Real> Curve<S> {
             Shape::Linear => linear(u),
             Shape::Triangle(parts) => triangle(u, *parts),
             Shape::Measured(segments) => return measured(segments, excess),
+            Shape::Text(text) => {
+                let [fraction, slope] = text.at(temperature);
+                return CurvePoint { fraction, slope, molten: S::zero() };
+            }
         };
         CurvePoint { fraction, slope: slope * self.inverse_width, molten: molten * self.width }
     }
@@ -148,10 +166,10 @@ impl<S: Real> Curve<S> {
         if let Shape::Tanh(tanh) = &self.shape { Some(tanh) } else { None }
     }
 
-    /// Whether it is read from a measurement and may have several bends.
+    /// Whether it is read from a measurement or a text and may have several bends.
     #[inline(always)]
     pub(super) fn is_measured(&self) -> bool {
-        matches!(self.shape, Shape::Measured(_))
+        matches!(self.shape, Shape::Measured(_) | Shape::Text(_))
     }
 
     /// The curve with its tails cut off and the rest stretched to 0..1: fraction and slope.
@@ -186,6 +204,9 @@ impl<S: Real> Curve<S> {
     /// The convex part of the compact curve between two temperatures, and its slope: with all that the slope falls by left out; beyond the
     /// second temperature its tangent there.
     pub(super) fn convex(&self, temperature: S, [from, to]: [S; 2]) -> (S, S) {
+        if let Shape::Text(text) = &self.shape {
+            return text.convex(temperature, [from, to]);
+        }
         let Shape::Measured(segments) = &self.shape else {
             // The slope rises up to the peak, and falls behind it.
             let place = temperature.max(from).min(self.peak().max(from).min(to));
@@ -203,7 +224,7 @@ impl<S: Real> Curve<S> {
 
     /// Whether the integral of the fraction is known.
     pub(super) fn integrable(&self) -> bool {
-        !matches!(self.shape, Shape::Gumbel(_))
+        !matches!(self.shape, Shape::Gumbel(_) | Shape::Text(_))
     }
 
     /// Temperature of the largest slope [degC].
@@ -211,6 +232,7 @@ impl<S: Real> Curve<S> {
     pub(super) fn peak(&self) -> S {
         match &self.shape {
             Shape::Measured(segments) => self.centre + S::constant(segments.steepest()),
+            Shape::Text(text) => text.steepest,
             _ => self.centre,
         }
     }
@@ -249,6 +271,7 @@ impl<S: Real> Curve<S> {
             Shape::Measured(segments) => {
                 return [segments.first(), segments.last()].map(|end| self.centre + S::constant(end));
             }
+            Shape::Text(text) => return text.ends(),
         };
         [self.centre + self.width.scale(low), self.centre + self.width.scale(high)]
     }

@@ -1,6 +1,7 @@
 //! The liquid fraction of a described curve outside of a run: for checks, fits and figures.
 
 use super::curve::Curve;
+use super::text::FractionText;
 use crate::error::EngineError;
 use crate::input::description::{MeltingCurve, ParamId};
 use crate::input::values::Values;
@@ -17,7 +18,7 @@ impl LiquidFraction {
     /// # Errors
     /// [`EngineError::Input`]: a position without a value, or a table that is not one.
     pub fn new(curve: &MeltingCurve, values: &[f64]) -> Result<Self, EngineError> {
-        let most = parameters(curve).into_iter().flatten().map(|id| id.0 as usize).max().unwrap_or(0);
+        let most = parameters(curve).into_iter().map(|id| id.0 as usize).max().unwrap_or(0);
         if most >= values.len() {
             let text = format!("a melting curve reads value {most}, found {} values", values.len());
             return Err(EngineError::Input(text));
@@ -29,6 +30,10 @@ impl LiquidFraction {
                     "a measured melting curve needs two or more rising temperatures, each with a fraction";
                 return Err(EngineError::Input(text.to_owned()));
             }
+        }
+        if let MeltingCurve::Text { formula, numbers, .. } = curve {
+            let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
+            FractionText::new(formula, &names).map_err(|error| EngineError::Input(error.fault.to_string()))?;
         }
         Ok(Self { curve: Curve::new(&Values::new(values), curve) })
     }
@@ -47,20 +52,21 @@ impl LiquidFraction {
 }
 
 /// Parameters of a curve.
-fn parameters(curve: &MeltingCurve) -> [Option<ParamId>; 3] {
-    match *curve {
+fn parameters(curve: &MeltingCurve) -> Vec<ParamId> {
+    match curve {
         MeltingCurve::TanhWidth { melting_temperature, width }
         | MeltingCurve::SmoothStep { melting_temperature, width, .. }
         | MeltingCurve::Gaussian { melting_temperature, width }
         | MeltingCurve::Gumbel { melting_temperature, width, .. }
-        | MeltingCurve::Linear { melting_temperature, width } => {
-            [Some(melting_temperature), Some(width), None]
-        }
+        | MeltingCurve::Linear { melting_temperature, width } => vec![*melting_temperature, *width],
         MeltingCurve::TanhGamma { melting_temperature, gamma: first, delta_t: second }
         | MeltingCurve::Triangle { melting_temperature, below: first, above: second } => {
-            [Some(melting_temperature), Some(first), Some(second)]
+            vec![*melting_temperature, *first, *second]
         }
-        MeltingCurve::Fractions { temperature_shift, .. } => [Some(temperature_shift), None, None],
+        MeltingCurve::Fractions { temperature_shift, .. } => vec![*temperature_shift],
+        MeltingCurve::Text { melting_temperature, numbers, .. } => {
+            core::iter::once(*melting_temperature).chain(numbers.iter().map(|number| number.value)).collect()
+        }
     }
 }
 

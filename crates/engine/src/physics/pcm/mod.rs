@@ -13,6 +13,7 @@ mod hysteresis;
 mod normal;
 mod segments;
 mod table;
+pub(crate) mod text;
 
 use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
