@@ -6,14 +6,18 @@ use pyo3::prelude::*;
 
 use crate::errors::{EngineInputError, caught};
 
-/// Name, value, and range where there is one.
-type Number = (String, f64, Option<(f64, f64)>);
+/// Name, value, range and unit, where they are stated.
+type Number = (String, f64, Option<(f64, f64)>, Option<String>);
 /// Key, line, column, what was found, what was expected, and what to do.
 type Found = (String, u32, u32, String, String, String);
 
 fn numbers(given: Vec<Number>) -> Vec<LawNumber> {
-    let number =
-        |(name, value, range): Number| LawNumber { name, value, range: range.map(|(low, high)| [low, high]) };
+    let number = |(name, value, range, unit): Number| LawNumber {
+        name,
+        value,
+        range: range.map(|(low, high)| [low, high]),
+        unit,
+    };
     given.into_iter().map(number).collect()
 }
 
@@ -71,11 +75,14 @@ pub fn formula_values<'py>(
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
 pub fn check_fraction(
     formula: &str,
-    given: Vec<(String, f64)>,
+    given: Vec<Number>,
     melting_temperature: f64,
     range: [f64; 2],
 ) -> PyResult<Option<Found>> {
-    caught(|| Ok(CurveText { formula, numbers: &given, melting_temperature, range }.check().err().map(found)))
+    caught(|| {
+        let numbers = numbers(given);
+        Ok(CurveText { formula, numbers: &numbers, melting_temperature, range }.check().err().map(found))
+    })
 }
 
 /// Liquid fractions of such a curve at temperatures [degC]: [-].
@@ -84,13 +91,14 @@ pub fn check_fraction(
 pub fn fraction_values<'py>(
     py: Python<'py>,
     formula: &str,
-    given: Vec<(String, f64)>,
+    given: Vec<Number>,
     melting_temperature: f64,
     range: [f64; 2],
     temperatures: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     caught(|| {
-        let curve = CurveText { formula, numbers: &given, melting_temperature, range };
+        let numbers = numbers(given);
+        let curve = CurveText { formula, numbers: &numbers, melting_temperature, range };
         let values = curve.fractions(temperatures.as_slice()?);
         let values = values.map_err(|fault| EngineInputError::new_err(fault.fault.to_string()))?;
         Ok(PyArray1::from_vec(py, values))

@@ -165,9 +165,9 @@ fn derivatives() {
             let moved = |step: f64| {
                 let (mut values, mut difference) = (values, difference);
                 if which < 4 {
-                    values[which] += step
+                    values[which] += step;
                 } else {
-                    difference += step
+                    difference += step;
                 }
                 at(&values, difference)
             };

@@ -220,11 +220,3 @@ fn code_of(node: Node) -> Code {
         Node::Choose { .. } => Code::Choose,
     }
 }
-
-#[cfg(test)]
-impl Program {
-    /// Instructions and registers.
-    pub(crate) fn size(&self) -> [usize; 2] {
-        [self.code.len(), self.registers]
-    }
-}

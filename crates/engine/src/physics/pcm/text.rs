@@ -330,6 +330,7 @@ impl<S: Real> Text<S> {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "compared with the functions of the standard library")]
 mod tests {
     use super::*;
     use crate::number::dual::Dual;
