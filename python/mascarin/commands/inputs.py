@@ -55,8 +55,9 @@ Columns = Annotated[
         name="--column",
         negative="",
         help="Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as "
-        '"air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be '
-        "given several times.",
+        '"air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. A unit '
+        "that the file states is used without being repeated; [km/h!] holds although the file states another "
+        "one. Can be given several times.",
     ),
 ]
 Zone = Annotated[str | None, Parameter(help="Time zone of measured tables. Default: that of the site.")]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import sys
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -87,7 +88,33 @@ def run_inputs(
             f"--measurements: not given; expected a table with the measured columns of this building: "
             f"{', '.join(needed)}"
         )
+    show_columns(climate, measured)
     return climate, measured
+
+
+def show_columns(
+    climate: Climate, measured: Measurements | None, columns: Collection[str] | None = None
+) -> None:
+    """Say on the terminal what was read of each column of a table: unit, conversion, range, missing values.
+
+    Parameters
+    ----------
+    climate : Climate
+        The weather; nothing is said of a weather file of a year.
+    measured : Measurements or None
+        Measured columns.
+    columns : collection of str, optional
+        Which of the measured columns are used. Default: all.
+    """
+    lines = [f"{climate.file}: {origin.line}" for origin in climate.record.origins.values()]
+    if measured is not None:
+        lines += [
+            f"{measured.file}: {origin.line}"
+            for name, origin in measured.record.origins.items()
+            if columns is None or name in columns
+        ]
+    for line in dict.fromkeys(lines):
+        print(line, file=sys.stderr)
 
 
 def _measured_weather(
@@ -124,7 +151,8 @@ def _measured_weather(
 def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
     """Channel and column of ``--column``; None for a channel that was not measured.
 
-    Brackets hold a unit, unless the table has a column (``names``) that is called so.
+    Brackets hold a unit, unless the table has a column (``names``) that is called so. With an exclamation
+    mark it holds although the file states another one.
     """
     from mascarin.weather import Column
 
@@ -137,4 +165,7 @@ def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
     if name == _NONE and _NONE not in names:
         return channel, None
     unit = None if name in names else _UNIT.fullmatch(name)
-    return channel, Column(unit["column"], unit=unit["unit"]) if unit else Column(name)
+    if unit is None:
+        return channel, Column(name)
+    text = unit["unit"]
+    return channel, Column(unit["column"], unit=text.removesuffix("!"), overrule=text.endswith("!"))

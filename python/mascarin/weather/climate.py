@@ -183,6 +183,7 @@ class Climate(RecordView[WeatherRecord]):
         decimal: str | None = None,
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
+        tolerance: str | float | None = None,
         latitude: float | None = None,
         longitude: float | None = None,
         altitude: float = 0.0,
@@ -225,6 +226,9 @@ class Climate(RecordView[WeatherRecord]):
             Lines before the header.
         missing : sequence
             Entries that mean that there is no value, beside the empty one.
+        tolerance : str or float
+            Largest deviation of a stamp from the regular grid, to which it is moved; default a tenth of the
+            step. [s]
         latitude, longitude : float, optional
             Place of the measurement, positive north and east. [deg]
         altitude : float
@@ -263,7 +267,7 @@ class Climate(RecordView[WeatherRecord]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))

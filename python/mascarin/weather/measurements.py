@@ -69,6 +69,7 @@ class Measurements(RecordView[Record]):
         decimal: str | None = None,
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
+        tolerance: str | float | None = None,
     ) -> Measurements:
         """Read a table of measurements.
 
@@ -85,7 +86,7 @@ class Measurements(RecordView[Record]):
             Columns that are means over their interval; the others are values at the stamp.
         stamps : str
             `start` or `end`: which end of its interval a stamp marks.
-        step, time, time_format, separator, decimal, skip_lines, missing
+        step, time, time_format, separator, decimal, skip_lines, missing, tolerance
             As in `read_table`.
 
         Returns
@@ -111,7 +112,7 @@ class Measurements(RecordView[Record]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
         }  # fmt: skip
         wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
         choice = (wanted, tuple(mean), stamps)
