@@ -12,6 +12,7 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.commands.inputs import (
     AsJson,
+    CheckSun,
     Columns,
     MeasuredTable,
     Outside,
@@ -58,6 +59,7 @@ def sweep(
     workers: int | None = None,
     settings: Settings = None,
     allow_outside: Outside = False,
+    check_sun: CheckSun = True,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with many parameter values.
@@ -110,7 +112,7 @@ def sweep(
     kept = {text: Statistic.read(text) for text in objectives or ()}
     climate, measured = run_inputs(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
-        allow_outside=allow_outside,
+        allow_outside=allow_outside, check_sun=check_sun,
     )  # fmt: skip
     with Progress("members") as progress:
         store = sweep_into(

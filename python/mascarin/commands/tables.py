@@ -31,6 +31,7 @@ def run_inputs(
     timezone: str | None,
     stamps: Stamps,
     allow_outside: bool = False,
+    check_sun: bool = True,
 ) -> tuple[Climate, Measurements | None]:
     """Read the weather of a run, and the measured columns that its building names.
 
@@ -50,6 +51,8 @@ def run_inputs(
         Which end of its interval a stamp marks.
     allow_outside : bool
         Whether a YAML file may name files outside its folder.
+    check_sun : bool
+        Whether radiation that does not follow the sun is refused.
 
     Raises
     ------
@@ -77,10 +80,10 @@ def run_inputs(
             )
         climate, measured = open_run_inputs(weather, building, allow_outside=allow_outside)
     elif columns or weather.suffix.lower() in _TABLES[1:]:
-        climate = _measured_weather(building, weather, columns, zone, stamps)
+        climate = _measured_weather(building, weather, columns, zone, stamps, check_sun)
         table = table or weather
     else:
-        climate = read_weather(weather)
+        climate = read_weather(weather, check_sun=check_sun)
     if table is not None and needed:
         measured = Measurements.from_table(table, columns=needed, timezone=zone, stamps=stamps)
     if needed and measured is None:
@@ -118,7 +121,7 @@ def show_columns(
 
 
 def _measured_weather(
-    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps
+    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps, check_sun: bool
 ) -> Climate:
     from mascarin.tables.reading.table import read_table
     from mascarin.weather import Climate
@@ -136,7 +139,7 @@ def _measured_weather(
     try:
         return Climate.from_table(
             file, columns=chosen, absent=absent, timezone=zone, stamps=stamps, latitude=float(site.latitude),
-            longitude=float(site.longitude), altitude=float(site.altitude),
+            longitude=float(site.longitude), altitude=float(site.altitude), check_sun=check_sun,
         )  # fmt: skip
     except InputError as error:
         if "absent: [" not in str(error):

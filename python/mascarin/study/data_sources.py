@@ -112,6 +112,7 @@ class ClimateSource(Part):
     epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
     measured: MeasuredWeather | None = Field(None, description="A measured table")
+    check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
 
     @model_validator(mode="after")
     def _one(self) -> Self:

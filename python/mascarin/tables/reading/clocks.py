@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from datetime import datetime, tzinfo
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -40,8 +39,7 @@ _SPREADSHEET: Final = 25569.0
 _ISO: Final = "ISO 8601 such as 2024-09-04 00:15"
 
 
-@dataclass(frozen=True)
-class Stamped:
+class Stamped(NamedTuple):
     """Stamps in their zone, and what was done to read them.
 
     Attributes

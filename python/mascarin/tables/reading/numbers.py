@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 EMPTY: Final = frozenset(
     {"", "na", "nan", "n/a", "null", "none", "-", "--", "---", "----", "#n/a", "#n/v", "#nv"}
-    | {"err", "error", "no data", "nodata", "missing"}
+    | {"err", "no data", "nodata"}
 )
 """Entries that mean that there is no value; in small letters."""
 

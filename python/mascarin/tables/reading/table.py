@@ -233,9 +233,8 @@ def read_table(
         frame = without_entries(frame, missing)
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
     zone, clock, of_zone = _clock(used, text, zone, where)
-    stamped = stamps_from(text, time_format, zone, clock, lines, where)
-    frame.index = stamped.index
-    said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in stamped.notes))
+    frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
+    said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
