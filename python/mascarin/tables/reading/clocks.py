@@ -15,9 +15,11 @@ from mascarin.tables.timezones import YEARS, localize, zone_name
 if TYPE_CHECKING:
     import pandas as pd
 
-_HAS_OFFSET: Final = re.compile(r"\d{1,2}:\d{2}(?::\d{2}(?:\.\d+)?)?\s*(?:Z|[+-]\d{2}:?\d{2})$")
-_MIDNIGHT: Final = re.compile(r"[T ]24:00(?::00)?$")
-_MIDNIGHT_OF_DIGITS: Final = re.compile(r" 2400$")
+# Texts of plain classes, not compiled: pandas searches them in columns without a loop in Python.
+_HAS_OFFSET: Final = r"[0-9]{1,2}:[0-9]{2}(?::[0-9]{2}(?:[.][0-9]+)?)? *(?:Z|[+-][0-9]{2}:?[0-9]{2})$"
+_MIDNIGHT: Final = r"[T ]24:00(?::00)?$"
+_MIDNIGHT_OF_DIGITS: Final = r" 2400$"
+_BLANKS: Final = "  |\t|\u00a0"
 _DATE: Final = (
     r"^(?P<a>\d{1,4})(?P<mark>[./-])(?P<b>\d{1,2})[./-](?P<c>\d{1,4})"
     r"(?:[ T,]+(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}(?:[.,]\d+)?))?"
@@ -44,13 +46,13 @@ class Stamped(NamedTuple):
 
     Attributes
     ----------
-    index : pandas.DatetimeIndex
+    times : pandas.DatetimeIndex
         With a time zone.
     notes : tuple of str
         Sentences, without the name of the file.
     """
 
-    index: pd.DatetimeIndex
+    times: pd.DatetimeIndex
     notes: tuple[str, ...] = ()
 
 
@@ -87,7 +89,9 @@ def stamps_from(
         return _local(pd.DatetimeIndex(text), clock, zone, lines, where)
     if time_format is None and pd.api.types.is_numeric_dtype(text.dtype) and not text.isna().any():
         return _of_numbers(text, zone, clock, lines, where)
-    written = text.astype(str).str.strip().str.replace(r"\s+", " ", regex=True)
+    written = text.astype(str).str.strip()
+    if written.str.contains(_BLANKS).any():
+        written = written.str.replace(r"\s+", " ", regex=True)
     offset = bool(written.str.contains(_HAS_OFFSET).any())
     written, late = _without_midnight(written, time_format)
     parsed = _parsed(written, time_format, offset, f"{where}:{lines[0]}")
@@ -110,21 +114,22 @@ def stamps_from(
     if offset:
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
     found = _local(index, clock, zone, lines, where)
-    return Stamped(found.index, (*notes, *found.notes))
+    return Stamped(found.times, (*notes, *found.notes))
 
 
 def _without_midnight(written: pd.Series[str], time_format: str | None) -> tuple[pd.Series[str], Flags]:
     """24:00 and 2400 become 00:00 of the next day; hours as digits get their zeros."""
-    late = written.str.contains(_MIDNIGHT)
-    written = written.where(~late, written.str.replace("24:00", "00:00", n=1, regex=False))
+    late = written.str.contains(_MIDNIGHT).to_numpy(dtype=bool)
+    if late.any():
+        written = written.where(~late, written.str.replace("24:00", "00:00", n=1, regex=False))
     if time_format is not None and time_format.endswith(" %H%M"):
         parts = written.str.rsplit(" ", n=1, expand=True)
         if parts.shape[1] == 2:
             written = parts[0] + " " + parts[1].str.zfill(4)
-        midnight = written.str.contains(_MIDNIGHT_OF_DIGITS)
+        midnight = written.str.contains(_MIDNIGHT_OF_DIGITS).to_numpy(dtype=bool)
         written = written.where(~midnight, written.str.replace(_MIDNIGHT_OF_DIGITS, " 0000", regex=True))
         late = late | midnight
-    return written, late.to_numpy(dtype=bool)
+    return written, late
 
 
 def _parsed(written: pd.Series[str], time_format: str | None, offset: bool, where: str) -> pd.Series[Any]:
@@ -183,7 +188,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
     digits = _of_digits(values)
     if digits is not None:
         found = _local(pd.DatetimeIndex(digits), clock, zone, lines, where)
-        return Stamped(found.index, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
+        return Stamped(found.times, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
     for low, high, unit, name in ((1e8, 4.2e9, 1.0, "seconds"), (1e11, 4.2e12, 1e-3, "milliseconds")):
         if low <= values.min() and values.max() <= high:
             seconds = np.round(values * unit * 1e3).astype(np.int64)
@@ -193,7 +198,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
         # A day with eight decimals is read to the millisecond; clocks of loggers have whole seconds.
         seconds = np.round((values - _SPREADSHEET) * _DAY).astype(np.int64)
         found = _local(pd.DatetimeIndex(seconds.astype("datetime64[s]")), clock, zone, lines, where)
-        return Stamped(found.index, (f"stamps such as {values[0]:g} are days of a spreadsheet.",))
+        return Stamped(found.times, (f"stamps such as {values[0]:g} are days of a spreadsheet.",))
     raise InputError(
         f"{where}:{lines[0]}: time {text.iloc[0]} cannot be read, expected {_ISO}, seconds or milliseconds "
         "since 1970, days of a spreadsheet, or digits such as 202409040015; state the column of the times "

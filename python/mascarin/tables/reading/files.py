@@ -118,21 +118,26 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
     text, encoding = decoded(path.read_bytes(), path.name)
     lines = text.splitlines()
+    last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
+    del text  # a large table is in memory once, as far as that is possible
     layout = find_layout(lines, path.name, separator, decimal, skip_lines)
     rows, repeated = _rows(lines, layout)
-    frame = _parsed(lines, rows, layout, path.name, doubt=decimal is None)
-    frame.columns = pd.Index([str(name).strip() for name in frame.columns])
-    if layout.trailing:
-        frame = frame.iloc[:, :-1]
-    _refuse_cut(text, layout, len(frame.columns), path.name, len(lines))
-    units = dict(zip(map(str, frame.columns), layout.units, strict=False))
     notes = _notes(layout, encoding, lines, path.name)
     if repeated:
         notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip
-    return Read(
-        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, decimal is not None
-    )
+    header = lines[layout.header] if layout.header < len(lines) else ""
+    data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
+    body = "\n".join([header + layout.separator * layout.trailing, *data])
+    del lines, data
+    frame = _parsed(body, rows, layout, path.name, doubt=decimal is None)
+    frame.columns = pd.Index([str(name).strip() for name in frame.columns])
+    if layout.trailing:
+        frame = frame.iloc[:, :-1]
+    _refuse_cut(last, layout, len(frame.columns), path.name, count)
+    units = dict(zip(map(str, frame.columns), layout.units, strict=False))
+    stated = decimal is not None
+    return Read(frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated)
 
 
 def _rows(lines: Sequence[str], layout: Layout) -> tuple[Lines, list[int]]:
@@ -156,11 +161,9 @@ def _is_head_again(line: str, lines: Sequence[str], layout: Layout) -> bool:
     return line[:5] == first[:5] and line.count(layout.separator) == first.count(layout.separator)
 
 
-def _parsed(lines: Sequence[str], rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
+def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
     import pandas as pd
 
-    header = lines[layout.header] if layout.header < len(lines) else ""
-    body = [header + layout.separator * layout.trailing, *(lines[k] for k in rows.tolist())]
     options: dict[str, Any] = {
         "sep": layout.separator, "decimal": layout.decimal, "skip_blank_lines": False,
         "skipinitialspace": True, "low_memory": False, "index_col": False,
@@ -169,7 +172,7 @@ def _parsed(lines: Sequence[str], rows: Lines, layout: Layout, where: str, *, do
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(StringIO("\n".join(body)), **options)
+            frame = read_csv(StringIO(body), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
             f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
@@ -190,7 +193,7 @@ def _parsed(lines: Sequence[str], rows: Lines, layout: Layout, where: str, *, do
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(StringIO("\n".join(body)), dtype=str, **options)
+        texts = read_csv(StringIO(body), dtype=str, **options)
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
     return frame
@@ -213,9 +216,8 @@ def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> t
     return tuple(notes)
 
 
-def _refuse_cut(text: str, layout: Layout, fields: int, where: str, line: int) -> None:
+def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -> None:
     """Refuse a file whose last line has no line end and fewer entries than the header: it was cut."""
-    last = re.split("[\r\n]", text)[-1]
     count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(
