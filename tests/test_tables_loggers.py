@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import mascarin as mc
@@ -329,6 +331,101 @@ def test_one_day_with_two_readings_is_refused_with_both() -> None:
 def test_dates_of_two_forms_are_refused_by_line() -> None:
     with pytest.raises(InputError, match=r"excel_mixed_dates.csv:50: time '13/07/2023 00:00'"):
         read("excel_mixed_dates.csv")
+
+
+# ---------------------------------------------------------------------- further devices and locales
+
+STAMPS = pd.date_range("2023-10-20", periods=432, freq="10min")
+AIR = 15.0 + 5.0 * np.sin(np.arange(432) / 144.0 * 2.0 * np.pi)
+
+
+def comma(value: float, digits: int = 2) -> str:
+    return f"{value:.{digits}f}".replace(".", ",")
+
+
+def rows(form: Callable[[int, pd.Timestamp, float], str]) -> str:
+    return "".join(form(k, stamp, air) + "\n" for k, (stamp, air) in enumerate(zip(STAMPS, AIR, strict=True)))
+
+
+def us(stamp: pd.Timestamp) -> str:
+    return f"{stamp.month}/{stamp.day}/{stamp.year}"
+
+
+def half(stamp: pd.Timestamp) -> str:
+    return f"{stamp.month}/{stamp.day}/{stamp:%y}\t{stamp.strftime('%I:%M').lstrip('0')}{stamp:%p}"[
+        :-1
+    ].lower()
+
+
+VARIANTS: dict[str, tuple[str, str, float, float]] = {
+    "WeatherLink": (
+        "\t\tTemp\tHi\tOut\n Date\tTime\tOut\tTemp\tHum\n"
+        + rows(lambda k, s, t: f"{s:%d/%m/%y}\t{s:%H:%M}\t{t:.2f}\t{t + 0.1:.1f}\t60"),
+        "Temp Out", 15.0, 15.22,
+    ),
+    "WeatherLink, 12 hours": (
+        "\t\tTemp\tHi\n Date\tTime\tOut\tTemp\n"
+        + rows(lambda k, s, t: f"{half(s)}\t{t:.2f}\t{t + 0.1:.1f}"),
+        "Temp Out", 15.0, 15.22,
+    ),
+    "HOBOware, French": (
+        '"Titre de tracé : grenier"\n"#";"Date Heure, GMT+01:00";"Temp., °C (LGR S/N: 1, SEN S/N: 1)"\n'
+        + rows(lambda k, s, t: f"{k + 1};{s:%d/%m/%Y %H:%M:%S};{comma(t, 3)}"),
+        "Temp., °C (LGR S/N: 1, SEN S/N: 1)", 15.0, 15.218,
+    ),
+    "HOBOlink": (
+        'Line#,Date,"Temp, °F (S-THB 1:1)","RH, % (S-THB 1:1)"\n'
+        + rows(lambda k, s, t: f"{k + 1},{s:%m/%d/%y %H:%M:%S},{t * 1.8 + 32:.3f},60"),
+        "Temp, °F (S-THB 1:1)", 15.0, 15.218,
+    ),
+    "Excel, USA, thousands": (
+        "Time,Power (W),T (F)\n"
+        + rows(lambda k, s, t: f'{us(s)} {s.hour}:{s:%M},"{1500 + k:,}",{t * 1.8 + 32:.1f}'),
+        "Power (W)", 1500.0, 1501.0,
+    ),
+    "Excel, Germany, thousands": (
+        "Zeit;Leistung [W];T [°C]\n"
+        + rows(lambda k, s, t: f"{s:%d.%m.%Y %H:%M};{1500 + k:,}".replace(",", ".") + f";{comma(t)}"),
+        "Leistung [W]", 1500.0, 1501.0,
+    ),
+    "Excel, thousands from 1000 on": (
+        "Zeit;Leistung [W]\n" + rows(lambda k, s, t: f"{s:%d.%m.%Y %H:%M};{900 + k:,}".replace(",", ".")),
+        "Leistung [W]", 900.0, 901.0,
+    ),
+    "TOA5": (
+        '"TOA5","CR1000","CR1000","1234","CR1000.Std.31","CPU:p.CR1","5555","T1"\n'
+        '"TIMESTAMP","RECORD","Air_Avg","WS"\n"TS","RN","Deg F","meters/second"\n"","","Avg","Smp"\n'
+        + rows(lambda k, s, t: f'"{s:%Y-%m-%d %H:%M:%S}",{k},{t * 1.8 + 32:.3f},"NAN"'),
+        "Air_Avg", 15.0, 15.218,
+    ),
+    "Testo, date and time apart": (
+        '"Datum";"Zeit";"Kanal 1 [°C]"\n'
+        + rows(lambda k, s, t: f"{s:%d.%m.%Y};{s:%H:%M:%S};{comma(t) if k % 50 != 7 else '----'}"),
+        "Kanal 1 [°C]", 15.0, 15.22,
+    ),
+    "Hukseflux": (
+        "Sensor: SR30-M2-D1\nSerial: 5556\n\nTimestamp (UTC+01:00),Irradiance (kW/m²)\n"
+        + rows(lambda k, s, t: f"{s:%Y-%m-%dT%H:%M:%S},{t / 1000:.5f}"),
+        "Irradiance (kW/m²)", 15.0, 15.22,
+    ),
+    "names of months": (
+        "time;T\n" + rows(lambda k, s, t: f"{s:%d-%b-%Y %H:%M};{t:.2f}"), "T", 15.0, 15.22,
+    ),
+    "milliseconds": (
+        "ts;T\n" + rows(lambda k, s, t: f"{(s.timestamp() - 3600.0) * 1000:.0f};{comma(t)}"),
+        "T", 15.0, 15.22,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_devices_and_locales(tmp_path: Path, name: str) -> None:
+    text, column, first, second = VARIANTS[name]
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    found = Measurements.from_table(tmp_path / "log.csv", timezone="UTC+1")
+    assert (found.index[0].isoformat(), found.grid.interval) == ("2023-10-20T00:00:00+01:00", 600.0)
+    assert len(found.data) == 432
+    assert found.series(column).iloc[:2].tolist() == pytest.approx([first, second], abs=0.006)
 
 
 # ---------------------------------------------------------------------- the command line

@@ -116,22 +116,11 @@ def sweep(
     )  # fmt: skip
     with Progress("members") as progress:
         store = sweep_into(
-            out,
-            described,
-            climate,
-            table,
-            measurements=measured,
+            out, described, climate, table, measurements=measured, objectives=kept,
             outputs=outputs or list(dict.fromkeys(statistic.output for statistic in kept.values())),
-            objectives=kept,
-            step=seconds(step),
-            scheme=scheme,
-            precision=precision,
-            start=start,
-            end=end,
-            workers=workers,
-            seed=None if samples is not None else seed,
-            progress=progress,
-        )
+            step=seconds(step), scheme=scheme, precision=precision, start=start, end=end, workers=workers,
+            seed=None if samples is not None else seed, progress=progress,
+        )  # fmt: skip
     return _print(store, as_json)
 
 

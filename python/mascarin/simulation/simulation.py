@@ -431,10 +431,7 @@ class Simulation(VectorRuns):
 
         site = self.building.site
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
-        record = self.climate.record
-        said = [note for note in record.provenance if record.of_year and ": warning: " in note]
-        of_file = [note.replace(": warning: ", ": ", 1) for note in said]
-        return (*sun, *of_file, *plausibility.warnings(self.building, self.notes))
+        return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[str, ...]:
         """Warnings of a run with a parameter vector, of which nothing else is kept.

@@ -30,6 +30,7 @@ _FORMATS: Final = {
 }  # fmt: skip
 #: Formats with names of months, in English, that are tried in turn.
 _NAMED: Final = (
+    "%Y%m%d:%H%M",
     "%d-%b-%Y %H:%M:%S", "%d-%b-%Y %H:%M", "%d-%b-%y %H:%M:%S", "%d-%b-%y %H:%M", "%d %b %Y %H:%M:%S",
     "%d %b %Y %H:%M", "%b %d %Y %H:%M:%S", "%b %d, %Y %I:%M:%S %p", "%a %b %d %H:%M:%S %Y",
 )  # fmt: skip

@@ -71,6 +71,8 @@ class Read:
         Decimal mark.
     decimal_stated : bool
         Whether the user states it.
+    decimal_evident : bool
+        Whether entries of the file can have this one alone.
     """
 
     frame: pd.DataFrame
@@ -80,6 +82,7 @@ class Read:
     units_line: int = 0
     decimal: str = "."
     decimal_stated: bool = False
+    decimal_evident: bool = False
 
 
 def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
@@ -127,6 +130,7 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
         notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip
     header = lines[layout.header] if layout.header < len(lines) else ""
+    header = layout.separator.join(layout.names) or header
     data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
     body = "\n".join([header + layout.separator * layout.trailing, *data])
     del lines, data
@@ -137,7 +141,9 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     _refuse_cut(last, layout, len(frame.columns), path.name, count)
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
     stated = decimal is not None
-    return Read(frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated)
+    return Read(
+        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated, layout.evident
+    )
 
 
 def _rows(lines: Sequence[str], layout: Layout) -> tuple[Lines, list[int]]:

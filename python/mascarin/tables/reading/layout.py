@@ -20,6 +20,7 @@ _BLOCK: Final = 3
 _DIGIT: Final = re.compile(r"[-+]?[.,]?\d")
 _COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 _POINT: Final = re.compile(r"[-+]?\d+\.\d+(?:[eE][-+]?\d+)?")
+_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
 _FORMAT: Final = re.compile(r"(?:yy|dd|mm|hh|ss)[-/.:, tydmhs]+", re.IGNORECASE)
 _BRACKETS: Final = re.compile(r"\[.*\]|\(.*\)|<.*>")
 _WORDS: Final = frozenset(
@@ -48,6 +49,10 @@ class Layout:
         The rows end with a separator that the header does not have.
     units : tuple of str
         Entries of the row of units below the names; empty without one.
+    evident : bool
+        Whether entries can have this decimal mark alone, or the user states it.
+    names : tuple of str
+        Names that are spread over two lines; empty where they are in the line of the header.
     """
 
     separator: str
@@ -56,6 +61,8 @@ class Layout:
     first: int
     trailing: bool = False
     units: tuple[str, ...] = ()
+    evident: bool = False
+    names: tuple[str, ...] = ()
 
 
 def decoded(raw: bytes, where: str) -> tuple[str, str]:
@@ -120,7 +127,7 @@ def find_layout(
         There is no header, or no separator in it.
     """
     header = skip_lines if skip_lines is not None else _header(lines, where, separator)
-    found = separator or _separator(lines[header] if header < len(lines) else "", where, header)
+    found = separator or _separator(lines, where, header)
     names = _cells(lines[header], found) if header < len(lines) else []
     units: tuple[str, ...] = ()
     first = header + 1
@@ -131,7 +138,21 @@ def find_layout(
         units, first = units or (tuple(cells) if _is_units(cells) else ()), first + 1
     sample = [_cells(line, found) for line in lines[first : first + _SEARCHED] if line.strip()]
     trailing = bool(sample) and all(len(row) == len(names) + 1 and not row[-1].strip() for row in sample)
-    return Layout(found, decimal or _decimal(sample), header, first, trailing, units)
+    mark, evident = (decimal, True) if decimal else _decimal(sample)
+    two = _names_of_two_lines(lines, header, found, names)
+    return Layout(found, mark, header, first, trailing, units, evident, two)
+
+
+def _names_of_two_lines(
+    lines: Sequence[str], header: int, mark: str, names: Sequence[str]
+) -> tuple[str, ...]:
+    """Names of WeatherLink, whose first words are in the line above that of date and time."""
+    if header == 0 or [name.lower() for name in names[:2]] != ["date", "time"]:
+        return ()
+    above = _cells(lines[header - 1], mark)
+    if len(above) != len(names) or any(above[:2]) or not any(above):
+        return ()
+    return tuple(" ".join(pair).strip() for pair in zip(above, names, strict=True))
 
 
 def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
@@ -225,18 +246,39 @@ def _is_labels(cells: Sequence[str]) -> bool:
     return not cells[0] and any(cells) and not any(_DIGIT.match(cell) for cell in cells)
 
 
-def _separator(header: str, where: str, line: int) -> str:
-    counts = {mark: header.count(mark) for mark in _MARKS}
-    best = max(counts, key=lambda mark: counts[mark])
-    if counts[best] == 0:
+def _separator(lines: Sequence[str], where: str, line: int) -> str:
+    """The mark that divides the names and the rows below into as many entries."""
+    header = lines[line] if line < len(lines) else ""
+    below = [text for text in lines[line + 1 : line + 8] if text.strip()]
+    fits: dict[str, tuple[int, int]] = {}
+    for mark in _MARKS:
+        count = len(_cells(header, mark))
+        if count > 1:
+            same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
+            fits[mark] = (same, header.count(mark))
+    if not fits:
         raise InputError(
             f"{where}:{line + 1}: no separator found in the header {header.strip()[:40]!r}, expected the "
             "names of columns; state separator, or skip_lines if the header is further down."
         )
-    return best
+    return max(fits, key=lambda mark: fits[mark])
 
 
-def _decimal(rows: Sequence[Sequence[str]]) -> str:
-    """The comma where entries have decimal commas and none has a point."""
-    comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
-    return "," if comma and not any(_POINT.fullmatch(cell) for row in rows for cell in row) else "."
+def _decimal(rows: Sequence[Sequence[str]]) -> tuple[str, bool]:
+    """The decimal mark, and whether entries can have this one alone.
+
+    It is the comma where entries have decimal commas and none has a point that stands before decimals: three
+    digits behind a mark may be thousands.
+    """
+    cells = [cell for row in rows for cell in row]
+    comma = any(_COMMA.fullmatch(cell) for cell in cells)
+    evident = {
+        mark: any(pattern.fullmatch(cell) and not _THOUSANDS.fullmatch(cell) for cell in cells)
+        for mark, pattern in ((",", _COMMA), (".", _POINT))
+    }
+    if evident[","] and not evident["."]:
+        return ",", True
+    if evident["."]:
+        return ".", not evident[","]
+    point = any(_POINT.fullmatch(cell) for cell in cells)
+    return ("," if comma and not point else "."), False

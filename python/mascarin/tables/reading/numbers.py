@@ -28,7 +28,13 @@ _GROUPED: Final = 1000.0
 
 
 def parse_numbers(
-    series: pd.Series[Any], decimal: str, lines: Lines, where: str, *, stated: bool = False
+    series: pd.Series[Any],
+    decimal: str,
+    lines: Lines,
+    where: str,
+    *,
+    stated: bool = False,
+    evident: bool = False,
 ) -> Array:
     """A column as numbers, cell by cell.
 
@@ -44,6 +50,8 @@ def parse_numbers(
         File and column, for errors.
     stated : bool
         Whether the user states the decimal mark.
+    evident : bool
+        Whether other entries of the file can have this mark alone.
 
     Returns
     -------
@@ -60,7 +68,7 @@ def parse_numbers(
     if pd.api.types.is_numeric_dtype(series.dtype):
         values = series.to_numpy(dtype=np.float64, na_value=np.nan).copy()
     else:
-        values = _of_texts(series, decimal, stated, lines, where)
+        values = _of_texts(series, decimal, stated, evident, lines, where)
     infinite = np.flatnonzero(np.isinf(values))
     if len(infinite):
         raise InputError(
@@ -69,18 +77,20 @@ def parse_numbers(
     return values
 
 
-def _of_texts(series: pd.Series[Any], decimal: str, stated: bool, lines: Lines, where: str) -> Array:
+def _of_texts(
+    series: pd.Series[Any], decimal: str, stated: bool, evident: bool, lines: Lines, where: str
+) -> Array:
     import pandas as pd
 
     codes, uniques = pd.factorize(series)
     texts = ["" if isinstance(entry, float) and np.isnan(entry) else str(entry).strip() for entry in uniques]
     plain = [_GROUPS.sub("", text) for text in texts]
     written = [text for text in plain if _NUMBER.fullmatch(text)]
-    mark, groups = (
-        (decimal, "," if decimal == "." else ".")
-        if stated
-        else marks_of(written, decimal, lambda text: _line(series, text, lines), where)
-    )
+    other = "," if decimal == "." else "."
+    if stated or (evident and _can_be_thousands(written, other)):
+        mark, groups = decimal, other
+    else:
+        mark, groups = marks_of(written, decimal, lambda text: _line(series, text, lines), where)
     numbers = np.full(len(texts) + 1, np.nan)  # the last one is that of missing entries
     for k, text in enumerate(plain):
         if text.lower() in EMPTY or text.lower() in ("inf", "-inf"):
@@ -114,6 +124,12 @@ def _number(text: str, mark: str, groups: str) -> float:
         return float(plain.replace(mark, "."))
     except ValueError:
         return float("nan")
+
+
+def _can_be_thousands(texts: Sequence[str], mark: str) -> bool:
+    """Whether a mark stands between groups of thousands in all entries that have it."""
+    pattern = rf"[-+\u2212]?[1-9]\d{{0,2}}(?:{re.escape(mark)}\d{{3}})+"
+    return all(re.fullmatch(pattern, text) for text in texts if mark in text)
 
 
 _POINTS: Final = [

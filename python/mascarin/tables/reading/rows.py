@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Lines
+from mascarin.tables.reading.numbers import EMPTY
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,7 +103,7 @@ def year_day_hour(frame: pd.DataFrame) -> list[str]:
 #: A date without a time, and a time of day.
 _PAIR: Final = (
     r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}",
-    r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?:\s*[AaPp]\.?[Mm]\.?)?",
+    r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?:\s*[AaPp]\.?(?:[Mm]\.?)?)?",
 )
 
 
@@ -187,3 +188,17 @@ def without_entries(frame: pd.DataFrame, missing: Sequence[str | float]) -> pd.D
         except ValueError:
             continue
     return frame.mask(frame.isin(values))
+
+
+def has_words(series: pd.Series[Any]) -> bool:
+    """Whether a column has entries, and all of them are words that mean something.
+
+    Parameters
+    ----------
+    series : pandas.Series
+        As read.
+    """
+    entries = series.dropna()
+    if not len(entries) or has_numbers(series):
+        return False
+    return not bool(entries.astype(str).str.strip().str.lower().isin(EMPTY).all())

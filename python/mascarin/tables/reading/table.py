@@ -20,7 +20,7 @@ from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone
 from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
 from mascarin.tables.reading.numbers import parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
-    has_numbers,
+    has_words,
     rows_with_values,
     time_text,
     without_entries,
@@ -74,6 +74,8 @@ class Table:
         Decimal mark of the file.
     decimal_stated : bool
         Whether the user states it.
+    decimal_evident : bool
+        Whether entries of the file can have this one alone.
     """
 
     frame: pd.DataFrame
@@ -87,6 +89,7 @@ class Table:
     units_line: int = 0
     decimal: str = "."
     decimal_stated: bool = False
+    decimal_evident: bool = False
 
     @property
     def names(self) -> list[str]:
@@ -96,10 +99,7 @@ class Table:
     @property
     def words(self) -> list[str]:
         """Columns that hold words alone."""
-        whole = self.frame.columns.is_unique
-        return [
-            n for n in self.names if whole and self.frame[n].notna().any() and not has_numbers(self.frame[n])
-        ]
+        return [name for name in self.names if self.frame.columns.is_unique and has_words(self.frame[name])]
 
     @property
     def numeric(self) -> list[str]:
@@ -146,6 +146,7 @@ class Table:
             self.lines,
             place,
             stated=self.decimal_stated,
+            evident=self.decimal_evident,
         )
 
 
@@ -246,6 +247,7 @@ def read_table(
         units_line=read.units_line,
         decimal=read.decimal,
         decimal_stated=read.decimal_stated,
+        decimal_evident=read.decimal_evident,
     )
 
 
@@ -313,16 +315,12 @@ def _regular(
     interval = expected if expected is not None else float(lengths[commonest])
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
-    if len(odd):
-        moved = _without_jitter(seconds, expected, interval, tolerance)
-        if moved is not None:
-            seconds, interval, largest = moved
-            text = f"stamps were moved to the grid of {_length(interval)}, by {largest:g} s at most."
-            said = (*said, f"{where}: {text}")
-            index = stamps_of(seconds, zone)
-            gaps = np.diff(seconds)
-            ratio, odd = gaps / interval, odd[:0]
-            frame = frame.set_axis(index, axis=0)
+    moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
+    if moved is not None:
+        seconds, interval, text = moved
+        said, index = (*said, f"{where}: {text}"), stamps_of(seconds, zone)
+        gaps = np.diff(seconds)
+        ratio, odd = gaps / interval, odd[:0]
     if len(odd):
         row = int(odd[0])
         raise InputError(
@@ -354,13 +352,15 @@ def _regular(
         grid = stamps_of(seconds[0] + interval * np.arange(len(whole)), zone)
         frame = frame.set_axis(stamps_of(seconds[0] + interval * place, zone), axis=0).reindex(grid)
         lines = whole
+    if moved is not None and not absent:
+        frame = frame.set_axis(index, axis=0)
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
 
 
 def _without_jitter(
     seconds: Array, expected: float | None, interval: float, tolerance: float | None
-) -> tuple[Array, float, float] | None:
-    """Stamps on the grid from which the clock deviates a little, the step, and the largest deviation."""
+) -> tuple[Array, float, str] | None:
+    """Stamps on the grid from which the clock deviates a little, the step, and a sentence."""
     middle = float(np.median(np.diff(seconds)))
     steps = (
         [expected] if expected is not None else [60.0 * round(middle / 60.0), float(round(middle)), interval]
@@ -369,7 +369,8 @@ def _without_jitter(
         if step > 0.0:
             found = on_grid(seconds, step, _JITTER * step if tolerance is None else tolerance)
             if found is not None:
-                return found[0], step, found[1]
+                said = f"stamps were moved to the grid of {_length(step)}, by {found[1]:g} s at most."
+                return found[0], step, said
     return None
 
 
