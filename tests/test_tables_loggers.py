@@ -33,7 +33,7 @@ def weather(source: str | Path, **columns: Any) -> Climate:
     return Climate.from_table(path, timezone="UTC+1", columns=columns, absent=absent, check_sun=False)
 
 
-def written(folder: Path, head: str, *values: list[object], separator: str = ",") -> Path:
+def written(folder: Path, head: str, *values: list[Any], separator: str = ",") -> Path:
     path = folder / "log.csv"
     rows = [
         separator.join([stamp, *map(str, row)])
