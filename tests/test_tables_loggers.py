@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -426,6 +427,47 @@ def test_devices_and_locales(tmp_path: Path, name: str) -> None:
     assert (found.index[0].isoformat(), found.grid.interval) == ("2023-10-20T00:00:00+01:00", 600.0)
     assert len(found.data) == 432
     assert found.series(column).iloc[:2].tolist() == pytest.approx([first, second], abs=0.006)
+
+
+# ---------------------------------------------------------------------- spreadsheets
+
+
+def test_a_spreadsheet_is_read_as_its_table(tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.title = "notes"
+    sheet = book.create_sheet("log")
+    sheet.append(["Logger 12", None, None, None])
+    sheet.append(["Time", "T [°F]", "P [W]", "text"])
+    for stamp, air in zip(STAMPS, AIR, strict=True):
+        whole = 998 if stamp.minute else 1.523
+        sheet.append([stamp.to_pydatetime(), air * 1.8 + 32.0, whole, f"{air:.1f}".replace(".", ",")])
+    book.save(tmp_path / "log.xlsx")
+    found = Measurements.from_table(tmp_path / "log.xlsx", timezone="UTC+1", columns=["T [°F]", "P [W]"])
+    assert (len(found.data), found.grid.interval) == (432, 600.0)
+    assert found.data["T [°F]"].to_numpy() == pytest.approx(AIR, abs=1e-9)
+    assert found.data["P [W]"].iloc[:2].tolist() == [1.523, 998.0]
+    with pytest.raises(InputError, match=r"column 'text', line 3: found '15,0', expected a number"):
+        Measurements.from_table(tmp_path / "log.xlsx", timezone="UTC+1", columns=["text"])
+    (tmp_path / "bad.xlsx").write_bytes(b"PK\x03\x04 no book")
+    with pytest.raises(
+        InputError, match=r"bad.xlsx: cannot be read as a spreadsheet .*save the sheet as CSV"
+    ):
+        Measurements.from_table(tmp_path / "bad.xlsx", timezone="UTC+1")
+    openpyxl.Workbook().save(tmp_path / "empty.xlsx")
+    with pytest.raises(InputError, match="no cell with content"):
+        Measurements.from_table(tmp_path / "empty.xlsx", timezone="UTC+1")
+
+
+def test_a_spreadsheet_without_the_package_names_both_ways(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    (tmp_path / "log.xlsx").write_bytes(b"PK")
+    with pytest.raises(
+        InputError, match=r"needs openpyxl: install mascarin\[xlsx\], or save the sheet as CSV"
+    ):
+        Measurements.from_table(tmp_path / "log.xlsx", timezone="UTC+1")
 
 
 # ---------------------------------------------------------------------- the command line

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Column, Measurements
 
 _YAML: Final = (".yaml", ".yml")
-_TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq")
+_TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq", ".xlsx", ".xlsm")
 _UNIT: Final = re.compile(r"(?P<column>.*\S)\s+\[(?P<unit>[^\]]+)\]")
 _NONE: Final = "none"
 

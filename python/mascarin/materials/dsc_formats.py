@@ -162,9 +162,9 @@ def _facts(lines: Sequence[str]) -> tuple[float | None, bool | None]:
         for pattern in _MASS:
             found = pattern.match(line.strip())
             if found is not None and mass is None:
-                mass = float(found["mass"].replace(",", ".")) * (
-                    1000.0 if found["unit"].lower() == "g" else 1.0
-                )
+                with contextlib.suppress(ValueError):  # no number: as if it were not stated
+                    factor = 1000.0 if found["unit"].lower() == "g" else 1.0
+                    mass = float(found["mass"].replace(",", ".")) * factor
         for exothermal, meanings in _EXOTHERMAL:
             found = exothermal.match(line.strip())
             if found is not None:

@@ -12,7 +12,7 @@ import numpy as np
 from mascarin._io.cache import Cached, cached
 from mascarin.tables import columns, interval_labels, timezones, units
 from mascarin.tables.grid import Grid
-from mascarin.tables.reading import clocks, files, layout, numbers, records, rows, table
+from mascarin.tables.reading import clocks, files, layout, numbers, records, rows, spreadsheets, table
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.record import Origin, Record
 from mascarin.tables.timezones import parse_timezone
@@ -21,7 +21,8 @@ AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 #: Modules that make a record of a table, beside that of the caller.
 _CODE: Final = (
-    clocks, columns, files, interval_labels, layout, numbers, records, rows, table, timezones, units,
+    clocks, columns, files, interval_labels, layout, numbers, records, rows, spreadsheets, table, timezones,
+    units,
 )  # fmt: skip
 _LINES: Final = "lines"
 _KNOTS: Final = "knots"

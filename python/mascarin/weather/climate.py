@@ -149,7 +149,7 @@ class Climate(RecordView[WeatherRecord]):
         ----------
         path : str or Path
             The file; hourly, one year.
-        typical, year, elsewhere
+        typical, year, elsewhere, check_sun
             As in `from_epw`.
 
         Returns

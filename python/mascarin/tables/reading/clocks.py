@@ -259,11 +259,14 @@ def _of_dates(
         return _with_names(written)
     a, b, c = (parts[name].to_numpy(dtype=np.int64) for name in "abc")
     hour = parts["hour"].fillna("0").to_numpy(dtype=np.int64)
+    minute = parts["minute"].fillna("0").to_numpy(dtype=np.int64)
+    second = parts["second"].fillna("0").str.replace(",", ".").to_numpy(dtype=np.float64)
     half = parts["half"].str.lower()
+    if np.any((hour > 24) | (minute > 59) | (second >= 60.0)) or (half.notna().any() and np.any(hour > 12)):
+        return None
     if half.notna().any():
         hour = hour % 12 + 12 * (half == "p").to_numpy(dtype=np.int64)
-    second = parts["second"].fillna("0").str.replace(",", ".").to_numpy(dtype=np.float64)
-    seconds = 3600.0 * hour + 60.0 * parts["minute"].fillna("0").to_numpy(dtype=np.int64) + second
+    seconds = 3600.0 * hour + 60.0 * minute + second
     orders = {"ymd": (a, b, c), "dmy": (c, b, a), "mdy": (c, a, b)}
     first_is_year = bool((parts["a"].str.len() == 4).all())
     found = {}
@@ -362,7 +365,7 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
 
 # ---------------------------------------------------------------------- zones in names, jitter
 
-_ZONE: Final = re.compile(r"\b(?:GMT|UTC)\s*(?P<sign>[+-−])\s*(?P<hours>\d{1,2})(?::?(?P<minutes>\d{2}))?\b")
+_ZONE: Final = re.compile(r"\b(?:GMT|UTC)\s*(?P<sign>[-+−])\s*(?P<hours>\d{1,2})(?::?(?P<minutes>\d{2}))?\b")
 
 
 def offset_in_name(name: str) -> float | None:
@@ -387,6 +390,8 @@ def offset_in_name(name: str) -> float | None:
     if found is None:
         return None
     hours = int(found["hours"]) + int(found["minutes"] or 0) / 60.0
+    if hours > 14.0:
+        return None
     return -hours if found["sign"] != "+" else hours
 
 

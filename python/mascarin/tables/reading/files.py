@@ -1,4 +1,4 @@
-"""Files of tables: CSV and Parquet, without any change."""
+"""Files of tables: CSV, spreadsheets and Parquet, without any change."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.layout import Layout, decoded, find_layout
 from mascarin.tables.reading.numbers import suspicious_decimals
+from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,12 +87,12 @@ class Read:
 
 
 def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
-    """Read a CSV or Parquet file without changing it.
+    """Read a CSV or Parquet file, or a spreadsheet, without changing it.
 
     Parameters
     ----------
     path : Path
-        The file; its ending shows whether it is Parquet.
+        The file; its ending shows whether it is Parquet or a spreadsheet.
     separator, decimal : str or None
         Between entries of a CSV file, and its decimal mark; None: found.
     skip_lines : int or None
@@ -119,13 +120,19 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
             ) from error
         except (ValueError, OSError) as error:
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
-    text, encoding = decoded(path.read_bytes(), path.name)
+    sheet: tuple[str, ...] = ()
+    if path.suffix.lower() in ENDINGS:
+        text, sheet = sheet_text(path)
+        # Numbers of cells have no marks that could be read in two ways.
+        encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
+    else:
+        text, encoding = decoded(path.read_bytes(), path.name)
     lines = text.splitlines()
     last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
     del text  # a large table is in memory once, as far as that is possible
     layout = find_layout(lines, path.name, separator, decimal, skip_lines)
     rows, repeated = _rows(lines, layout)
-    notes = _notes(layout, encoding, lines, path.name)
+    notes = (*sheet, *_notes(layout, encoding, lines, path.name))
     if repeated:
         notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip

@@ -118,7 +118,11 @@ def _line(series: pd.Series[Any], text: str, lines: Lines) -> int:
 
 def _number(text: str, mark: str, groups: str) -> float:
     plain = text.replace("\u2212", "-")
-    if groups:
+    if groups in plain and groups:
+        if not re.fullmatch(
+            rf"[-+]?\d{{1,3}}(?:{re.escape(groups)}\d{{3}})+(?:{re.escape(mark)}\d*)?", plain
+        ):
+            return float("nan")
         plain = plain.replace(groups, "")
     try:
         return float(plain.replace(mark, "."))
