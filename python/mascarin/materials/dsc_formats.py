@@ -7,6 +7,7 @@ units below it if there is one.
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import re

@@ -24,7 +24,7 @@ def record_of_columns(
     table : Table
         From `read_table`.
     columns : iterable or mapping or None
-        Columns to read, or name -> column or `{column, unit, scale, offset, kind}`. None: all.
+        Columns to read, or name -> column or `{column, unit, scale, offset, kind, overrule}`. None: all.
     mean : iterable of str
         Columns that are means over their interval; the others are values at the stamp.
     stamps : str
