@@ -66,6 +66,11 @@ def run_inputs(
     needed = measured_columns(building)
     measured = None
     if weather.suffix.lower() in _YAML:
+        if not check_sun:
+            raise InputError(
+                f"--no-check-sun: found beside {weather}; expected check_sun: false in that file, under "
+                "climate"
+            )
         if columns:
             raise InputError(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"

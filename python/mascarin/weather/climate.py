@@ -208,7 +208,8 @@ class Climate(RecordView[WeatherRecord]):
             IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
             frame whose stamps have a time zone.
         columns : mapping
-            Channel -> name of its column, or `{column, unit, scale, offset, kind, overrule}`, or a `Column`. Beside
+            Channel -> name of its column, or `{column, unit, scale, offset, kind, overrule}`, or a `Column`.
+            Beside
             the channels, `relative_humidity` [%] is understood; the dew point is computed from it.
         extra : iterable or mapping
             Further measured columns, by their names: temperatures of boundaries, irradiances on planes.

@@ -81,7 +81,8 @@ class Measurements(RecordView[Record]):
             IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
             frame whose stamps have a time zone.
         columns : iterable or mapping, optional
-            Columns to read, or name -> column or `{column, unit, scale, offset, kind, overrule}`. Default: all.
+            Columns to read, or name -> column or `{column, unit, scale, offset, kind, overrule}`. Default:
+            all.
         mean : iterable of str
             Columns that are means over their interval; the others are values at the stamp.
         stamps : str

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
@@ -25,6 +26,8 @@ _GROUPS: Final = re.compile(r"(?<=\d)['\u2019\u00a0\u202f\u2009 ](?=\d{3}(?!\d))
 _NUMBER: Final = re.compile(r"[-+\u2212]?(?:\d+(?:[.,]\d*)*|[.,]\d+)(?:[eE][-+]?\d+)?")
 #: Values from which on a number without a mark shows that there are no groups of thousands.
 _GROUPED: Final = 1000.0
+#: Difference of the sizes, as a logarithm, that decides between two readings: a factor of five.
+_CLEAR: Final = math.log(5.0)
 
 
 def parse_numbers(
@@ -257,15 +260,23 @@ def _reading(entries: Sequence[str], texts: Sequence[str], mark: str) -> str:
         return "thousands"
     if not all(re.fullmatch(rf"[-+\u2212]?[1-9]\d{{0,2}}{escaped}\d{{3}}", text) for text in entries):
         return "decimal"
-    plain = [text for text in texts if mark not in text]
-    if not [text for text in plain if text.lstrip("-+") not in ("0", "00")]:
+    plain = [abs(float(text)) for text in texts if re.fullmatch(r"[-+]?\d+", text) and float(text)]
+    if not plain:
         return "decimal"  # three decimals in every entry are usual in loggers
-    large = [text for text in plain if text.lstrip("-+").isdigit() and float(text) >= _GROUPED]
-    return "open" if large else "thousands" if len(plain) * 50 >= len(texts) else "open"
+    if max(plain) >= _GROUPED:
+        # No groups in one entry: either the mark is decimal, or two programs wrote the column.
+        return "open"
+    # The values of a column are of one size: 998 beside 1.500 are thousands, 100 beside 99.876 are decimals.
+    usual = float(np.median([float(re.sub(r"[^\d]", "", text)) for text in entries]))
+    apart = math.log(usual / float(np.median(plain)))
+    as_thousands, as_decimals = abs(apart), abs(apart - math.log(1000.0))
+    if as_thousands < as_decimals - _CLEAR:
+        return "thousands"
+    return "decimal" if as_decimals < as_thousands - _CLEAR else "open"
 
 
 def _refuse(entries: Sequence[str], texts: Sequence[str], mark: str, line_of: Any, where: str) -> None:
-    plain = next(text for text in texts if mark not in text)
+    plain = max((text for text in texts if mark not in text), key=len)
     raise InputError(
         f"{where}: found {entries[0]!r} in line {line_of(entries[0])} beside {plain!r} in line "
         f"{line_of(plain)}: {mark!r} can stand before decimals or between thousands; expected entries that "
