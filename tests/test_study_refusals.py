@@ -636,10 +636,6 @@ def words(table: pd.DataFrame, column: str) -> None:
     table.loc[300, column] = "error"
 
 
-def american(table: pd.DataFrame, column: str) -> None:
-    table[column] = pd.to_datetime(table[column]).dt.strftime("%m/%d/%Y %H:%M")
-
-
 def twice(table: pd.DataFrame, column: str) -> None:
     table.loc[300, column] = str(table[column].iloc[299])
 
@@ -654,11 +650,10 @@ TABLES: dict[str, tuple[Callable[[pd.DataFrame, str], None], str, tuple[str, ...
     "words in the weather": (
         words,
         "air",
-        ("study.yaml:4: climate.measured", "line 302", "'error'", "`missing`"),
+        ("study.yaml:4: climate.measured", "line 302", "'error'", "missing: ['error']"),
     ),
     "words in a sensor": (words, "core", ("study.yaml:14: sensors.core.column", "line 302", "'error'")),
     "a code in a sensor": (code, "core", ("study.yaml:14: sensors.core.column", "-9999", "missing: [-9999]")),
-    "dates of America": (american, "time", ("logger.csv:2", "'03/01/2023 00:00'", "time_format")),
     "a stamp twice": (twice, "time", ("2023-03-03 01:50",)),
     "a dead sensor that is masked": (
         dead,

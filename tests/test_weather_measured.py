@@ -45,7 +45,13 @@ def test_real_hourly_record(data_dir: Path) -> None:
     assert row["global_horizontal"] == pytest.approx(stamped * 1e4 / 3600.0)
     assert row["pressure"] == pytest.approx(100.0 * raw["PSTAT"].iloc[11])
     text = " ".join(climate.provenance)
-    for said in ("9172 rows of 1 h", "the end of its interval", "J/cm2 to W/m2", "Erbs", "Kimball 1928"):
+    for said in (
+        "9172 rows of 1 h",
+        "the end of its interval",
+        "J/cm2 (as stated) converted to W/m2",
+        "Erbs",
+        "Kimball 1928",
+    ):
         assert said in text
     assert summary(climate)["sha256"] == "4bc1d1e3dace763a92590536ecc5c39e27362187139d58153eaea5a360b56f8c"
 
@@ -294,8 +300,8 @@ def test_kelvin_without_a_unit_is_refused_and_with_it_taken(tmp_path: Path) -> N
         return np.asarray(climate.forcing(Place(45.0, 0.0), "2024-06-01", "2024-06-02", 3600.0)[..., 0])
 
     words = (
-        r"^kelvin.csv:2: air_temperature is 283.15 at 2024-06-01 00:00, .* more, expected -90 .. 65 degC; "
-        "if the column is in another unit, write it .unit: K or"
+        r"^kelvin.csv:2: air_temperature: found a mean of 283.2 .* degC in the column 'T', for which no unit "
+        r"is stated; .* They look like K: state the unit, .column: 'T', unit: 'K'."
     )
     with pytest.raises(InputError, match=words):
         read({"column": "T"})

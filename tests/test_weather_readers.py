@@ -141,7 +141,11 @@ DAMAGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "a row twice": (lambda x: [*x[:99], x[98], *x[99:]], "site.epw:100: found .* a row is missing or twice"),
     "no location": (lambda x: x[1:], "site.epw:1: expected the LOCATION line"),
     "latitude": (lambda x: changed(x, 0, set_field(6, "398.3")), "site.epw:1: latitude is '398.3'"),
-    "half-hourly": (lambda x: changed(x, 7, set_field(2, "2")), "site.epw:8: 2 records per hour, expected 1"),
+    "half-hourly": (
+        lambda x: changed(x, 7, set_field(2, "2")),
+        "site.epw:10: .* expected 2 rows of each hour",
+    ),
+    "seven an hour": (lambda x: changed(x, 7, set_field(2, "7")), "site.epw:8: found '7' records per hour"),
     "date": (
         lambda x: changed(x, 20, set_field(1, "Jan")),
         "site.epw:21: date .* is not year,month,day,hour",
@@ -169,8 +173,9 @@ def test_codes_for_missing_values_in_epw(epw_lines: list[str], tmp_path: Path) -
     path.write_text("\n".join(lines), encoding="utf-8")
     climate = Climate.from_epw(path)
     assert climate.site is not None
-    with pytest.raises(InputError, match=r"infrared has no value"):
-        climate.forcing(climate.site, "2001-01-01", "2001-01-02", 3600.0)
+    infrared = climate.forcing(climate.site, "2001-01-01", "2001-01-02", 3600.0)[..., 3]
+    assert np.isnan(infrared).all()
+    assert any("warning: infrared has no value in 4 of 8760 rows" in note for note in climate.provenance)
     assert climate.forcing(climate.site, "2001-01-02", "2001-01-03", 3600.0).shape[0] == 24
 
 
@@ -258,8 +263,8 @@ def test_impossible_values_are_refused_where_they_are_used(epw_lines: list[str],
 def test_infrared_of_zero_is_none(epw_lines: list[str], tmp_path: Path) -> None:
     climate = changed_epw(epw_lines, 100, 12, "0", tmp_path)
     assert climate.site is not None
-    with pytest.raises(InputError, match=r"^site.epw:100: infrared has no value"):
-        climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)
+    assert np.isnan(climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)[..., 3]).all()
+    assert not np.isnan(climate.forcing(climate.site, "2001-02-01", "2001-03-01", 3600.0)[..., 3]).any()
 
 
 def test_a_leap_year_without_its_day_names_a_remedy_in_the_file(epw_lines: list[str], tmp_path: Path) -> None:

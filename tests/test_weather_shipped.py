@@ -124,7 +124,7 @@ def test_gaps_and_stuck_values_are_shown(
         lines[row] = ",".join(fields)
     for row in range(5000, 5010):
         fields = lines[row].split(",")
-        fields[7] = "99.9"
+        fields[9] = "999999"
         lines[row] = ",".join(fields)
     (tmp_path / "bad.epw").write_text("\n".join(lines) + "\n")
     assert cli.main(["weather", str(tmp_path / "bad.epw")]) == 0

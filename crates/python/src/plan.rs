@@ -10,8 +10,8 @@ use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::run::ensemble;
 use mascarin_engine::run::physical_limits::Outlier;
 use mascarin_engine::run::ratings::window_ratings;
-use mascarin_engine::run::{Run, simulate_in_blocks};
 use mascarin_engine::run::validity::OutOfRange;
+use mascarin_engine::run::{Run, simulate_in_blocks};
 use mascarin_engine::vapour::VapourFlow;
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 from mascarin._io import identity
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import (
+    CheckSun,
     Columns,
     Flag,
     MeasuredTable,
@@ -61,6 +62,7 @@ def explore(
     no_open: Annotated[bool, Flag] = False,
     settings: Settings = None,
     allow_outside: Outside = False,
+    check_sun: CheckSun = True,
 ) -> None:
     """Move sliders and see the curves of a building.
 
@@ -100,7 +102,7 @@ def explore(
     with lines_named(building), identity.outputs(target):
         climate, measured = run_inputs(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
-            allow_outside=allow_outside,
+            allow_outside=allow_outside, check_sun=check_sun,
         )  # fmt: skip
         options: dict[str, Any] = {
             "start": start,

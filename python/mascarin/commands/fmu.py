@@ -10,7 +10,15 @@ from cyclopts import Parameter
 
 from mascarin._io.locks import writing
 from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import Outside, Settings, Step, matching_outputs, read_building, seconds
+from mascarin.commands.inputs import (
+    CheckSun,
+    Outside,
+    Settings,
+    Step,
+    matching_outputs,
+    read_building,
+    seconds,
+)
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError
@@ -38,6 +46,7 @@ def fmu(
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
     allow_outside: Outside = False,
+    check_sun: CheckSun = True,
     fmi: Literal["3.0", "2.0"] = "3.0",
 ) -> int:
     """Write a building as a unit for co-simulation (FMU).
@@ -101,6 +110,7 @@ def fmu(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
+            check_sun=check_sun,
         )
         simulation = Simulation(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,

@@ -55,11 +55,16 @@ Columns = Annotated[
         name="--column",
         negative="",
         help="Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as "
-        '"air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be '
-        "given several times.",
+        '"air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. A unit '
+        "that the file states is used without being repeated; [km/h!] holds although the file states another "
+        "one. Can be given several times.",
     ),
 ]
 Zone = Annotated[str | None, Parameter(help="Time zone of measured tables. Default: that of the site.")]
+CheckSun = Annotated[
+    bool,
+    Parameter(help="Refuse a weather file or table whose radiation does not follow the sun of its place."),
+]
 Stamps = Annotated[
     Literal["start", "end"],
     Parameter(help="Which end of its interval a stamp of a measured table marks."),
@@ -171,7 +176,7 @@ def _suggestion(pattern: str, names: Sequence[str]) -> str:
     return did_you_mean(pattern, near or names)
 
 
-def read_weather(file: Path) -> Climate:
+def read_weather(file: Path, *, check_sun: bool = True) -> Climate:
     """Read a weather file, whose name gives its format, or a climate that comes with Mascarin.
 
     Raises
@@ -183,12 +188,12 @@ def read_weather(file: Path) -> Climate:
     from mascarin.weather.shipped import PREFIX
 
     if str(file).startswith(PREFIX):
-        return Climate.from_epw(file)
+        return Climate.from_epw(file, check_sun=check_sun)
     match file.suffix.lower():
         case ".epw":
-            return Climate.from_epw(file)
+            return Climate.from_epw(file, check_sun=check_sun)
         case ".csv":
-            return Climate.from_tmy(file)
+            return Climate.from_tmy(file, check_sun=check_sun)
         case suffix:
             raise InputError(
                 f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "

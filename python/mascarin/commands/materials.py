@@ -214,6 +214,7 @@ def dsc(
     rate: float | None = None,
     mass: float | None = None,
     specific_heat: str | None = None,
+    segments: Annotated[list[str] | None, Parameter(name="--segment", negative="")] = None,
     melting: Annotated[str | None, Parameter(help="Range of melting, as LOW..HIGH in degC.")] = None,
     conductivity: str | None = None,
     density: str | None = None,
@@ -222,9 +223,10 @@ def dsc(
 ) -> None:
     """Make a phase-change material from a DSC measurement.
 
-    The file is CSV: a column of temperature, and heat flow, apparent specific heat or enthalpy, with units in
-    the names, such as "temperature [degC]" and "cp heating [J/(g K)]". Prints latent heat, onset, peak and
-    end, and how closely each law fits.
+    The file is an export of a calorimeter (NETZSCH Proteus, Mettler STARe, TA Universal Analysis, TRIOS), or
+    CSV: a column of temperature, and heat flow, apparent specific heat or enthalpy, with units in the names,
+    such as "temperature [degC]" and "cp heating [J/(g K)]". Prints latent heat, onset, peak and end, and how
+    closely each law fits.
 
     Parameters
     ----------
@@ -242,6 +244,9 @@ def dsc(
         Heating rate, for a heat flow without a time column. [K/min]
     mass : float
         Mass of the sample, for a heat flow of the whole sample. [mg]
+    segments : list of str
+        Segment of the file to use, such as that of the second heating; can be given several times. Default:
+        all that heat or cool.
     specific_heat : str
         SOLID,LIQUID, if the baseline was subtracted from the signal. [J/(kg K)]
     conductivity : str
@@ -262,6 +267,7 @@ def dsc(
         mass=mass,
         specific_heat=_values(specific_heat, "--specific-heat", 2),
         melting_range=span,
+        segments=segments or (),
     )
     described = material.description(
         law,

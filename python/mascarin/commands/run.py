@@ -14,6 +14,7 @@ from mascarin._io.locks import writing
 from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
+    CheckSun,
     Columns,
     MeasuredTable,
     Outside,
@@ -64,6 +65,7 @@ def run(
     initial: float | None = None,
     settings: Settings = None,
     allow_outside: Outside = False,
+    check_sun: CheckSun = True,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -112,6 +114,7 @@ def run(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
+            check_sun=check_sun,
         )
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,

@@ -184,10 +184,14 @@ def validate(
 
 def _open(file: str, allow_outside: bool) -> Study:
     """Open a study, and say on standard error what is suspicious in its tables and what is left out."""
+    from mascarin.building.engine_input import measured_columns
+    from mascarin.commands.tables import show_columns
     from mascarin.examples import locate
     from mascarin.study import Study
 
     opened = Study.from_yaml(locate(file), allow_outside=allow_outside)
+    sensors = {name for entry in opened.file.sensors.values() for name in entry.columns}
+    show_columns(opened.climate, opened.measurements, sensors | set(measured_columns(opened.building)))
     said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
     lines = [note for note in said if ": warning: " in note]
     if opened.quality:

@@ -13,6 +13,7 @@ from mascarin._io.tables import read_csv
 from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
+    CheckSun,
     Columns,
     MeasuredTable,
     Outside,
@@ -60,6 +61,7 @@ def sweep(
     workers: int | None = None,
     settings: Settings = None,
     allow_outside: Outside = False,
+    check_sun: CheckSun = True,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with many parameter values.
@@ -113,26 +115,15 @@ def sweep(
     kept = {text: Statistic.read(text) for text in objectives or ()}
     climate, measured = run_inputs(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
-        allow_outside=allow_outside,
+        allow_outside=allow_outside, check_sun=check_sun,
     )  # fmt: skip
     with lines_named(building), Progress("members") as progress:
         store = sweep_into(
-            out,
-            described,
-            climate,
-            table,
-            measurements=measured,
+            out, described, climate, table, measurements=measured, objectives=kept,
             outputs=outputs or list(dict.fromkeys(statistic.output for statistic in kept.values())),
-            objectives=kept,
-            step=seconds(step),
-            scheme=scheme,
-            precision=precision,
-            start=start,
-            end=end,
-            workers=workers,
-            seed=None if samples is not None else seed,
-            progress=progress,
-        )
+            step=seconds(step), scheme=scheme, precision=precision, start=start, end=end, workers=workers,
+            seed=None if samples is not None else seed, progress=progress,
+        )  # fmt: skip
     return _print(store, as_json)
 
 

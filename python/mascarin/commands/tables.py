@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import sys
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Column, Measurements
 
 _YAML: Final = (".yaml", ".yml")
-_TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq")
+_TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq", ".xlsx", ".xlsm")
 _UNIT: Final = re.compile(r"(?P<column>.*\S)\s+\[(?P<unit>[^\]]+)\]")
 _NONE: Final = "none"
 
@@ -30,6 +31,7 @@ def run_inputs(
     timezone: str | None,
     stamps: Stamps,
     allow_outside: bool = False,
+    check_sun: bool = True,
 ) -> tuple[Climate, Measurements | None]:
     """Read the weather of a run, and the measured columns that its building names.
 
@@ -49,6 +51,8 @@ def run_inputs(
         Which end of its interval a stamp marks.
     allow_outside : bool
         Whether a YAML file may name files outside its folder.
+    check_sun : bool
+        Whether radiation that does not follow the sun is refused.
 
     Raises
     ------
@@ -62,6 +66,11 @@ def run_inputs(
     needed = measured_columns(building)
     measured = None
     if weather.suffix.lower() in _YAML:
+        if not check_sun:
+            raise InputError(
+                f"--no-check-sun: found beside {weather}; expected check_sun: false in that file, under "
+                "climate"
+            )
         if columns:
             raise InputError(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"
@@ -76,10 +85,10 @@ def run_inputs(
             )
         climate, measured = open_run_inputs(weather, building, allow_outside=allow_outside)
     elif columns or weather.suffix.lower() in _TABLES[1:]:
-        climate = _measured_weather(building, weather, columns, zone, stamps)
+        climate = _measured_weather(building, weather, columns, zone, stamps, check_sun)
         table = table or weather
     else:
-        climate = read_weather(weather)
+        climate = read_weather(weather, check_sun=check_sun)
     if table is not None and needed:
         measured = Measurements.from_table(table, columns=needed, timezone=zone, stamps=stamps)
     if needed and measured is None:
@@ -87,11 +96,37 @@ def run_inputs(
             f"--measurements: not given; expected a table with the measured columns of this building: "
             f"{', '.join(needed)}"
         )
+    show_columns(climate, measured)
     return climate, measured
 
 
+def show_columns(
+    climate: Climate, measured: Measurements | None, columns: Collection[str] | None = None
+) -> None:
+    """Say on the terminal what was read of each column of a table: unit, conversion, range, missing values.
+
+    Parameters
+    ----------
+    climate : Climate
+        The weather; nothing is said of a weather file of a year.
+    measured : Measurements or None
+        Measured columns.
+    columns : collection of str, optional
+        Which of the measured columns are used. Default: all.
+    """
+    lines = [f"{climate.file}: {origin.line}" for origin in climate.record.origins.values()]
+    if measured is not None:
+        lines += [
+            f"{measured.file}: {origin.line}"
+            for name, origin in measured.record.origins.items()
+            if columns is None or name in columns
+        ]
+    for line in dict.fromkeys(lines):
+        print(line, file=sys.stderr)
+
+
 def _measured_weather(
-    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps
+    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps, check_sun: bool
 ) -> Climate:
     from mascarin.tables.reading.table import read_table
     from mascarin.weather import Climate
@@ -109,7 +144,7 @@ def _measured_weather(
     try:
         return Climate.from_table(
             file, columns=chosen, absent=absent, timezone=zone, stamps=stamps, latitude=float(site.latitude),
-            longitude=float(site.longitude), altitude=float(site.altitude),
+            longitude=float(site.longitude), altitude=float(site.altitude), check_sun=check_sun,
         )  # fmt: skip
     except InputError as error:
         if "absent: [" not in str(error):
@@ -124,7 +159,8 @@ def _measured_weather(
 def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
     """Channel and column of ``--column``; None for a channel that was not measured.
 
-    Brackets hold a unit, unless the table has a column (``names``) that is called so.
+    Brackets hold a unit, unless the table has a column (``names``) that is called so. With an exclamation
+    mark it holds although the file states another one.
     """
     from mascarin.weather import Column
 
@@ -137,4 +173,7 @@ def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
     if name == _NONE and _NONE not in names:
         return channel, None
     unit = None if name in names else _UNIT.fullmatch(name)
-    return channel, Column(unit["column"], unit=unit["unit"]) if unit else Column(name)
+    if unit is None:
+        return channel, Column(name)
+    text = unit["unit"]
+    return channel, Column(unit["column"], unit=text.removesuffix("!"), overrule=text.endswith("!"))

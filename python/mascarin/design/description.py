@@ -32,6 +32,7 @@ class ClimateFile(Part):
 
     epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
+    check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
     start: Time | None = Field(
         None, description="Start: 12-01 or 2023-12-01, local time; by default that of `period`"
     )

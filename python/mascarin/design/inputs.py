@@ -167,7 +167,8 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, place
     with places.blame("climates", name, "epw" if given.epw is not None else "tmy"):
         text = str(given.epw or given.tmy)
         weather = found(text) if text.startswith(PREFIX) else find(text, beside)
-        climate = Climate.from_epw(weather) if given.epw is not None else Climate.from_tmy(weather)
+        read = Climate.from_epw if given.epw is not None else Climate.from_tmy
+        climate = read(weather, check_sun=given.check_sun)
     with places.blame("climates", name, "set"):
         moved = building.replace({**_place(climate), **given.set})
     with places.blame("climates", name):

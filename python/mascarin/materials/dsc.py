@@ -207,11 +207,13 @@ def from_dsc(
     mass: float | None = None,
     specific_heat: tuple[float, float] | None = None,
     melting_range: tuple[float, float] | None = None,
+    segments: Sequence[str | int] = (),
 ) -> DscMaterial:
     r"""Make a material from a calorimeter file.
 
-    The file is CSV with named columns: a temperature, and a heat flow, an apparent specific heat or an
-    enthalpy, units in the names (``temperature [degC]``, ``DSC/(mW/mg)``, ``cp heating [J/(g K)]``).
+    The file is an export of a calorimeter (NETZSCH Proteus, Mettler STARe, TA Universal Analysis, TRIOS), or
+    CSV with named columns: a temperature, and a heat flow, an apparent specific heat or an enthalpy, units in
+    the names (``temperature [degC]``, ``DSC/(mW/mg)``, ``cp heating [J/(g K)]``).
     Heating and cooling are in different columns, or one after the other, or distinguished by a column
     ``direction``.
 
@@ -229,6 +231,9 @@ def from_dsc(
         Of solid and liquid, where the baseline was subtracted. [J/(kg K)]
     melting_range : tuple of float, optional
         First and last temperature of melting; outside there is only sensible heat. [degC]
+    segments : sequence of str or int, optional
+        Segments of the file that are used, such as that of the second heating; default: all that heat or
+        cool.
 
     Returns
     -------
@@ -257,7 +262,7 @@ def from_dsc(
     for name, value in (("rate", rate), ("mass", mass)):
         if value is not None and not value > 0.0:
             raise InputError(f"{name}: found {value:g}; expected a positive number")
-    scans = read(file, Settings(unit, rate, mass))
+    scans = read(file, Settings(unit, rate, mass, tuple(map(str, segments))))
     found = [_melting(scan, specific_heat, melting_range, scan.place) for scan in scans]
     runs = tuple(sorted((run for run, _ in found), key=lambda run: run.direction != "heating"))
     remarks = [remark for scan in scans for remark in scan.remarks]
@@ -372,6 +377,9 @@ def _integral(t: Array, y: Array) -> Array:
 
 def _tangents(t: Array, heat: Array, heats: tuple[float, float]) -> tuple[float, float]:
     """Extrapolated onset and end: the steepest tangents of the flanks intersect the sensible heat."""
+    # Rows that are much closer than the others, such as those of a hold, have slopes of noise.
+    apart = np.concatenate([[True], np.diff(t) > 0.2 * float(np.median(np.diff(t)))])
+    t, heat = t[apart], heat[apart]
     slope = np.gradient(heat, t)
     top = int(np.argmax(heat))
     up = int(np.argmax(slope[: top + 1]))

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin._io.regular import require_regular
-from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
+from mascarin.materials.dsc_formats import Export, export_of
+from mascarin.materials.dsc_segments import segments_of, supercooling
 from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
+from mascarin.tables.reading.layout import decoded
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -73,11 +72,14 @@ class Settings:
         Heating rate [K/min].
     mass : float or None
         Mass of the sample [mg].
+    segments : tuple of str
+        Labels of the segments that are used; empty: all that heat or cool.
     """
 
     unit: str | None = None
     rate: float | None = None
     mass: float | None = None
+    segments: tuple[str, ...] = ()
 
 
 def read(path: Path, settings: Settings) -> list[Scan]:
@@ -88,9 +90,11 @@ def read(path: Path, settings: Settings) -> list[Scan]:
     InputError
         The file, a column, a unit or the order of the rows cannot be used.
     """
-    names, table, line = _table(path)
+    export = _export(path)
+    names, table = export.names, export.rows
     # The line of the names of the columns.
-    place = f"{path}:{line}"
+    place = f"{path}:{export.line}"
+    settings = _with_mass(settings, export.mass, place)
     columns = [column for k, name in enumerate(names) if (column := column_of(k, name)) is not None]
     if settings.unit is not None:
         columns = [_with_unit(column, settings.unit) for column in columns]
@@ -108,17 +112,39 @@ def read(path: Path, settings: Settings) -> list[Scan]:
         raise InputError(
             f"{place}: found {' and '.join(quantities)}; expected one of them. Remove the others"
         )
+    per_mass = [column for column in signals if column.unit not in OF_SAMPLE]
+    if per_mass and len(per_mass) < len(signals):
+        signals = per_mass  # the same heat flow, of the sample and of its mass
     scans = []
     for signal in signals:
-        scans += _runs(place, table, columns, temperature, signal, settings)
+        scans += _runs(place, table, columns, temperature, signal, settings, export.exothermal_up)
     directions = [scan.direction for scan in scans]
     for direction in ("heating", "cooling"):
         if directions.count(direction) > 1:
             raise InputError(
-                f"{place}: found {directions.count(direction)} runs of {direction}; expected one. Keep the "
-                "run that is meant (often the second heating)"
+                f"{place}: found {directions.count(direction)} runs of {direction}; expected one. Name the "
+                "segment that is meant, often the second heating (--segment 5; in Python segments=['5']), or "
+                "keep its rows alone"
             )
     return scans
+
+
+def _with_mass(settings: Settings, mass: float | None, place: str) -> Settings:
+    """The settings with the mass of the sample that the file states.
+
+    Raises
+    ------
+    InputError
+        The user states another one.
+    """
+    if mass is None or settings.mass is None:
+        return settings if mass is None else replace(settings, mass=mass)
+    if abs(settings.mass - mass) > 0.01 * mass:
+        raise InputError(
+            f"{place}: found mass={settings.mass:g} mg, but the file states {mass:g} mg; expected the same. "
+            "Leave the mass out to use that of the file, or correct the file"
+        )
+    return settings
 
 
 def _with_unit(column: Column, unit: str) -> Column:
@@ -132,40 +158,13 @@ def _with_unit(column: Column, unit: str) -> Column:
     return Column(column.index, column.name, quantity, meant, column.direction)
 
 
-def _table(path: Path) -> tuple[list[str], list[list[str]], int]:
-    """Names of the columns, the rows below, and the line of the names."""
+def _export(path: Path) -> Export:
+    """The file as text, with its names, rows and facts."""
     try:
         raw = require_regular(path, "a DSC file as CSV").read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); expected a DSC file as CSV") from None
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    numbered = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [line for _, line in numbered]
-    head = next((k for k, line in enumerate(lines) if _is_head(line, lines[k + 1 : k + 2])), None)
-    if head is None:
-        raise InputError(
-            f"{path}: found no line of column names above numbers; expected a first line such as "
-            "'temperature [degC],cp [J/(g K)]'"
-        )
-    separator = _separator(lines[head + 1])
-    with csv_refused(str(path)):
-        rows = list(csv.reader(io.StringIO("\n".join(lines[head:])), delimiter=separator))
-    return [name.strip().lstrip("#").strip() for name in rows[0]], rows[1:], numbered[head][0]
-
-
-def _is_head(line: str, following: list[str]) -> bool:
-    return bool(following) and not _starts_with_number(line) and _starts_with_number(following[0])
-
-
-def _starts_with_number(line: str) -> bool:
-    return re.match(r'^\s*"?[-+]?[\d.,]*\d', line) is not None
-
-
-def _separator(line: str) -> str:
-    return next((one for one in (";", "\t", ",") if one in line), ",")
+    return export_of(decoded(raw, str(path))[0], str(path))
 
 
 def _one(columns: list[Column], quantity: str, names: list[str], place: str) -> Column:
@@ -180,7 +179,7 @@ def _one(columns: list[Column], quantity: str, names: list[str], place: str) -> 
 
 def _runs(
     place: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
-    settings: Settings,
+    settings: Settings, exothermal_up: bool | None,
 ) -> list[Scan]:  # fmt: skip
     """The runs in one column of the signal."""
     time = next((column for column in columns if column.quantity == "time"), None)
@@ -198,9 +197,11 @@ def _runs(
         )
     values = np.array(rows, dtype=np.float64)
     values[:, 0] = to_celsius(values[:, 0].tolist(), temperature, place)
+    segments, held = segments_of(values[:, 0], labels, signal, settings.segments, place)
+    remarks = [f"{held} rows at a constant temperature were left out"] if held else []
     return [
-        _scan(place, values[first:last], direction, signal, time, settings)
-        for first, last, direction in _segments(values[:, 0], labels, signal, place)
+        _scan(place, values[first:last], direction, signal, time, settings, exothermal_up, remarks)
+        for first, last, direction in segments
     ]
 
 
@@ -218,65 +219,12 @@ def _number(row: list[str], column: Column, number: int, place: str) -> float:
     return value
 
 
-def _segments(
-    temperature: Array, labels: list[str], signal: Column, place: str
-) -> list[tuple[int, int, str]]:
-    """First and last row of each run, and its direction."""
-    if signal.direction is not None:
-        return [(0, len(temperature), signal.direction)]
-    if any(labels):
-        return _labelled(labels, place)
-    turn = _turning_point(temperature, place)
-    if turn in (0, len(temperature) - 1):
-        direction = "heating" if temperature[-1] > temperature[0] else "cooling"
-        return [(0, len(temperature), direction)]
-    first = "heating" if temperature[turn] > temperature[0] else "cooling"
-    second = "cooling" if first == "heating" else "heating"
-    return [(0, turn + 1, first), (turn, len(temperature), second)]
-
-
-def _labelled(labels: list[str], place: str) -> list[tuple[int, int, str]]:
-    segments, first = [], 0
-    for k in range(1, len(labels) + 1):
-        if k < len(labels) and labels[k] == labels[first]:
-            continue
-        direction = next((one for one in ("heating", "cooling") if labels[first].startswith(one[:4])), None)
-        if direction is None:
-            raise InputError(f"{place}: found the direction '{labels[first]}'; expected heating or cooling")
-        segments.append((first, k, direction))
-        first = k
-    return segments
-
-
-def _turning_point(temperature: Array, place: str) -> int:
-    """Row at which heating changes to cooling or cooling to heating; the first or last if it does not."""
-    total = abs(temperature[-1] - temperature[0])
-    top, bottom = int(np.argmax(temperature)), int(np.argmin(temperature))
-    turn = top if temperature[top] - max(temperature[0], temperature[-1]) > 0.02 * np.ptp(temperature) else 0
-    if min(temperature[0], temperature[-1]) - temperature[bottom] > 0.02 * np.ptp(temperature):
-        turn = bottom
-    way = np.abs(np.diff(temperature)).sum()
-    expected = (
-        total
-        if turn == 0
-        else abs(temperature[turn] - temperature[0]) + abs(temperature[-1] - temperature[turn])
-    )
-    if way > 1.2 * expected:
-        jump = int(np.argmax(np.abs(np.diff(temperature))))
-        raise InputError(
-            f"{place}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
-            f"{temperature[jump]:.2f} degC; expected temperatures in the order of the run: rising, "
-            "falling, or one after the other. Restore the order, or put heating and cooling into "
-            "different columns"
-        )
-    return turn
-
-
 def _scan(
-    place: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings
-) -> Scan:
+    place: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings,
+    exothermal_up: bool | None, said: list[str],
+) -> Scan:  # fmt: skip
     rate = _rate(values, time) or settings.rate
-    remarks = []
+    remarks = [*said, *supercooling(values[:, 0], direction)]
     order = np.argsort(values[:, 0], kind="stable")
     t, raw = values[order, 0], values[order, 1]
     t, raw = _merged(t, raw)
@@ -295,7 +243,13 @@ def _scan(
         heat = raw * factor
     if signal.quantity == "heat flow" and _upside_down(heat):
         heat = -heat
-        remarks.append(f"{direction}: the peak points down: sign changed, heat taken up is positive")
+        if exothermal_up is None:
+            remarks.append(f"{direction}: the peak points down: sign changed, heat taken up is positive")
+        elif exothermal_up != (direction == "heating"):
+            remarks.append(
+                f"{direction}: the file says that heat given off points {'up' if exothermal_up else 'down'}, "
+                "but the peak points the other way: the peak was followed"
+            )
     return Scan(direction, t, heat, rate, signal, factor, tuple(remarks), place)
 
 

@@ -25,7 +25,16 @@ POSSIBLE_HEAT: Final = (200.0, 12000.0)
 _NAMES: Final = {
     "temperature": ("temp", "temperature", "t", "theta", "sample temperature", "ts"),
     "time": ("time", "zeit"),
-    "heat flow": ("heat flow", "heatflow", "dsc", "hf", "q", "phi"),
+    "heat flow": (
+        "heat flow",
+        "heatflow",
+        "dsc",
+        "hf",
+        "q",
+        "phi",
+        "unsubtracted heat flow",
+        "heat flow rate",
+    ),
     "specific heat": ("cp", "c", "specific heat", "heat capacity", "capacity", "apparent capacity", "cp app"),
     "enthalpy": ("enthalpy", "h", "heat content"),
     "direction": ("direction", "segment", "run"),

@@ -431,7 +431,7 @@ class Simulation(VectorRuns):
 
         site = self.building.site
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
-        return (*sun, *plausibility.warnings(self.building, self.notes))
+        return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[str, ...]:
         """Warnings of a run with a parameter vector, of which nothing else is kept.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 #: Keys of a table that hold for weather and measurements where both are in it.
 OF_THE_TABLE: Final = (
     "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
+    "tolerance",
 )  # fmt: skip
 
 #: Keys of a study that name files.
@@ -47,6 +48,11 @@ class Table(Part):
     missing: tuple[str | float, ...] = Field(
         (), description="Entries that mark a missing value, such as -999"
     )
+    tolerance: Duration | None = Field(
+        None,
+        description="Largest deviation of a stamp from the regular grid, to which it is moved; by default a "
+        "tenth of the step",
+    )
     fill_gaps: Duration | None = Field(
         None,
         description="Gaps up to this length are filled by linear interpolation in the inputs of the model, "
@@ -71,6 +77,7 @@ class Table(Part):
             "skip_lines",
             "mean",
             "missing",
+            "tolerance",
         )
         return {key: getattr(self, key) for key in keys}
 
@@ -105,6 +112,7 @@ class ClimateSource(Part):
     epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
     measured: MeasuredWeather | None = Field(None, description="A measured table")
+    check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
 
     @model_validator(mode="after")
     def _one(self) -> Self:

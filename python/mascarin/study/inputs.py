@@ -116,16 +116,19 @@ def open_climate(source: ClimateSource, beside: Beside, building: Building, plac
     if source.epw is not None:
         with places.blame("climate", "epw"):
             shipped = source.epw.startswith(PREFIX)
-            return Climate.from_epw(source.epw if shipped else find(source.epw, beside))
+            path = source.epw if shipped else find(source.epw, beside)
+            return Climate.from_epw(path, check_sun=source.check_sun)
     if source.tmy is not None:
         with places.blame("climate", "tmy"):
-            return Climate.from_tmy(find(source.tmy, beside))
+            return Climate.from_tmy(find(source.tmy, beside), check_sun=source.check_sun)
     if source.measured is not None:
-        return _measured_climate(source.measured, beside, building.site, places)
+        return _measured_climate(source.measured, beside, building.site, places, source.check_sun)
     raise InputError("climate: nothing given; expected one of epw, tmy, measured")
 
 
-def _measured_climate(table: MeasuredWeather, beside: Beside, site: Site, places: Places) -> Climate:
+def _measured_climate(
+    table: MeasuredWeather, beside: Beside, site: Site, places: Places, check_sun: bool
+) -> Climate:
     with places.blame("climate", "measured", "table"):
         path = find(table.table, beside)
     with places.blame("climate", "measured", "columns"):
@@ -138,6 +141,7 @@ def _measured_climate(table: MeasuredWeather, beside: Beside, site: Site, places
             latitude=float(site.latitude),
             longitude=float(site.longitude),
             altitude=float(site.altitude),
+            check_sun=check_sun,
             **table.options,
         )
     return climate if table.fill_gaps is None else climate.fill_gaps(table.fill_gaps)

@@ -2,44 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from mascarin.errors import InputError
-from mascarin.physics import KELVIN
 from mascarin.tables.arrays import Array
-
-FACTORS: Mapping[str, tuple[str, float, float]] = {
-    "degC": ("degC", 1.0, 0.0),
-    "K": ("degC", 1.0, -KELVIN),
-    "degF": ("degC", 5.0 / 9.0, -160.0 / 9.0),
-    "W/m2": ("W/m2", 1.0, 0.0),
-    "kW/m2": ("W/m2", 1000.0, 0.0),
-    "m/s": ("m/s", 1.0, 0.0),
-    "km/h": ("m/s", 1.0 / 3.6, 0.0),
-    "knot": ("m/s", 1852.0 / 3600.0, 0.0),
-    "Pa": ("Pa", 1.0, 0.0),
-    "hPa": ("Pa", 100.0, 0.0),
-    "mbar": ("Pa", 100.0, 0.0),
-    "kPa": ("Pa", 1000.0, 0.0),
-    "%": ("%", 1.0, 0.0),
-    "1": ("%", 100.0, 0.0),
-    "tenths": ("tenths", 1.0, 0.0),
-    "oktas": ("tenths", 1.25, 0.0),
-    "deg": ("deg", 1.0, 0.0),
-}
-"""Units that a column may have: (unit after conversion, factor, offset)."""
-
-ENERGIES: Mapping[str, float] = {
-    "J/cm2": 1e4,
-    "J/m2": 1.0,
-    "kJ/m2": 1e3,
-    "MJ/m2": 1e6,
-    "Wh/m2": 3600.0,
-    "kWh/m2": 3.6e6,
-}
-"""Energies per interval, in J/m2; divided by the interval they become W/m2."""
+from mascarin.tables.units import CONVERTED, FACTORS, StatedUnit, conversion, parse_unit, units_of
 
 
 @dataclass(frozen=True)
@@ -51,11 +22,14 @@ class Column:
     column : str
         Name of the column.
     unit : str, optional
-        Unit in the file (a key of `FACTORS` or `ENERGIES`); without one the quantity's own unit.
+        Unit in the file (a key of `FACTORS` or `ENERGIES`); without one that which the file states, else the
+        quantity's own unit.
     scale, offset : float
         Applied after the unit: value = scale x + offset.
     kind : str, optional
         `instant` or `mean`; without one the quantity's usual kind.
+    overrule : bool
+        Whether the unit holds although the file states another one.
 
     Examples
     --------
@@ -76,6 +50,7 @@ class Column:
     scale: float = 1.0
     offset: float = 0.0
     kind: Literal["instant", "mean"] | None = None
+    overrule: bool = False
 
     @classmethod
     def of(cls, given: object, where: str) -> Column:
@@ -103,18 +78,90 @@ class Column:
         if isinstance(given, str):
             return cls(given)
         if isinstance(given, Mapping):
-            unknown = set(given) - {"column", "unit", "scale", "offset", "kind"}
+            unknown = set(given) - {"column", "unit", "scale", "offset", "kind", "overrule"}
             if unknown or "column" not in given:
                 raise InputError(
                     f"{where}: found {dict(given)!r}, expected a column's name or a mapping with 'column' "
-                    "and optionally 'unit', 'scale', 'offset', 'kind'."
+                    "and optionally 'unit', 'scale', 'offset', 'kind', 'overrule'."
                 )
             kind = given.get("kind")
             if kind not in (None, "instant", "mean"):
                 raise InputError(f"{where}: kind is {kind!r}, expected 'instant' or 'mean'.")
             scale, offset = float(given.get("scale", 1.0)), float(given.get("offset", 0.0))
-            return cls(str(given["column"]), given.get("unit"), scale, offset, kind)
+            overrule = given.get("overrule", False)
+            if not isinstance(overrule, bool):
+                raise InputError(f"{where}: overrule is {overrule!r}, expected true or false.")
+            return cls(str(given["column"]), given.get("unit"), scale, offset, kind, overrule)
         raise InputError(f"{where}: found {given!r}, expected a column's name or a mapping with 'column'.")
+
+    def settled(
+        self, stated: StatedUnit | None, target: str, interval: float, names: Sequence[str], where: str
+    ) -> Column:
+        """The column with the unit that holds: the user's, else that of the file.
+
+        Parameters
+        ----------
+        stated : StatedUnit or None
+            What the file states.
+        target : str
+            Wanted unit; empty where the use of the column is not known.
+        interval : float
+            Length of an interval, for energies [s].
+        names : sequence of str
+            Names of the columns of the file.
+        where : str
+            Place of the column, for the error.
+
+        Returns
+        -------
+        Column
+            The same; its unit is None where nobody states one.
+
+        Raises
+        ------
+        InputError
+            The file and the user, or the file and the quantity, contradict each other; both are named.
+        """
+        if self.unit is not None:
+            plain = parse_unit(self.unit)
+            own = replace(self, unit=plain) if self.unit not in FACTORS and plain is not None else self
+            if stated is None or self.overrule or _same(own.unit, stated.unit, interval):
+                return own
+            raise InputError(
+                f"{where}: found the unit {self.unit!r}, but {stated.place} says {stated.text!r} for the "
+                f"column {self.column!r}; expected the same. Leave the unit out to use that of the file, or "
+                f"write {self._forced(self.unit)} where the file is wrong."
+            )
+        if stated is None:
+            return self
+        plain_factors = self.scale == 1.0 and self.offset == 0.0
+        if not target and (FACTORS.get(stated.unit, ("W/m2",))[0] not in CONVERTED or
+                           conversion(stated.unit, "", interval) is None):  # fmt: skip
+            return self
+        found = conversion(stated.unit, target, interval)
+        if found is None:
+            if stated.unit == "deg":  # the sign of degrees alone
+                return self
+            likely = [name for name in names if name != self.column][:12]
+            raise InputError(
+                f"{where}: {stated.place} says {stated.text!r} for the column {self.column!r}, expected one "
+                f"of {', '.join(units_of(target))}. Name another column (there are {', '.join(likely)}), or "
+                f"write {self._forced(target)} where the file is wrong."
+            )
+        if plain_factors or found == (1.0, 0.0):
+            return replace(self, unit=stated.unit)
+        if np.allclose((self.scale, self.offset), found, rtol=1e-3, atol=1e-3):
+            return self  # the user converts by hand
+        raise InputError(
+            f"{where}: found scale {self.scale:g} and offset {self.offset:g}, but {stated.place} says "
+            f"{stated.text!r} for the column {self.column!r}, which is converted by {found[0]:g} and "
+            f"{found[1]:g}; it is not clear whether both hold. Write unit: {stated.unit} where scale and "
+            "offset are applied after the conversion, or "
+            f"{self._forced(target or FACTORS[stated.unit][0])} where the file is wrong."
+        )
+
+    def _forced(self, unit: str) -> str:
+        return f"{{column: {self.column!r}, unit: {unit!r}, overrule: true}}"
 
     def convert(self, values: Array, unit: str, interval: float, where: str) -> Array:
         """Values in the wanted unit.
@@ -135,34 +182,64 @@ class Column:
         InputError
             The column's unit cannot be converted to the wanted one.
         """
-        if self.unit is not None:
-            if self.unit in ENERGIES and unit == "W/m2":
-                values = values * (ENERGIES[self.unit] / interval)
-            elif self.unit in FACTORS and (not unit or FACTORS[self.unit][0] == unit):
-                _, factor, offset = FACTORS[self.unit]
-                values = values * factor + offset
-            elif self.unit != unit:
-                known = [name for name, entry in FACTORS.items() if entry[0] == unit]
-                known += list(ENERGIES) if unit == "W/m2" else []
+        if self.unit is not None and self.unit != unit:
+            found = conversion(self.unit, unit, interval)
+            if found is None:
                 raise InputError(
                     f"{where}: unit {self.unit!r} of column {self.column!r} cannot be turned into "
-                    f"{unit}; expected one of {', '.join(known)}, or give scale and offset instead."
+                    f"{unit}; expected one of {', '.join(units_of(unit))}, or give scale and offset instead."
                 )
+            values = values * found[0] + found[1]
         return values * self.scale + self.offset
 
-    def sentence(self, name: str, unit: str) -> str:
-        """What was done, for the provenance; empty where nothing was.
+    def line(self, name: str, unit: str, values: Array, stated: StatedUnit | None) -> str:
+        """What was read, in one line.
 
         Parameters
         ----------
         name : str
-            Quantity.
+            Quantity, or name of the column.
         unit : str
-            Its unit.
+            Unit of the values; empty where it is not known.
+        values : ndarray, shape (n,)
+            After the conversion.
+        stated : StatedUnit or None
+            What the file states.
+
+        Returns
+        -------
+        str
+            Name, unit in the file, conversion, range, missing values, and whether all are equal.
         """
-        parts = []
-        if self.unit is not None and self.unit != unit:
-            parts.append(f"{self.unit} to {unit}")
+        own = self.unit or ""
+        after = unit or (FACTORS[own][0] if own in FACTORS else "W/m2" if own else "")
+        parts = [f"column {self.column!r}" if self.column != name else "column"]
+        by = f" ({stated.place})" if stated is not None and not self.overrule else " (as stated)"
+        if self.unit is not None and self.unit != after:
+            parts.append(f"{self.unit}{by} converted to {after}")
+        elif self.unit is not None:
+            parts.append(f"{after}{by}")
+        elif stated is not None:
+            parts.append(f"{stated.text} ({stated.place})")
+        else:
+            parts.append(f"taken as {unit}, no unit is stated" if unit else "no unit is stated")
         if self.scale != 1.0 or self.offset != 0.0:
             parts.append(f"times {self.scale:g} plus {self.offset:g}")
-        return f"{name}: column {self.column!r} converted, {', '.join(parts)}." if parts else ""
+        there = values[~np.isnan(values)]
+        if not len(there):
+            return f"{name}: {', '.join(parts)}; no values."
+        low, high = float(there.min()), float(there.max())
+        extent = f"constant {low:.4g}" if low == high else f"{low:.4g} .. {high:.4g}"
+        absent = len(values) - len(there)
+        return f"{name}: {', '.join(parts)}; {extent}{' ' * bool(after)}{after}, {absent} missing."
+
+
+def _same(unit: str | None, other: str, interval: float) -> bool:
+    """Whether two units are converted alike, such as hPa and mbar."""
+    if unit == other or unit is None:
+        return True
+    mine, theirs = (
+        (FACTORS[name][0] if name in FACTORS else name, conversion(name, "", interval))
+        for name in (unit, other)
+    )
+    return mine == theirs and mine[1] is not None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -16,6 +16,25 @@ if TYPE_CHECKING:
 
 Kind = Literal["instant", "mean"]
 """`instant`: the value at the stamp; `mean`: the mean over the interval that the stamp starts."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the values of a column come from.
+
+    Attributes
+    ----------
+    unit : str
+        Unit that the file states and into which the values were not converted; empty where there is none.
+    stated : bool
+        Whether the file or the user states the unit.
+    line : str
+        Name, unit in the file, conversion, range and missing values.
+    """
+
+    unit: str
+    stated: bool
+    line: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +65,8 @@ class Record:
         of the row.
     of_year : bool
         Read from a weather file of a year, whose clock is the one of its place.
+    origins : mapping of str to Origin
+        Where columns of a table come from.
     """
 
     name_sets: ClassVar[tuple[str, ...]] = ()
@@ -61,6 +82,7 @@ class Record:
     lines: Lines
     knots: Lines | None = None
     of_year: bool = False
+    origins: Mapping[str, Origin] = field(default_factory=dict)
 
     @cached_property
     def data(self) -> pd.DataFrame:

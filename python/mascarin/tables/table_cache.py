@@ -10,17 +10,20 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io.cache import Cached, cached
-from mascarin.tables import columns, interval_labels, timezones
+from mascarin.tables import columns, interval_labels, timezones, units
 from mascarin.tables.grid import Grid
-from mascarin.tables.reading import files, layout, table
+from mascarin.tables.reading import clocks, files, layout, numbers, records, rows, spreadsheets, table
 from mascarin.tables.reading.files import file_hash
-from mascarin.tables.record import Record
+from mascarin.tables.record import Origin, Record
 from mascarin.tables.timezones import parse_timezone
 
 AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 #: Modules that make a record of a table, beside that of the caller.
-_CODE: Final = (columns, files, interval_labels, layout, table, timezones)
+_CODE: Final = (
+    clocks, columns, files, interval_labels, layout, numbers, records, rows, spreadsheets, table, timezones,
+    units,
+)  # fmt: skip
 _LINES: Final = "lines"
 _KNOTS: Final = "knots"
 
@@ -81,6 +84,7 @@ def _packed(record: Record) -> Cached:
         "closing": {name: float(value) for name, value in record.closing.items()},
         "sha256": record.sha256,
         "provenance": list(record.provenance),
+        "origins": {name: [one.unit, one.stated, one.line] for name, one in record.origins.items()},
         "last": None if knots is None else int(knots[-1]),
     }
     notes |= {name: sorted(getattr(record, name)) for name in record.name_sets}
@@ -98,9 +102,10 @@ def _unpacked(kind: type[AnyRecord], found: Cached, grid: Grid, where: str) -> A
     knots = None
     if notes["last"] is not None:
         knots = np.append(numbers.pop(_KNOTS).astype(np.int64), np.int64(notes["last"]))
+    origins = {name: Origin(*parts) for name, parts in notes["origins"].items()}
     more: dict[str, Any] = {name: frozenset(notes[name]) for name in kind.name_sets}
     return kind(
         columns={name.removeprefix("column "): values for name, values in numbers.items()},
         kinds=notes["kinds"], grid=grid, closing=notes["closing"], file=where, sha256=notes["sha256"],
-        provenance=tuple(notes["provenance"]), lines=lines, knots=knots, **more,
+        provenance=tuple(notes["provenance"]), lines=lines, knots=knots, origins=origins, **more,
     )  # fmt: skip

@@ -1,4 +1,7 @@
-"""The climate of a site: weather on a regular grid of times."""
+"""The climate of a site: weather on a regular grid of times.
+
+Long because every way to make a climate is described with its parameters and an example.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ from mascarin.weather.readers import read_epw, read_tmy3
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.shipped import PREFIX, found
 from mascarin.weather.site import Place, SiteLike
-from mascarin.weather.sun_check import check_clock
+from mascarin.weather.sun_check import check_clock, is_polar_night
 from mascarin.weather.view import RecordView
 from mascarin.weather.yearly import record_of_year
 
@@ -73,6 +76,7 @@ class Climate(RecordView[WeatherRecord]):
         typical: bool | None = None,
         year: int | None = None,
         elsewhere: bool = False,
+        check_sun: bool = True,
     ) -> Climate:
         r"""Read an EnergyPlus weather file (EPW).
 
@@ -87,6 +91,8 @@ class Climate(RecordView[WeatherRecord]):
             Year by which a typical file is labeled; default 2001.
         elsewhere : bool
             Allow a building at another place, which is otherwise refused.
+        check_sun : bool
+            Refuse radiation that does not follow the sun.
 
         Returns
         -------
@@ -119,7 +125,8 @@ class Climate(RecordView[WeatherRecord]):
         (170.0, 'UTC+1', 8760)
         """
         require_type("path", path, (str, Path), "the path of an EPW file")
-        return cls(record_of_year(read_epw(found(path)), typical, year, elsewhere))
+        record = record_of_year(read_epw(found(path)), typical, year, elsewhere)
+        return cls(replace(record, check_sun=check_sun))
 
     @classmethod
     def shipped(cls, name: str, *, elsewhere: bool = False) -> Climate:
@@ -134,6 +141,7 @@ class Climate(RecordView[WeatherRecord]):
         typical: bool | None = None,
         year: int | None = None,
         elsewhere: bool = False,
+        check_sun: bool = True,
     ) -> Climate:
         """Read a TMY3 CSV file.
 
@@ -141,7 +149,7 @@ class Climate(RecordView[WeatherRecord]):
         ----------
         path : str or Path
             The file; hourly, one year.
-        typical, year, elsewhere
+        typical, year, elsewhere, check_sun
             As in `from_epw`.
 
         Returns
@@ -162,7 +170,8 @@ class Climate(RecordView[WeatherRecord]):
         (36.1, 'UTC-5')
         """
         require_type("path", path, (str, Path), "the path of a TMY3 file")
-        return cls(record_of_year(read_tmy3(Path(path)), typical, year, elsewhere))
+        record = record_of_year(read_tmy3(Path(path)), typical, year, elsewhere)
+        return cls(replace(record, check_sun=check_sun))
 
     @classmethod
     def from_table(
@@ -183,6 +192,7 @@ class Climate(RecordView[WeatherRecord]):
         decimal: str | None = None,
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
+        tolerance: str | float | None = None,
         latitude: float | None = None,
         longitude: float | None = None,
         altitude: float = 0.0,
@@ -198,7 +208,8 @@ class Climate(RecordView[WeatherRecord]):
             IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
             frame whose stamps have a time zone.
         columns : mapping
-            Channel -> name of its column, or `{column, unit, scale, offset, kind}`, or a `Column`. Beside
+            Channel -> name of its column, or `{column, unit, scale, offset, kind, overrule}`, or a `Column`.
+            Beside
             the channels, `relative_humidity` [%] is understood; the dew point is computed from it.
         extra : iterable or mapping
             Further measured columns, by their names: temperatures of boundaries, irradiances on planes.
@@ -225,6 +236,9 @@ class Climate(RecordView[WeatherRecord]):
             Lines before the header.
         missing : sequence
             Entries that mean that there is no value, beside the empty one.
+        tolerance : str or float
+            Largest deviation of a stamp from the regular grid, to which it is moved; default a tenth of the
+            step. [s]
         latitude, longitude : float, optional
             Place of the measurement, positive north and east. [deg]
         altitude : float
@@ -263,7 +277,7 @@ class Climate(RecordView[WeatherRecord]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
@@ -377,7 +391,8 @@ class Climate(RecordView[WeatherRecord]):
         list of Stretch
             In order of column, then start; see `mascarin.tables.quality.find`.
         """
-        return [*find(self.data, limits=LIMITS), *bright_parts(self.record, self.data.index)]
+        parts = [part for part in find(self.data, limits=LIMITS) if not is_polar_night(part, self.record)]
+        return [*parts, *bright_parts(self.record, self.data.index)]
 
     def fill_gaps(self, longest: str | float, columns: Iterable[str] | None = None) -> Climate:
         """Fill short gaps linearly.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -154,7 +155,11 @@ def _day_of_year(stage: Array, grid: Grid) -> Array:
 
 def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
     if name in record.columns:
-        return column_values(record, name, steps)
+        if name != "infrared" or not record.of_year:
+            return column_values(record, name, steps)
+        # Hours without a value are no fault where the building has a model of the sky.
+        with contextlib.suppress(InputError):
+            return column_values(record, name, steps)
     if name in ("infrared", "pressure"):
         return np.full(steps.stage.shape, np.nan)
     raise InputError(f"{record.file}: the climate has no {name}; map a column or state that it is absent.")

@@ -14,9 +14,11 @@ from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
 from mascarin.tables.interval_labels import knot_lines, to_starts
+from mascarin.tables.reading.records import converted
 from mascarin.tables.reading.table import Table
-from mascarin.tables.record import Kind
+from mascarin.tables.record import Kind, Origin
 from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS
+from mascarin.weather.likely_units import require_likely_unit
 from mascarin.weather.record import WeatherRecord
 
 NEUTRAL: Final[Mapping[str, float]] = {
@@ -51,8 +53,8 @@ def record_of_table(
     chosen = _chosen(columns, extra, table)
     stated = _stated(absent, chosen, table.where)
     kinds = _kinds(chosen, instant, mean, table.where)
-    values, notes = _values(chosen, table)
-    record = _on_grid(table, values, kinds, stamps, notes)
+    values, origins = _values(chosen, table)
+    record = _on_grid(table, values, kinds, stamps, origins)
     return _with_humidity(_with_neutral(record, stated))
 
 
@@ -148,30 +150,29 @@ def _kinds(
     return kinds
 
 
-def _values(chosen: Mapping[str, Column], table: Table) -> tuple[dict[str, Array], list[str]]:
-    values, notes = {}, []
+def _values(chosen: Mapping[str, Column], table: Table) -> tuple[dict[str, Array], dict[str, Origin]]:
+    values, origins = {}, {}
     for name, column in chosen.items():
-        where = f"{table.where}: {name}"
         unit = "%" if name == "relative_humidity" else UNITS.get(name, "")
-        values[name] = column.convert(table.numbers(column.column, name), unit, table.interval, where)
-        note = column.sentence(name, unit)
-        if note:
-            notes.append(f"{table.where}: {note}")
+        values[name], origins[name] = converted(table, column, name, unit)
+        if not origins[name].stated:
+            require_likely_unit(name, values[name], table.lines, column.column, table.where)
         if name == "wind_direction":
             # Between 0 and 360 deg; a code such as 990 is kept and is refused when it is needed.
             turn = values[name]
             values[name] = np.where((turn >= -360.0) & (turn <= 720.0), turn % 360.0, turn)
-    return values, notes
+    return values, origins
 
 
 def _on_grid(
-    table: Table, values: dict[str, Array], kinds: dict[str, Kind], stamps: str, notes: list[str]
+    table: Table, values: dict[str, Array], kinds: dict[str, Kind], stamps: str, origins: dict[str, Origin]
 ) -> WeatherRecord:
     columns, closing, grid, note = to_starts(table, values, kinds, stamps)
+    notes = [f"{table.where}: {origin.line}" for origin in origins.values()]
     return WeatherRecord(
         columns=columns, kinds=kinds, grid=grid, closing=closing, file=table.where,
         sha256=table.sha256, provenance=(*table.notes, note, *notes), lines=table.lines,
-        knots=knot_lines(table.lines, stamps),
+        knots=knot_lines(table.lines, stamps), origins=origins,
     )  # fmt: skip
 
 

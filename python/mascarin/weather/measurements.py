@@ -69,6 +69,7 @@ class Measurements(RecordView[Record]):
         decimal: str | None = None,
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
+        tolerance: str | float | None = None,
     ) -> Measurements:
         """Read a table of measurements.
 
@@ -80,12 +81,13 @@ class Measurements(RecordView[Record]):
             IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
             frame whose stamps have a time zone.
         columns : iterable or mapping, optional
-            Columns to read, or name -> column or `{column, unit, scale, offset, kind}`. Default: all.
+            Columns to read, or name -> column or `{column, unit, scale, offset, kind, overrule}`. Default:
+            all.
         mean : iterable of str
             Columns that are means over their interval; the others are values at the stamp.
         stamps : str
             `start` or `end`: which end of its interval a stamp marks.
-        step, time, time_format, separator, decimal, skip_lines, missing
+        step, time, time_format, separator, decimal, skip_lines, missing, tolerance
             As in `read_table`.
 
         Returns
@@ -111,7 +113,7 @@ class Measurements(RecordView[Record]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
         }  # fmt: skip
         wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
         choice = (wanted, tuple(mean), stamps)

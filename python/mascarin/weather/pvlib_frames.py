@@ -15,7 +15,7 @@ from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
 from mascarin.tables.reading.table import Table, read_table
 from mascarin.tables.timezones import fixed_offset, parse_timezone, zone_name, zone_of
-from mascarin.weather.channels import BY_NAME, RADIATION
+from mascarin.weather.channels import BY_NAME, RADIATION, UNITS
 from mascarin.weather.measured import record_of_table
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import Place
@@ -113,7 +113,7 @@ def record_of_pvlib(
         table = _started(table)
     record = record_of_table(
         table,
-        {str(name): Column(str(name)) for name in columns.columns},
+        {str(name): Column(str(name), unit=UNITS.get(str(name)), overrule=True) for name in columns.columns},
         extra=(),
         absent=absent,
         stamps="end" if marked == "end" else "start",

@@ -19,6 +19,7 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.timezones import fixed_zone, zone_name
+from mascarin.weather.moisture import dew_point
 from mascarin.weather.shipped import COMPRESSED, PACKED, content
 
 _HEADER = 8
@@ -51,13 +52,17 @@ _TMY: Final = (
     ("wind_speed", "wind_speed", "Wspd (m/s)", 1.0),
     ("cloud_cover", "OpqCld (tenths)", "OpqCld (tenths)", 1.0),
 )
+_HUMIDITY: Final = ("relative_humidity", 8, 1.0, 999.0)
 _MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
 
 _WHOLE: Final = (
     "get it whole from its source; a shorter record can be used as a measured table (measured in a study, "
     "Climate.from_table in Python)"
 )
+#: Records of an hour that divide it into whole minutes.
+_RECORDS: Final = (1, 2, 3, 4, 5, 6, 10, 12, 15, 20, 30, 60)
 _NO_VALUE_TMY: Final = -9900.0
+_DAYS: Final = (31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 _TMY_STAMP: Final = ("Date (MM/DD/YYYY)", "Time (HH:MM)")
 _TMY_DATE: Final = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}) (\d{1,2}):\d{2}(?::\d{2})?")
 #: Largest size of the entries that state the place; time zone in h, altitude in m, angles in degrees.
@@ -82,7 +87,7 @@ class Year:
         The months come from different years.
     zone : datetime.tzinfo
         Fixed offset.
-    values : mapping of str to ndarray, shape (8760 or 8784,)
+    values : mapping of str to ndarray, shape (8760 or 8784 times records,)
         Channels; NaN where missing.
     place : tuple of float and str
         Latitude, longitude [deg], altitude [m] and name.
@@ -94,6 +99,10 @@ class Year:
         Line of each row.
     notes : tuple of str
         What was done.
+    records : int
+        Records of an hour.
+    start : tuple of int
+        Month and day of the first row.
     """
 
     year: int
@@ -105,6 +114,8 @@ class Year:
     sha256: str
     lines: Lines
     notes: tuple[str, ...]
+    records: int = 1
+    start: tuple[int, int] = (1, 1)
 
 
 def read_epw(path: Path) -> Year:
@@ -125,24 +136,41 @@ def _parsed_epw(path: Path, where: str) -> Year:
     raw = content(path)
     digest = hashlib.sha256(raw).hexdigest()
     lines = raw.decode("utf-8-sig", errors="replace").splitlines()
-    years, table = _read_epw_rows(lines, where)
+    rows = _read_epw_rows(lines, where)
     values = {}
-    for (channel, _, factor, limit), column in zip(_EPW, table.T, strict=True):
+    for (channel, _, factor, limit), column in zip((*_EPW, _HUMIDITY), rows.table.T, strict=True):
         # Many files write 0 where no infrared was known.
         unknown = (column >= limit) | ((column <= 0.0) & (channel == "infrared"))
         values[channel] = np.where(unknown, np.nan, column * factor)
+    humidity = values.pop("relative_humidity")
+    derived = _dew_point_from(humidity, values, where)
     head = [field.strip() for field in lines[0].split(",")]
     latitude, longitude, hours, altitude = (float(field) for field in head[6:10])
     name = ", ".join(part for part in (head[1], head[3]) if part)
     zone = fixed_zone(hours)
     notes = (
-        f"{where}: EPW, {len(table)} hours, {name}, time zone {zone_name(zone)}.",
+        f"{where}: EPW, {len(rows.table) // rows.records} hours, {name}, time zone {zone_name(zone)}.",
         _STAMPS_NOTE.format(where=where),
         f"{where}: cloud cover is the opaque sky cover.",
+        *rows.notes,
+        *derived,
     )
-    numbers = np.arange(len(table), dtype=np.int64) + _HEADER + 1
+    numbers = np.arange(len(rows.table), dtype=np.int64) + _HEADER + 1
     place = (latitude, longitude, altitude, name)
-    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, numbers, notes)
+    return Year(
+        rows.year, rows.mixed, zone, values, place, where, digest, numbers, notes, rows.records, rows.start
+    )
+
+
+def _dew_point_from(humidity: Array, values: dict[str, Array], where: str) -> tuple[str, ...]:
+    """Fill the dew point where it is missing and the relative humidity is there; what was done."""
+    air, dew = values["air_temperature"], values["dew_point"]
+    there = np.isnan(dew) & (humidity > 0.0) & (humidity <= 110.0) & np.isfinite(air)
+    if not there.any():
+        return ()
+    values["dew_point"] = dew.copy()
+    values["dew_point"][there] = dew_point(air[there], humidity[there])
+    return (f"{where}: dew point of {int(there.sum())} hours from air temperature and relative humidity.",)
 
 
 def _packed(read: Year) -> Cached:
@@ -151,7 +179,7 @@ def _packed(read: Year) -> Cached:
     hours = offset.total_seconds() / 3600.0 if offset is not None else 0.0
     notes = {
         "year": read.year, "mixed": read.mixed, "hours": hours, "place": read.place, "sha256": read.sha256,
-        "first": int(read.lines[0]), "notes": read.notes,
+        "first": int(read.lines[0]), "notes": read.notes, "records": read.records, "start": read.start,
     }  # fmt: skip
     return Cached(notes, read.values)
 
@@ -163,7 +191,11 @@ def _unpacked(found: Cached, where: str) -> Year:
     lines = np.arange(len(values["air_temperature"]), dtype=np.int64) + int(notes["first"])
     place, zone = (latitude, longitude, altitude, name), fixed_zone(notes["hours"])
     said = tuple(notes["notes"])
-    return Year(notes["year"], notes["mixed"], zone, values, place, where, notes["sha256"], lines, said)
+    month, day = notes["start"]
+    return Year(
+        notes["year"], notes["mixed"], zone, values, place, where, notes["sha256"], lines, said,
+        notes["records"], (month, day),
+    )  # fmt: skip
 
 
 def read_tmy3(path: Path) -> Year:
@@ -263,19 +295,33 @@ def _tmy_stamp(day: str, time: str, where: str, line: int) -> tuple[int, int, in
     return year, month, number, hour
 
 
-def _read_epw_rows(lines: list[str], where: str) -> tuple[list[int], Array]:
-    """Check every line; the year of each row, and its numbers in the order of the channels."""
+@dataclass(frozen=True)
+class _Rows:
+    """The rows of an EPW file: first year, whether months are of several years, and the numbers."""
+
+    year: int
+    mixed: bool
+    table: Array
+    records: int
+    start: tuple[int, int]
+    notes: tuple[str, ...]
+
+
+def _read_epw_rows(lines: list[str], where: str) -> _Rows:
+    """Check every line; numbers in the order of the channels, then the relative humidity."""
     if len(lines) <= _HEADER or not lines[0].upper().startswith("LOCATION"):
         raise InputError(
             f"{where}:1: expected the LOCATION line of an EPW file, found {lines[0][:60] if lines else ''!r}."
         )
     _check_location(lines[0], where)
-    _check_periods(lines[_HEADER - 1], where)
+    records = _records_of(lines[_HEADER - 1], where)
     rows = lines[_HEADER:]
     while rows and not rows[-1].strip():
         rows.pop()
-    years, table = [], []
+    stamps, table = [], []
     previous: tuple[int, int, int] | None = None
+    shift, empty = 0, 0
+    used = [field for _, field, _, _ in (*_EPW, _HUMIDITY)]
     for count, row in enumerate(rows):
         line = _HEADER + 1 + count
         fields = row.split(",")
@@ -284,21 +330,65 @@ def _read_epw_rows(lines: list[str], where: str) -> tuple[list[int], Array]:
                 f"{where}:{line}: found {len(fields)} fields, expected {_FIELDS}; the file is cut or "
                 f"damaged here: {_WHOLE}."
             )
-        stamp = _integers(fields, where, line)
+        year, month, day, hour = _integers(fields, where, line)
+        if count == 0:
+            shift = int(hour == 0)  # hours from 0 to 23
         table.append(
             [
-                _number(fields[field], f"{channel} (field {field + 1})", where, line, code)
-                for channel, field, _, code in _EPW
+                _number(fields[field], f"{channel} (field {field + 1})", where, line, code, empty=True)
+                for channel, field, _, code in (*_EPW, _HUMIDITY)
             ]
         )
-        years.append(stamp[0])
-        previous = _check_order(previous, stamp, where, line)
-    if len(rows) not in (_HOURS, _HOURS + 24):
+        empty += sum(not fields[field].strip() for field in used)
+        stamp = (year, month, day, hour + shift)
+        stamps.append(stamp[:3])
+        if count % records == 0:
+            previous = _check_order(previous, stamp, where, line, any_day=True)
+        elif stamp[1:] != previous:
+            raise InputError(
+                f"{where}:{line}: found {month}/{day} hour {hour}, expected {records} rows of each hour, as "
+                "the DATA PERIODS line states; a row is missing, or that line is wrong."
+            )
+    if len(rows) not in (_HOURS * records, (_HOURS + 24) * records):
         raise InputError(
-            f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows)} hours, expected 8760 "
-            f"(or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
+            f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows) / records:g} hours, expected "
+            f"8760 (or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
         )
-    return years, np.array(table)
+    start = stamps[0][1:]
+    return _Rows(
+        stamps[0][0], _is_mixed(stamps), np.array(table), records, start,
+        _row_notes(records, shift, start, empty, where),
+    )  # fmt: skip
+
+
+def _is_mixed(stamps: Sequence[tuple[int, int, int]]) -> bool:
+    """Whether the years of the rows do not follow the calendar: months of several years."""
+    year, before = stamps[0][0], stamps[0][1:]
+    for found, month, day in stamps:
+        year += int((month, day) == (1, 1) and before == (12, 31))
+        before = (month, day)
+        if found != year:
+            return True
+    return False
+
+
+def _row_notes(records: int, shift: int, start: tuple[int, int], empty: int, where: str) -> tuple[str, ...]:
+    notes = []
+    if records > 1:
+        notes.append(
+            f"{where}: {records} records an hour; radiation is the mean of each interval in W/m2, as "
+            "EnergyPlus takes it."
+        )
+    if shift:
+        notes.append(
+            f"{where}: warning: hours are 0 to 23, where the format has 1 to 24; hour 0 was taken as the "
+            "hour from 0:00 to 1:00."
+        )
+    if start != (1, 1):
+        notes.append(f"{where}: the first row is of {start[0]}/{start[1]}, not of 1 January.")
+    if empty:
+        notes.append(f"{where}: {empty} empty fields were taken as missing values.")
+    return tuple(notes)
 
 
 def _check_location(line: str, where: str) -> None:
@@ -321,15 +411,18 @@ def _check_place(where: str, entries: Sequence[tuple[str, str]]) -> None:
             raise InputError(f"{where}:1: {name} is {text!r}, expected a number within {limit:g} of zero.")
 
 
-def _check_periods(line: str, where: str) -> None:
+def _records_of(line: str, where: str) -> int:
+    """Records of an hour, as the DATA PERIODS line states them."""
     fields = line.split(",")
     if not line.upper().startswith("DATA PERIODS") or len(fields) < 3:
         raise InputError(f"{where}:{_HEADER}: expected the DATA PERIODS line, found {line[:60]!r}.")
-    if fields[2].strip() != "1":
+    text = fields[2].strip()
+    if not text.isdigit() or int(text) not in _RECORDS:
         raise InputError(
-            f"{where}:{_HEADER}: {fields[2].strip()} records per hour, expected 1; read such a file "
-            "with from_table."
+            f"{where}:{_HEADER}: found {text!r} records per hour, expected one of "
+            f"{', '.join(map(str, _RECORDS))}; correct the line."
         )
+    return int(text)
 
 
 def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, int]:
@@ -342,8 +435,10 @@ def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, 
     return year, month, day, hour
 
 
-def _number(text: str, what: str, where: str, line: int, code: float) -> float:
-    """The number of an entry; `code` marks a missing value in this format."""
+def _number(text: str, what: str, where: str, line: int, code: float, *, empty: bool = False) -> float:
+    """The number of an entry; `code` marks a missing value in this format, and so may an empty entry."""
+    if empty and not text.strip():
+        return code
     try:
         number, wanted = float(text), "a finite number"
     except ValueError:
@@ -357,10 +452,13 @@ def _number(text: str, what: str, where: str, line: int, code: float) -> float:
 
 
 def _check_order(
-    previous: tuple[int, int, int] | None, stamp: tuple[int, int, int, int], where: str, line: int
-) -> tuple[int, int, int]:
+    previous: tuple[int, int, int] | None, stamp: tuple[int, int, int, int], where: str, line: int,
+    *, any_day: bool = False,
+) -> tuple[int, int, int]:  # fmt: skip
     _, month, day, hour = stamp
     here = (month, day, hour)
+    if previous is None and any_day and hour == 1 and 1 <= month <= 12 and 1 <= day <= _DAYS[month - 1]:
+        return here
     expected = _next_hours(previous)
     if here not in expected:
         wanted = " or ".join(f"{m}/{d} hour {h}" for m, d, h in expected)

@@ -36,6 +36,12 @@ class WeatherRecord(Record):
     basis: Basis | None = None
     assumed: frozenset[str] = frozenset()
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings about a weather file of a year, which every run with it has."""
+        said = [note for note in self.provenance if self.of_year and ": warning: " in note]
+        return tuple(note.replace(": warning: ", ": ", 1) for note in said)
+
     def measured(self, name: str) -> bool:
         """Whether a channel of a measured table was measured; a weather file of a year fills it somehow."""
         return name in self.columns and name not in self.assumed and not self.of_year

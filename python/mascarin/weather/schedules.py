@@ -12,6 +12,7 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
 from mascarin.tables.checks import require_range
+from mascarin.tables.record import Origin
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import local_time
 from mascarin.weather.channels import TEMPERATURES, UNITS
@@ -230,6 +231,7 @@ def _of_column(
             raise
         raise InputError(f"schedules.{name}.column: {error}") from None
     record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
+    _require_unit(record.origins.get(column), course, column, f"{record.file}: {column}")
     low, high = LIMITS_OF_COURSES[course.kind]
     require_range(
         record,
@@ -242,3 +244,19 @@ def _of_column(
     if course.kind == "temperature":
         return column_values(record, column, steps)
     return column_means(record, column, steps)[:, None]
+
+
+def _require_unit(origin: Origin | None, course: Schedule | ColumnCourse, column: str, where: str) -> None:
+    """Refuse a column whose file states another unit than the building takes it in."""
+    unit = getattr(course, "unit", "")
+    if origin is None or not origin.unit or not unit or unit == "degC":
+        return
+    stated = {"%": "%", "1": "-"}.get(origin.unit, origin.unit)
+    if stated == unit or (stated, unit) == ("mm", "mm/h"):
+        return
+    raise InputError(
+        f"{where}: the file states the unit {origin.unit}, but the building takes the column {column!r} in "
+        f"{unit}; expected the same. Write unit: {stated} in the building if it is among "
+        "W, kW, m3/s, m3/h, L/s, kg/s, kg/h, g/h, %, g/kg, else convert the column in the file; or correct "
+        "the unit that the file states."
+    )

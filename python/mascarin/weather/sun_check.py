@@ -11,6 +11,7 @@ import numpy as np
 from mascarin._io.cache import Cached, cached
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
+from mascarin.tables.quality import Stretch
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
 from mascarin.weather import sun as sun_module
@@ -28,8 +29,6 @@ _NIGHT_MOST: Final = 0.005
 """More radiation than this part at night is refused. [-]"""
 _NIGHT_TRACE: Final = 0.0003
 """More than this part at night is refused where the center is off by `_NOON_OFF` as well. [-]"""
-_NOON_FAR: Final = 1.5
-"""A center that is farther from solar noon than this is refused. [h]"""
 _NOON_OFF: Final = 0.75
 """See `_NIGHT_TRACE`. [h]"""
 _JUMP: Final = 0.7
@@ -47,7 +46,8 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
     Three numbers are checked: the part of the radiation that is recorded while the sun is below the
     horizon, the hour angle around which the radiation is centered, and in records of four weeks or more
     how far this center moves at once, as with a clock that follows summer time. Clouds and hills shift the
-    center by up to an hour. A wrong time zone shifts it by whole hours and puts radiation into the night.
+    center, by more than an hour where mornings are in fog: a center alone proves nothing. A wrong time zone
+    shifts it by whole hours and puts radiation into the night.
 
     Parameters
     ----------
@@ -84,9 +84,11 @@ def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: fl
     sun = SunPath.over(latitude, longitude, grid.start - grid.interval, grid.end + grid.interval)
     night = _night_part(values, sun, middle, grid.interval)
     turns = _turns(values, sun.vector(middle), latitude)
-    _refuse_jump(record, middle, turns)
+    if night > 0.0:
+        _refuse_jump(record, middle, turns)
     late = float(np.degrees(np.angle(turns.sum())) / 15.0)
-    if night <= _NIGHT_MOST and abs(late) <= _NOON_FAR and (night <= _NIGHT_TRACE or abs(late) <= _NOON_OFF):
+    # Clouds and hills move the center as far as they like: what lies at night alone shows a wrong clock.
+    if night <= _NIGHT_MOST and (night <= _NIGHT_TRACE or abs(late) <= _NOON_OFF):
         return
     when = "after" if late > 0.0 else "before"
     raise InputError(
@@ -95,8 +97,33 @@ def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: fl
         "is recorded while the sun is below the horizon; expected less than one hour, and none. Check the "
         f"time zone (now {zone_name(grid.zone)}), whether stamps mark the start or the end of their "
         "interval, and the sign of the longitude (east is positive). If all of these are right, the record "
-        "itself is wrong: repair the file (in Python it can be read as it is: check_sun=False)."
+        "itself is wrong: repair the file, or read it as it is with check_sun: false (on the command line "
+        "--no-check-sun, in Python check_sun=False)."
     )
+
+
+def is_polar_night(part: Stretch, record: WeatherRecord) -> bool:
+    """Whether a stretch of zeros of an irradiance is one over which the sun never rises.
+
+    Parameters
+    ----------
+    part : Stretch
+        Of the quality of a record.
+    record : WeatherRecord
+        With the place of the weather.
+    """
+    if part.channel not in RADIATION or part.kind not in ("stuck", "forward_filled") or record.site is None:
+        return False
+    first, last = part.start.timestamp(), part.end.timestamp()
+    grid = record.grid
+    rows = slice(
+        *np.round((np.array([first, last + grid.interval]) - grid.start) / grid.interval).astype(int)
+    )
+    if np.any(record.columns[part.channel][rows] != 0.0):
+        return False
+    # The first and the last day may have a little sun beside the zeros.
+    sun = SunPath.over(record.site.latitude, record.site.longitude, first, last)
+    return bool(np.mean(sun.vector(np.arange(first, last, 1800.0))[:, 2] > -_DARK) < 0.02)
 
 
 def _name(record: WeatherRecord) -> str:
@@ -159,7 +186,7 @@ def _refuse_jump(record: WeatherRecord, middle: Array, turns: npt.NDArray[np.com
         f"{record.file}: the radiation moves by {abs(jump):.1f} h against the sun about {when:%Y-%m-%d} "
         f"({'later' if jump > 0.0 else 'earlier'} from then on), expected less than {_JUMP:g} h. {advice} "
         "If it "
-        "does not, the clock of the logger was set: repair the stamps (in Python the record can be read as "
-        "it "
-        "is: check_sun=False)."
+        "does not, the clock of the logger was set: repair the stamps, or read the "
+        "record as it is with check_sun: false (on the command line --no-check-sun, in Python "
+        "check_sun=False)."
     )

@@ -12,6 +12,7 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid
 from mascarin.tables.record import Kind
+from mascarin.weather.channels import RADIATION
 from mascarin.weather.readers import Year, kind_of
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import Place
@@ -42,30 +43,61 @@ def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere
     periodic = read.mixed if typical is None else typical
     label = read.year if not periodic else (2001 if year is None else year)
     notes = list(read.notes)
-    values, lines = dict(read.values), read.lines
+    values, lines = _with_global_alone(dict(read.values), read.where, notes), read.lines
     count = len(lines)
+    day = 24 * read.records
+    month, number = (1, 1) if periodic else read.start
     if periodic:
-        if count != 8760:
-            keep = np.r_[0 : 59 * 24, 60 * 24 : count]
-            values, lines, count = {k: v[keep] for k, v in values.items()}, lines[keep], 8760
+        if read.start != (1, 1):
+            # In the order of the calendar: a typical year begins in January.
+            leap = count != 365 * day
+            first = (
+                date(2000 if leap else 2001, *read.start) - date(2000 if leap else 2001, 1, 1)
+            ).days * day
+            values, lines = {k: np.roll(v, first) for k, v in values.items()}, np.roll(lines, first)
+        if count != 365 * day:
+            keep = np.r_[0 : 59 * day, 60 * day : count]
+            values, lines, count = {k: v[keep] for k, v in values.items()}, lines[keep], 365 * day
             notes.append(f"{read.where}: 29 February left out of the typical year.")
         notes.append(
             f"{read.where}: one typical year of 365 days, labeled {label}; it represents any year, is "
             "repeated at its end, and 29 February takes the values of 28 February."
         )
     else:
-        _check_length(count, label, read.where)
+        _check_length(count // read.records, label, read.start, read.where)
         notes.append(
             f"{read.where}: the calendar year {label}; its first hour starts from the first spot value."
         )
-    start = (date(label, 1, 1) - date(1970, 1, 1)).total_seconds()
+    start = (date(label, month, number) - date(1970, 1, 1)).total_seconds()
     offset = read.zone.utcoffset(None)
-    grid = Grid(start - (offset.total_seconds() if offset else 0.0), 3600.0, count, read.zone, periodic)
+    grid = Grid(
+        start - (offset.total_seconds() if offset else 0.0), 3600.0 / read.records, count, read.zone, periodic
+    )
     return _of_year(read, grid, values, lines, notes, elsewhere)
 
 
-def _check_length(count: int, year: int, where: str) -> None:
-    days = (date(year + 1, 1, 1) - date(year, 1, 1)).days
+def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -> dict[str, Array]:
+    """Without irradiances that the file does not have: they are derived from the others and the sun."""
+    empty = {name for name in RADIATION if name in values and np.isnan(values[name]).all()}
+    rest = set(RADIATION) - empty
+    if empty and ("global_horizontal" in rest or len(rest) == 2):
+        notes.append(
+            f"{where}: {' and '.join(sorted(empty))} have no value in any hour: derived from the others."
+        )
+        values = {name: column for name, column in values.items() if name not in empty}
+    infrared = values.get("infrared", np.zeros(0))
+    gaps = int(np.isnan(infrared).sum())
+    if 0 < gaps < len(infrared):
+        notes.append(
+            f"{where}: warning: infrared has no value in {gaps} of {len(infrared)} rows: a run takes the "
+            "model of the sky (site.sky) in all hours, not the infrared of the file. Repair it to use it."
+        )
+    return values
+
+
+def _check_length(count: int, year: int, start: tuple[int, int], where: str) -> None:
+    first = (3, 1) if start == (2, 29) else start
+    days = (date(year + 1, *first) - date(year, *start)).days
     if count not in (days * 24, 8760):
         raise InputError(f"{where}: found {count} hours for the year {year}, expected {days * 24}.")
     if count != days * 24:

@@ -1,19 +1,25 @@
-"""Files of tables: CSV and Parquet, without any change."""
+"""Files of tables: CSV, spreadsheets and Parquet, without any change."""
 
 from __future__ import annotations
 
 import hashlib
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
+from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.layout import Layout, decoded, find_layout
+from mascarin.tables.reading.numbers import suspicious_decimals
+from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,15 +52,47 @@ def with_time_column(frame: pd.DataFrame) -> pd.DataFrame:
     return frame.reset_index(drop=True)
 
 
-def read_frame(
-    path: Path, separator: str | None, decimal: str | None, skip_lines: int | None
-) -> tuple[pd.DataFrame, int, tuple[str, ...]]:
-    """Read a CSV or Parquet file without changing it.
+@dataclass(frozen=True)
+class Read:
+    """A file as it was read.
+
+    Attributes
+    ----------
+    frame : pandas.DataFrame
+        Its rows.
+    lines : ndarray, shape (n,)
+        Line of each row.
+    notes : tuple of str
+        What was found where nothing was stated.
+    units : mapping of str to str
+        Entries of the row of units, by the name of the column.
+    units_line : int
+        Line of that row.
+    decimal : str
+        Decimal mark.
+    decimal_stated : bool
+        Whether the user states it.
+    decimal_evident : bool
+        Whether entries of the file can have this one alone.
+    """
+
+    frame: pd.DataFrame
+    lines: Lines
+    notes: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    units_line: int = 0
+    decimal: str = "."
+    decimal_stated: bool = False
+    decimal_evident: bool = False
+
+
+def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
+    """Read a CSV or Parquet file, or a spreadsheet, without changing it.
 
     Parameters
     ----------
     path : Path
-        The file; its ending shows whether it is Parquet.
+        The file; its ending shows whether it is Parquet or a spreadsheet.
     separator, decimal : str or None
         Between entries of a CSV file, and its decimal mark; None: found.
     skip_lines : int or None
@@ -62,12 +100,8 @@ def read_frame(
 
     Returns
     -------
-    frame : pandas.DataFrame
+    Read
         The table; a time index has become the first column.
-    first_line : int
-        Line of the first row.
-    notes : tuple of str
-        What was found where nothing was stated.
 
     Raises
     ------
@@ -78,44 +112,80 @@ def read_frame(
 
     if path.suffix.lower() in {".parquet", ".pq"}:
         try:
-            return with_time_column(pd.read_parquet(path)), 1, ()
+            frame = with_time_column(pd.read_parquet(path))
+            return Read(frame, 1 + np.arange(len(frame), dtype=np.int64))
         except ImportError as error:
             raise InputError(
                 f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
             ) from error
         except (ValueError, OSError) as error:
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
-    text, encoding = decoded(path.read_bytes(), path.name)
+    sheet: tuple[str, ...] = ()
+    if path.suffix.lower() in ENDINGS:
+        text, sheet = sheet_text(path)
+        # Numbers of cells have no marks that could be read in two ways.
+        encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
+    else:
+        text, encoding = decoded(path.read_bytes(), path.name)
     lines = text.splitlines()
+    last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
+    del text  # a large table is in memory once, as far as that is possible
     layout = find_layout(lines, path.name, separator, decimal, skip_lines)
-    frame = _parsed(lines, layout, path.name)
+    rows, repeated = _rows(lines, layout)
+    notes = (*sheet, *_notes(layout, encoding, lines, path.name))
+    if repeated:
+        notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
+                  "were left out.",)  # fmt: skip
+    header = lines[layout.header] if layout.header < len(lines) else ""
+    header = layout.separator.join(layout.names) or header
+    data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
+    body = "\n".join([header + layout.separator * layout.trailing, *data])
+    del lines, data
+    frame = _parsed(body, rows, layout, path.name, doubt=decimal is None)
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     if layout.trailing:
         frame = frame.iloc[:, :-1]
-    _refuse_cut(text, layout, len(frame.columns), path.name, layout.first + len(frame))
-    return frame, layout.first + 1, _notes(layout, encoding, lines, path.name)
+    _refuse_cut(last, layout, len(frame.columns), path.name, count)
+    units = dict(zip(map(str, frame.columns), layout.units, strict=False))
+    stated = decimal is not None
+    return Read(
+        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated, layout.evident
+    )
 
 
-def _parsed(lines: Sequence[str], layout: Layout, where: str) -> pd.DataFrame:
+def _rows(lines: Sequence[str], layout: Layout) -> tuple[Lines, list[int]]:
+    """Numbers of the lines with data, and of lines of the head that a restart of the logger wrote again."""
+    head = {line.strip() for line in lines[: layout.first] if line.strip()}
+    start = {line[:8] for line in head}
+    repeated = [
+        k
+        for k in range(layout.first, len(lines))
+        if lines[k][:8] in start and (lines[k].strip() in head or _is_head_again(lines[k], lines, layout))
+    ]
+    rows = np.arange(layout.first, len(lines), dtype=np.int64)
+    return (np.setdiff1d(rows, repeated) if repeated else rows), repeated
+
+
+def _is_head_again(line: str, lines: Sequence[str], layout: Layout) -> bool:
+    """Whether a line is one of the preamble with another number or date in it."""
+    if layout.header == 0:
+        return False
+    first = lines[0]
+    return line[:5] == first[:5] and line.count(layout.separator) == first.count(layout.separator)
+
+
+def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
     import pandas as pd
 
-    header = lines[layout.header] if layout.header < len(lines) else ""
-    body = [header + layout.separator * layout.trailing, *lines[layout.first :]]
-    # pandas counts the lines of the body.
-    offset = layout.first - 1
+    options: dict[str, Any] = {
+        "sep": layout.separator, "decimal": layout.decimal, "skip_blank_lines": False,
+        "skipinitialspace": True, "low_memory": False, "index_col": False,
+    }  # fmt: skip
     try:
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            return read_csv(
-                StringIO("\n".join(body)),
-                sep=layout.separator,
-                decimal=layout.decimal,
-                skip_blank_lines=False,
-                skipinitialspace=True,
-                low_memory=False,
-                index_col=False,
-            )
+            frame = read_csv(StringIO(body), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
             f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
@@ -123,10 +193,23 @@ def _parsed(lines: Sequence[str], layout: Layout, where: str) -> pd.DataFrame:
             "separator."
         ) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
-        said = re.sub(r"(?<=line )\d+", lambda found: str(int(found[0]) + offset), str(error))
+        said = re.sub(r"(?<=line )\d+", lambda found: str(int(rows[int(found[0]) - 2]) + 1), str(error))
         raise InputError(
             f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}".strip()
         ) from error
+    doubtful = [
+        k
+        for k, name in enumerate(frame.columns)
+        if doubt
+        and k
+        and frame.dtypes.iloc[k].kind == "f"
+        and suspicious_decimals(frame.iloc[:, k].to_numpy())
+    ]
+    if doubtful:  # the texts decide between decimals and thousands
+        texts = read_csv(StringIO(body), dtype=str, **options)
+        parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
+        frame = pd.concat(parts, axis=1)
+    return frame
 
 
 def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> tuple[str, ...]:
@@ -140,18 +223,14 @@ def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> t
             f"{lines[layout.header].strip()[:60]!r}; the lines above were left out."
         )
     if layout.units:
-        notes.append(
-            f"{where}: line {layout.header + 2} has units, {', '.join(layout.units)[:60]!r}; they were not "
-            "used."
-        )
+        notes.append(f"{where}: line {layout.header + 2} has units, {', '.join(layout.units)[:60]!r}.")
     if layout.decimal != ".":
         notes.append(f"{where}: the decimal mark is {layout.decimal!r}.")
     return tuple(notes)
 
 
-def _refuse_cut(text: str, layout: Layout, fields: int, where: str, line: int) -> None:
+def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -> None:
     """Refuse a file whose last line has no line end and fewer entries than the header: it was cut."""
-    last = re.split("[\r\n]", text)[-1]
     count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(

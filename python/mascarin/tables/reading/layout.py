@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from mascarin.errors import InputError
+from mascarin.tables.reading.numbers import EMPTY
+from mascarin.tables.units import parse_unit
 
 _MARKS: Final = (";", "\t", ",", "|")
 _SEARCHED: Final = 200
@@ -18,91 +20,17 @@ _BLOCK: Final = 3
 _DIGIT: Final = re.compile(r"[-+]?[.,]?\d")
 _COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 _POINT: Final = re.compile(r"[-+]?\d+\.\d+(?:[eE][-+]?\d+)?")
+_THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
 _FORMAT: Final = re.compile(r"(?:yy|dd|mm|hh|ss)[-/.:, tydmhs]+", re.IGNORECASE)
-EMPTY: Final = frozenset({"", "na", "nan", "n/a", "null", "none", "-", "--"})
-"""Entries that mean that there is no value; in small letters."""
 _BRACKETS: Final = re.compile(r"\[.*\]|\(.*\)|<.*>")
-_UNITS: Final = frozenset(
-    [
-        "c",
-        "k",
-        "f",
-        "w",
-        "kw",
-        "mw",
-        "wh",
-        "kwh",
-        "j",
-        "kj",
-        "mj",
-        "pa",
-        "hpa",
-        "kpa",
-        "bar",
-        "mbar",
-        "m",
-        "mm",
-        "cm",
-        "m/s",
-        "km/h",
-        "v",
-        "mv",
-        "a",
-        "ma",
-        "s",
-        "min",
-        "h",
-        "d",
-        "-",
-        "1",
-        "deg",
-        "degc",
-        "degf",
-        "celsius",
-        "kelvin",
-        "%",
-        "%rh",
-        "rh",
-        "w/m2",
-        "w/m^2",
-        "w/m²",
-        "kw/m2",
-        "j/cm2",
-        "wh/m2",
-        "w/(m2k)",
-        "m3/h",
-        "l/h",
-        "l/s",
-        "g/kg",
-        "kg",
-        "ppm",
-        "lux",
-        "lx",
-        "°c",
-        "°f",
-        "°",
-        "ºc",
-        "deg",
-        "c",
-        "deg",
-        "f",
-        "w/m**2",
-        "ts",
-        "rn",
-        "avg",
-        "ave",
-        "mean",
-        "smp",
-        "min",
-        "max",
-        "tot",
-        "std",
-        "inst",
-    ]
-) | {"deg c", "deg f"}
-"""Entries that are units, or say how a logger formed its values; in small letters."""
-_UNIT_ROWS: Final = 2
-"""Rows of units and of kinds of values that a header may have at most."""
+_WORDS: Final = frozenset(
+    {"ts", "rn", "avg", "ave", "mean", "smp", "min", "max", "tot", "std", "inst", "s", "h", "d", "days"}
+    | {"date", "time", "hours", "minutes", "seconds", "-", "1", "m", "cm", "kg", "w/(m2k)", "w/m2k", "mw"}
+    | {"ma", "id", "no", "nr", "record", "mj", "mwh"}
+)
+"""Entries of rows of units that are no unit of `tables.units`, or say how a logger formed its values."""
+_UNIT_ROWS: Final = 3
+"""Rows of units, of kinds of values and of labels that a header may have at most."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +49,10 @@ class Layout:
         The rows end with a separator that the header does not have.
     units : tuple of str
         Entries of the row of units below the names; empty without one.
+    evident : bool
+        Whether entries can have this decimal mark alone, or the user states it.
+    names : tuple of str
+        Names that are spread over two lines; empty where they are in the line of the header.
     """
 
     separator: str
@@ -129,6 +61,8 @@ class Layout:
     first: int
     trailing: bool = False
     units: tuple[str, ...] = ()
+    evident: bool = False
+    names: tuple[str, ...] = ()
 
 
 def decoded(raw: bytes, where: str) -> tuple[str, str]:
@@ -193,18 +127,32 @@ def find_layout(
         There is no header, or no separator in it.
     """
     header = skip_lines if skip_lines is not None else _header(lines, where, separator)
-    found = separator or _separator(lines[header] if header < len(lines) else "", where, header)
+    found = separator or _separator(lines, where, header)
     names = _cells(lines[header], found) if header < len(lines) else []
     units: tuple[str, ...] = ()
     first = header + 1
     while first - header <= _UNIT_ROWS and first < len(lines):
         cells = _cells(lines[first], found)
-        if len(cells) != len(names) or not _is_units(cells):
+        if len(cells) != len(names) or not (_is_units(cells) or _is_labels(cells)):
             break
-        units, first = units or tuple(cells), first + 1
+        units, first = units or (tuple(cells) if _is_units(cells) else ()), first + 1
     sample = [_cells(line, found) for line in lines[first : first + _SEARCHED] if line.strip()]
     trailing = bool(sample) and all(len(row) == len(names) + 1 and not row[-1].strip() for row in sample)
-    return Layout(found, decimal or _decimal(sample), header, first, trailing, units)
+    mark, evident = (decimal, True) if decimal else _decimal(sample)
+    two = _names_of_two_lines(lines, header, found, names)
+    return Layout(found, mark, header, first, trailing, units, evident, two)
+
+
+def _names_of_two_lines(
+    lines: Sequence[str], header: int, mark: str, names: Sequence[str]
+) -> tuple[str, ...]:
+    """Names of WeatherLink, whose first words are in the line above that of date and time."""
+    if header == 0 or [name.lower() for name in names[:2]] != ["date", "time"]:
+        return ()
+    above = _cells(lines[header - 1], mark)
+    if len(above) != len(names) or any(above[:2]) or not any(above):
+        return ()
+    return tuple(" ".join(pair).strip() for pair in zip(above, names, strict=True))
 
 
 def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
@@ -218,9 +166,13 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
         return start
     count, place, mark = max(found)
     first = -place
+    # Rows above the block that begin with a time are data, too: one of their entries is no number.
+    while first > 0 and len(cells := _cells(lines[first - 1], mark)) == count and _DIGIT.match(cells[0]):
+        first -= 1
     at = first - 1
     while at >= 0 and (not lines[at].strip() or _is_units(_cells(lines[at], mark))):
         at -= 1
+    at = _above_labels(lines, at, mark, count)
     names = _cells(lines[at], mark) if at >= 0 else []
     if at < 0 or len(names) not in (count, count - 1):
         above = (
@@ -232,6 +184,17 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
             "state skip_lines, the number of lines before the line with the names."
         )
     return at
+
+
+def _above_labels(lines: Sequence[str], at: int, mark: str, count: int) -> int:
+    """Number of the line with the names where a line of labels without one for the time is below them."""
+    place = at
+    while place > 0 and _is_labels(_cells(lines[place], mark)):
+        place -= 1
+        while place > 0 and _is_units(_cells(lines[place], mark)):
+            place -= 1
+    names = _cells(lines[place], mark) if place >= 0 else []
+    return place if len(names) == count and all(names) else at
 
 
 def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
@@ -273,22 +236,49 @@ def _is_units(cells: Sequence[str]) -> bool:
     """Whether a row holds units: all its entries are units, in brackets, formats of times, or empty."""
     written = [cell for cell in cells if cell]
     return bool(written) and all(
-        cell.lower() in _UNITS or _BRACKETS.fullmatch(cell) or _FORMAT.match(cell) for cell in written
+        cell.lower() in _WORDS or parse_unit(cell) or _BRACKETS.fullmatch(cell) or _FORMAT.match(cell)
+        for cell in written
     )
 
 
-def _separator(header: str, where: str, line: int) -> str:
-    counts = {mark: header.count(mark) for mark in _MARKS}
-    best = max(counts, key=lambda mark: counts[mark])
-    if counts[best] == 0:
+def _is_labels(cells: Sequence[str]) -> bool:
+    """Whether a row below the names holds further names: it has none for the time, and no numbers."""
+    return not cells[0] and any(cells) and not any(_DIGIT.match(cell) for cell in cells)
+
+
+def _separator(lines: Sequence[str], where: str, line: int) -> str:
+    """The mark that divides the names and the rows below into as many entries."""
+    header = lines[line] if line < len(lines) else ""
+    below = [text for text in lines[line + 1 : line + 8] if text.strip()]
+    fits: dict[str, tuple[int, int]] = {}
+    for mark in _MARKS:
+        count = len(_cells(header, mark))
+        if count > 1:
+            same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
+            fits[mark] = (same, header.count(mark))
+    if not fits:
         raise InputError(
             f"{where}:{line + 1}: no separator found in the header {header.strip()[:40]!r}, expected the "
             "names of columns; state separator, or skip_lines if the header is further down."
         )
-    return best
+    return max(fits, key=lambda mark: fits[mark])
 
 
-def _decimal(rows: Sequence[Sequence[str]]) -> str:
-    """The comma where entries have decimal commas and none has a point."""
-    comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
-    return "," if comma and not any(_POINT.fullmatch(cell) for row in rows for cell in row) else "."
+def _decimal(rows: Sequence[Sequence[str]]) -> tuple[str, bool]:
+    """The decimal mark, and whether entries can have this one alone.
+
+    It is the comma where entries have decimal commas and none has a point that stands before decimals: three
+    digits behind a mark may be thousands.
+    """
+    cells = [cell for row in rows for cell in row]
+    comma = any(_COMMA.fullmatch(cell) for cell in cells)
+    evident = {
+        mark: any(pattern.fullmatch(cell) and not _THOUSANDS.fullmatch(cell) for cell in cells)
+        for mark, pattern in ((",", _COMMA), (".", _POINT))
+    }
+    if evident[","] and not evident["."]:
+        return ",", True
+    if evident["."]:
+        return ".", not evident[","]
+    point = any(_POINT.fullmatch(cell) for cell in cells)
+    return ("," if comma and not point else "."), False

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
 from mascarin.tables.interval_labels import knot_lines, to_starts
 from mascarin.tables.reading.table import Stamps, Table
-from mascarin.tables.record import Kind, Record
+from mascarin.tables.record import Kind, Origin, Record
 
 Columns = Mapping[str, str | Column | Mapping[str, object]]
 
@@ -23,7 +24,7 @@ def record_of_columns(
     table : Table
         From `read_table`.
     columns : iterable or mapping or None
-        Columns to read, or name -> column or `{column, unit, scale, offset, kind}`. None: all.
+        Columns to read, or name -> column or `{column, unit, scale, offset, kind, overrule}`. None: all.
     mean : iterable of str
         Columns that are means over their interval; the others are values at the stamp.
     stamps : str
@@ -40,7 +41,7 @@ def record_of_columns(
         A column is missing, or an entry cannot be used.
     """
     wanted: Iterable[str] | Columns
-    wanted = [str(name) for name in table.frame.columns] if columns is None else columns
+    wanted, words = (table.numeric, table.words) if columns is None else (columns, [])
     pairs = wanted.items() if isinstance(wanted, Mapping) else [(name, name) for name in wanted]
     chosen = {name: Column.of(given, f"{table.where}: columns.{name}") for name, given in pairs}
     kinds: dict[str, Kind] = {name: column.kind or "instant" for name, column in chosen.items()}
@@ -50,14 +51,49 @@ def record_of_columns(
                 f"{table.where}: mean: {name!r} is not read. {did_you_mean(name, kinds)}".rstrip()
             )
         kinds[name] = "mean"
-    values, notes = {}, []
+    values, origins = {}, {}
     for name, column in chosen.items():
-        raw = table.numbers(column.column, name)
-        values[name] = column.convert(raw, "", table.interval, f"{table.where}: {name}")
-        notes.append(column.sentence(name, ""))
+        values[name], origins[name] = converted(table, column, name, "")
     kept, closing, grid, note = to_starts(table, values, kinds, stamps)
-    said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
+    left_out = [f"{table.where}: left out, without a number: {', '.join(words)}."] if words else []
+    said = (*table.notes, note, *left_out, *(f"{table.where}: {origin.line}" for origin in origins.values()))
     return Record(
         kept, kinds, grid, closing, table.where, table.sha256, said, table.lines,
-        knot_lines(table.lines, stamps),
+        knot_lines(table.lines, stamps), origins=origins,
     )  # fmt: skip
+
+
+def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array, Origin]:
+    """Values of a column in the wanted unit.
+
+    Parameters
+    ----------
+    table : Table
+        From `read_table`.
+    column : Column
+        Which column, and what the user states of it.
+    name : str
+        What it is read for.
+    unit : str
+        Wanted unit; empty where the use of the column is not known.
+
+    Returns
+    -------
+    values : ndarray, shape (n,)
+        In the wanted unit.
+    origin : Origin
+        Where they come from.
+
+    Raises
+    ------
+    InputError
+        There is no such column, an entry is no number, or units contradict each other.
+    """
+    where = f"{table.where}: {name}"
+    raw = table.numbers(column.column, name, compass=unit == "deg")
+    stated = None if column.overrule else table.stated_unit(column.column)
+    settled = column.settled(stated, unit, table.interval, table.names, where)
+    values = settled.convert(raw, unit, table.interval, where)
+    left = "" if stated is None or settled.unit is not None else stated.unit
+    stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
+    return values, Origin(left, stated_somewhere, settled.line(name, unit, values, stated))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import tzinfo
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -16,17 +16,25 @@ from mascarin._io.arguments import require_type
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Lines
-from mascarin.tables.reading.files import file_hash, read_frame, with_time_column
-from mascarin.tables.reading.layout import EMPTY
+from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
+from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
+from mascarin.tables.reading.numbers import parse_numbers, points_as_degrees
+from mascarin.tables.reading.rows import (
+    has_words,
+    rows_with_values,
+    time_text,
+    without_entries,
+    year_day_hour,
+)
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
-    YEARS,
     fixed_offset,
-    localize,
+    fixed_zone,
     parse_timezone,
     zone_name,
     zone_of,
 )
+from mascarin.tables.units import StatedUnit, parse_unit, unit_in_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,8 +42,8 @@ if TYPE_CHECKING:
 Stamps = Literal["start", "end"]
 """Which end of its interval a stamp marks."""
 
-_HAS_OFFSET = re.compile(r"\d{1,2}:\d{2}(?::\d{2}(?:\.\d+)?)?\s*(?:Z|[+-]\d{2}:?\d{2})$")
-_MIDNIGHT = re.compile(r"[T ]24:00(?::00)?$")
+#: Jitter of a clock that is allowed, as a part of the step.
+_JITTER: Final = 0.1
 
 
 @dataclass(frozen=True)
@@ -58,6 +66,16 @@ class Table:
         Line of each row in the file; 0 for a row that was missing.
     notes : tuple of str
         What was done.
+    units : mapping of str to str
+        Entries of the row of units, by the name of the column.
+    units_line : int
+        Line of that row.
+    decimal : str
+        Decimal mark of the file.
+    decimal_stated : bool
+        Whether the user states it.
+    decimal_evident : bool
+        Whether entries of the file can have this one alone.
     """
 
     frame: pd.DataFrame
@@ -67,9 +85,49 @@ class Table:
     sha256: str | None
     lines: Lines
     notes: tuple[str, ...]
+    units: Mapping[str, str] = field(default_factory=dict)
+    units_line: int = 0
+    decimal: str = "."
+    decimal_stated: bool = False
+    decimal_evident: bool = False
 
-    def numbers(self, column: str, what: str) -> Array:
-        """A column as numbers, NaN where empty.
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns, without that of the time."""
+        return [str(name) for name in self.frame.columns]
+
+    @property
+    def words(self) -> list[str]:
+        """Columns that hold words alone."""
+        return [name for name in self.names if self.frame.columns.is_unique and has_words(self.frame[name])]
+
+    @property
+    def numeric(self) -> list[str]:
+        """All other columns."""
+        return [name for name in self.names if name not in self.words]
+
+    def stated_unit(self, column: str) -> StatedUnit | None:
+        """Unit of a column by the row of units or by its name; None where there is none.
+
+        Raises
+        ------
+        InputError
+            The two contradict each other.
+        """
+        text = self.units.get(column, "")
+        row, name = parse_unit(text), unit_in_name(column)
+        if row is not None and name is not None and row != name[0]:
+            raise InputError(
+                f"{self.where}:{self.units_line}: the row of units has {text!r} for the column {column!r}, "
+                f"whose name says {name[1]!r}; expected the same. State the right one: "
+                f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
+            )
+        if row is not None:
+            return StatedUnit(row, text, f"the row of units (line {self.units_line})")
+        return None if name is None else StatedUnit(*name, "the name of the column")
+
+    def numbers(self, column: str, what: str, *, compass: bool = False) -> Array:
+        """A column as numbers, NaN where empty; with `compass`, points such as NNE are directions. [deg]
 
         Raises
         ------
@@ -80,7 +138,16 @@ class Table:
             names = [str(name) for name in self.frame.columns]
             hint = did_you_mean(column, names) or f"Columns: {', '.join(names[:40])}."
             raise InputError(f"{self.where}: no column {column!r} (wanted for {what}). {hint}")
-        return _numbers(self.frame[column], self.lines, f"{self.where}: column {column!r}")
+        place = f"{self.where}: column {column!r}"
+        entries = self.frame[column]
+        return parse_numbers(
+            points_as_degrees(entries) if compass else entries,
+            self.decimal,
+            self.lines,
+            place,
+            stated=self.decimal_stated,
+            evident=self.decimal_evident,
+        )
 
 
 def read_table(
@@ -94,6 +161,7 @@ def read_table(
     skip_lines: int | None = None,
     step: str | float | None = None,
     missing: Sequence[str | float] = (),
+    tolerance: str | float | None = None,
 ) -> Table:
     """Read a table and put it on a regular grid of times.
 
@@ -119,6 +187,9 @@ def read_table(
         Expected step, such as `15min` or seconds [s]; default: found.
     missing : sequence
         Entries that mean that there is no value, beside the empty one.
+    tolerance : str or float, optional
+        Largest deviation of a stamp from the regular grid, to which it is moved, such as `30s` or seconds
+        [s]. Default: a tenth of the step.
 
     Returns
     -------
@@ -140,33 +211,50 @@ def read_table(
     )
     zone = _zone(source, timezone, time)
     digest: str | None = None
+    read: Read | None = None
     said: tuple[str, ...] = ()
     if isinstance(source, pd.DataFrame):
-        frame, where, first_line = with_time_column(source.copy()), "table", 1
+        frame, where = with_time_column(source.copy()), "table"
     else:
         path = Path(source)
         where = path.name
         digest = file_hash(path)
-        frame, first_line, said = read_frame(path, separator, decimal, skip_lines)
-    lines = first_line + np.arange(len(frame), dtype=np.int64)
+        read = read_frame(path, separator, decimal, skip_lines)
+        frame, said = read.frame, read.notes
+    lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = frame.isna().all(axis=1).to_numpy()
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
         raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
-    text, used = _time_text(frame, time, where)
+    if time is None and time_format is None and (parts := year_day_hour(frame)):
+        time, time_format = parts, "%Y %j %H%M"
+    text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
     if missing:
-        frame = _without(frame, missing)
-    stamps = _stamps(text, time_format, zone, lines, where)
-    frame.index = stamps
+        frame = without_entries(frame, missing)
+    text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
+    zone, clock, of_zone = _clock(used, text, zone, where)
+    frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
+    said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
     length = seconds_of(step, where) if step is not None else None
-    return _regular(frame, zone, where, digest, lines, length, said)
+    allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
+    table = _regular(frame, zone, where, digest, lines, length, allowed, said)
+    if read is None:
+        return table
+    return replace(
+        table,
+        units=read.units,
+        units_line=read.units_line,
+        decimal=read.decimal,
+        decimal_stated=read.decimal_stated,
+        decimal_evident=read.decimal_evident,
+    )
 
 
 def _zone(
     source: str | Path | pd.DataFrame, timezone: str | None, time: str | Sequence[str] | None
-) -> tzinfo:
-    """Zone that the user states, or that the stamps of a frame have."""
+) -> tzinfo | None:
+    """Zone that the user states, or that the stamps of a frame have; None where neither says."""
     where = Path(source).name if isinstance(source, str | Path) else "table"
     if timezone is None and not isinstance(source, str | Path):
         stamps = source.index if time is None and _is_time(source.index) else None
@@ -175,7 +263,7 @@ def _zone(
         found = getattr(dtype, "tz", None)
         if found is not None:
             return zone_of(found)
-    return parse_timezone(timezone, f"{where}: timezone")
+    return None if timezone is None else parse_timezone(timezone, f"{where}: timezone")
 
 
 def _is_time(index: pd.Index[Any]) -> bool:
@@ -184,73 +272,25 @@ def _is_time(index: pd.Index[Any]) -> bool:
     return isinstance(index, pd.DatetimeIndex)
 
 
-def _time_text(
-    frame: pd.DataFrame, time: str | Sequence[str] | None, where: str
-) -> tuple[pd.Series[Any], list[Hashable]]:
-    names: list[Hashable]
-    names = [frame.columns[0]] if time is None else [time] if isinstance(time, str) else list(time)
-    for name in names:
-        if name not in frame.columns:
-            hint = did_you_mean(str(name), [str(column) for column in frame.columns])
-            raise InputError(f"{where}: no time column {name!r}. {hint}".rstrip())
-    if len(names) == 1:
-        return frame[names[0]], names
-    joined = frame[names[0]].astype(str)
-    for name in names[1:]:
-        joined = joined + " " + frame[name].astype(str)
-    return joined, names
-
-
-def _without(frame: pd.DataFrame, missing: Sequence[str | float]) -> pd.DataFrame:
-    texts = [str(entry) for entry in missing]
-    values: list[Any] = list(missing) + texts
-    for text in texts:
-        try:
-            values.append(float(text))
-        except ValueError:
-            continue
-    return frame.mask(frame.isin(values))
-
-
-def _stamps(
-    text: pd.Series[Any], time_format: str | None, zone: tzinfo, lines: Lines, where: str
-) -> pd.DatetimeIndex:
-    import pandas as pd
-
-    if isinstance(text.dtype, pd.DatetimeTZDtype):
-        return pd.DatetimeIndex(text).tz_convert(zone)
-    if pd.api.types.is_datetime64_any_dtype(text.dtype):
-        return localize(_possible(pd.DatetimeIndex(text), lines, where), zone, where)
-    written = text.astype(str).str.strip()
-    offset = bool(written.str.contains(_HAS_OFFSET).any())
-    late = written.str.contains(_MIDNIGHT)
-    written = written.where(~late, written.str.replace("24:00", "00:00", n=1, regex=False))
-    parsed = pd.to_datetime(written, format=time_format or "ISO8601", errors="coerce", utc=offset)
-    bad = np.flatnonzero(parsed.isna().to_numpy() | (text.isna().to_numpy()))
-    numeric = time_format is None and pd.api.types.is_numeric_dtype(text.dtype)
-    if len(bad) or numeric:
-        row = int(bad[0]) if len(bad) else 0
-        expected = f"the format {time_format!r}" if time_format else "ISO 8601 such as 2024-09-04 00:15"
-        raise InputError(
-            f"{where}:{lines[row]}: time {text.iloc[row]!r} cannot be read, expected {expected}; "
-            "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
-        )
-    index = _possible(pd.DatetimeIndex(parsed), lines, where)
-    index = index + pd.to_timedelta(late.to_numpy().astype(np.int64), unit="D")
-    return index.tz_convert(zone) if offset else localize(index, zone, where)
-
-
-def _possible(index: pd.DatetimeIndex, lines: Lines, where: str) -> pd.DatetimeIndex:
-    """Refuse years of which there are no measurements: the calendar of the computer does not reach them."""
-    years = index.year.to_numpy()
-    bad = np.flatnonzero((years < YEARS[0]) | (years > YEARS[1]))
-    if len(bad):
-        row = int(bad[0])
-        raise InputError(
-            f"{where}:{lines[row]}: found a time in the year {years[row]}, expected one from {YEARS[0]} to "
-            f"{YEARS[1]} ({len(bad)} such rows in all); repair the row."
-        )
-    return index
+def _clock(
+    names: Sequence[Hashable], text: pd.Series[Any], zone: tzinfo | None, where: str
+) -> tuple[tzinfo, tzinfo, tuple[str, ...]]:
+    """Zone of the result and zone of the stamps: that which the name of the time column states."""
+    stated = [hours for name in names if (hours := offset_in_name(str(name))) is not None]
+    if not stated:
+        if zone is None:
+            zone = parse_timezone(None, f"{where}: timezone")
+        return zone, zone, ()
+    clock = fixed_zone(stated[0])
+    if zone is None:
+        return clock, clock, (f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}.",)
+    years = sorted(set(re.findall(r"\b(?:19|20)\d{2}\b", f"{text.iloc[0]} {text.iloc[-1]}"))) or ["2024"]
+    require_zone_has(zone, stated[0], (int(years[0]), int(years[-1])), str(names[0]), where)
+    note = (
+        f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}: its stamps were turned into "
+        f"the clock of {zone_name(zone)}."
+    )
+    return zone, clock, () if zone_name(zone) == zone_name(clock) else (note,)
 
 
 def _regular(
@@ -260,6 +300,7 @@ def _regular(
     digest: str | None,
     lines: Lines,
     expected: float | None,
+    tolerance: float | None,
     said: tuple[str, ...],
 ) -> Table:
     """Check the order and the step; insert rows that are missing; `said` are notes of the file."""
@@ -274,12 +315,19 @@ def _regular(
     interval = expected if expected is not None else float(lengths[commonest])
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
+    moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
+    if moved is not None:
+        seconds, interval, text = moved
+        said, index = (*said, f"{where}: {text}"), stamps_of(seconds, zone)
+        gaps = np.diff(seconds)
+        ratio, odd = gaps / interval, odd[:0]
     if len(odd):
         row = int(odd[0])
         raise InputError(
             f"{where}:{lines[row + 1]}: the step from {index[row]:%Y-%m-%d %H:%M:%S} to "
             f"{index[row + 1]:%Y-%m-%d %H:%M:%S} is {gaps[row]:g} s, expected a multiple of {interval:g} s "
-            f"({len(odd)} such steps in all); put the table on a regular step first."
+            f"({len(odd)} such steps in all); state a larger tolerance (tolerance: 30s; by default a tenth "
+            "of the step) if the clock is not exact, or put the table on a regular step first."
         )
     size = float(np.round(ratio).sum()) + 1.0
     memory.require(
@@ -304,7 +352,26 @@ def _regular(
         grid = stamps_of(seconds[0] + interval * np.arange(len(whole)), zone)
         frame = frame.set_axis(stamps_of(seconds[0] + interval * place, zone), axis=0).reindex(grid)
         lines = whole
+    if moved is not None and not absent:
+        frame = frame.set_axis(index, axis=0)
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
+
+
+def _without_jitter(
+    seconds: Array, expected: float | None, interval: float, tolerance: float | None
+) -> tuple[Array, float, str] | None:
+    """Stamps on the grid from which the clock deviates a little, the step, and a sentence."""
+    middle = float(np.median(np.diff(seconds)))
+    steps = (
+        [expected] if expected is not None else [60.0 * round(middle / 60.0), float(round(middle)), interval]
+    )
+    for step in steps:
+        if step > 0.0:
+            found = on_grid(seconds, step, _JITTER * step if tolerance is None else tolerance)
+            if found is not None:
+                said = f"stamps were moved to the grid of {_length(step)}, by {found[1]:g} s at most."
+                return found[0], step, said
+    return None
 
 
 def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[str]:
@@ -363,28 +430,3 @@ def _length(seconds: float) -> str:
         if seconds >= unit and (seconds / unit).is_integer():
             return f"{seconds / unit:g} {name}"
     return f"{seconds:g} s"
-
-
-def _numbers(series: pd.Series[Any], lines: Lines, where: str) -> Array:
-    import pandas as pd
-
-    if pd.api.types.is_numeric_dtype(series.dtype):
-        values = series.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-    else:
-        values = pd.to_numeric(series, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan).copy()
-        text = series.astype(str).str.strip()
-        blank = series.isna().to_numpy() | text.str.lower().isin(EMPTY).to_numpy()
-        bad = np.flatnonzero(np.isnan(values) & ~blank)
-        if len(bad):
-            row = int(bad[0])
-            raise InputError(
-                f"{where}, line {lines[row]}: found {text.iloc[row]!r}, expected a number ({len(bad)} "
-                "such entries); repair it, or name it in `missing` (and state `decimal` if the mark is a "
-                "comma)."
-            )
-    infinite = np.flatnonzero(np.isinf(values))
-    if len(infinite):
-        raise InputError(
-            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number."
-        )
-    return values

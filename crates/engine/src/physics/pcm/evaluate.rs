@@ -33,7 +33,8 @@ impl LiquidFraction {
         }
         if let MeltingCurve::Text { formula, numbers, .. } = curve {
             let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
-            FractionText::new(formula, &names).map_err(|error| EngineError::Input(error.fault.to_string()))?;
+            FractionText::new(formula, &names)
+                .map_err(|error| EngineError::Input(error.fault.to_string()))?;
         }
         Ok(Self { curve: Curve::new(&Values::new(values), curve) })
     }

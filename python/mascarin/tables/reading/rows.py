@@ -1,0 +1,204 @@
+"""Rows of a table: which columns hold the stamps, which rows hold numbers, and which entries are no value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.errors import InputError, did_you_mean
+from mascarin.tables.arrays import Lines
+from mascarin.tables.reading.numbers import EMPTY
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_TIME_NAME: Final = re.compile(r"date|time|zeit|datum|stamp|heure|fecha|hora|\bts\b", re.IGNORECASE)
+
+
+def time_text(
+    frame: pd.DataFrame, time: str | Sequence[str] | None, where: str
+) -> tuple[pd.Series[Any], list[Hashable]]:
+    """The stamps of a table, several columns joined by a blank, and the names of these columns.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        As read.
+    time : str or sequence of str or None
+        Column or columns with the stamps; None: see `_time_names`.
+    where : str
+        File, for errors.
+
+    Raises
+    ------
+    InputError
+        There is no such column.
+    """
+    names: list[Hashable]
+    names = _time_names(frame) if time is None else [time] if isinstance(time, str) else list(time)
+    for name in names:
+        if name not in frame.columns:
+            hint = did_you_mean(str(name), [str(column) for column in frame.columns])
+            raise InputError(f"{where}: no time column {name!r}. {hint}".rstrip())
+    if len(names) == 1:
+        return frame[names[0]], names
+    joined = frame[names[0]].astype(str)
+    for name in names[1:]:
+        joined = joined + " " + frame[name].astype(str)
+    return joined, names
+
+
+def _time_names(frame: pd.DataFrame) -> list[Hashable]:
+    """The column with the stamps: the first one, unless that counts rows and a later one is called so.
+
+    A date beside a column of the time of day is joined with it.
+    """
+    import pandas as pd
+
+    names = list(frame.columns)
+    first = 0
+    if pd.api.types.is_integer_dtype(frame[names[0]].dtype) and not _TIME_NAME.search(str(names[0])):
+        steps = np.diff(frame[names[0]].to_numpy(dtype=np.float64))
+        named = [k for k, name in enumerate(names[:6]) if k and _TIME_NAME.search(str(name))]
+        if np.all(steps == 1.0) and named:
+            first = named[0]
+    if first + 1 < len(names):
+        pair = [frame[name].iloc[:50].dropna().astype(str).str.strip() for name in names[first : first + 2]]
+        whole = [
+            len(part) > 0 and bool(part.str.fullmatch(form).all())
+            for part, form in zip(pair, _PAIR, strict=True)
+        ]
+        if all(whole):
+            return list(names[first : first + 2])
+    return [names[first]]
+
+
+def year_day_hour(frame: pd.DataFrame) -> list[str]:
+    """Columns of year, day of the year and hhmm, as Campbell's older loggers write them.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        As read.
+
+    Returns
+    -------
+    list of str
+        Names of the three columns; empty where they are not there.
+    """
+    names = [str(name).strip().lower() for name in frame.columns]
+    for k in range(min(3, len(names) - 2)):
+        if (
+            names[k] in ("year", "yyyy", "year_rtm")
+            and names[k + 1] in ("day", "doy", "jday", "julian_day", "day_rtm", "dayofyear")
+            and names[k + 2] in ("hhmm", "hrmn", "time", "hour_minute", "hour_minute_rtm")
+        ):
+            return [str(name) for name in frame.columns[k : k + 3]]
+    return []
+
+
+#: A date without a time, and a time of day.
+_PAIR: Final = (
+    r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}",
+    r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?:\s*[AaPp]\.?(?:[Mm]\.?)?)?",
+)
+
+
+def rows_with_values(
+    text: pd.Series[Any], frame: pd.DataFrame, lines: Lines, where: str
+) -> tuple[pd.Series[Any], pd.DataFrame, Lines, tuple[str, ...]]:
+    """The rows that hold a number; those with words of events alone are left out and counted.
+
+    Parameters
+    ----------
+    text : pandas.Series
+        Stamps.
+    frame : pandas.DataFrame
+        All other columns.
+    lines : ndarray, shape (n,)
+        Line of each row.
+    where : str
+        File, for the note.
+
+    Returns
+    -------
+    text, frame, lines
+        The rows that are used.
+    notes : tuple of str
+        How many were left out.
+    """
+    if not frame.columns.is_unique:
+        return text, frame, lines, ()
+    numeric = [name for name in frame.columns if has_numbers(frame[name]) and not _counts_rows(frame[name])]
+    words = [name for name in frame.columns if name not in numeric and frame[name].notna().any()]
+    if not numeric or not words:
+        return text, frame, lines, ()
+    idle = frame[numeric].isna().all(axis=1) & frame[words].notna().any(axis=1)
+    if not idle.any() or idle.all():
+        return text, frame, lines, ()
+    keep = ~idle.to_numpy()
+    note = (
+        f"{where}: {int(idle.sum())} rows without any number were left out, the first in line "
+        f"{lines[int(np.argmax(idle))]}."
+    )
+    return text[keep], frame[keep], lines[keep], (note,)
+
+
+def _counts_rows(series: pd.Series[Any]) -> bool:
+    """Whether a column counts the rows."""
+    import pandas as pd
+
+    whole = pd.api.types.is_integer_dtype(series.dtype)
+    return whole and bool(np.all(np.diff(series.to_numpy(dtype=np.float64)) == 1.0))
+
+
+def has_numbers(series: pd.Series[Any]) -> bool:
+    """Whether a column has entries that begin like a number.
+
+    Parameters
+    ----------
+    series : pandas.Series
+        As read.
+    """
+    import pandas as pd
+
+    if pd.api.types.is_numeric_dtype(series.dtype):
+        return bool(series.notna().any())
+    return bool(series.dropna().astype(str).str.match(r"\s*[-+]?[.,]?\d").any())
+
+
+def without_entries(frame: pd.DataFrame, missing: Sequence[str | float]) -> pd.DataFrame:
+    """The table without the entries that the user names as missing.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        As read.
+    missing : sequence of str or float
+        Entries that mean that there is no value.
+    """
+    texts = [str(entry) for entry in missing]
+    values: list[Any] = list(missing) + texts
+    for text in texts:
+        try:
+            values.append(float(text))
+        except ValueError:
+            continue
+    return frame.mask(frame.isin(values))
+
+
+def has_words(series: pd.Series[Any]) -> bool:
+    """Whether a column has entries, and all of them are words that mean something.
+
+    Parameters
+    ----------
+    series : pandas.Series
+        As read.
+    """
+    entries = series.dropna()
+    if not len(entries) or has_numbers(series):
+        return False
+    return not bool(entries.astype(str).str.strip().str.lower().isin(EMPTY).all())

@@ -1,0 +1,257 @@
+"""Units as files write them: in names of columns and in rows of units, and their factors to ours."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+FACTORS: Final[Mapping[str, tuple[str, float, float]]] = {
+    "degC": ("degC", 1.0, 0.0),
+    "K": ("degC", 1.0, -273.15),
+    "degF": ("degC", 5.0 / 9.0, -160.0 / 9.0),
+    "W/m2": ("W/m2", 1.0, 0.0),
+    "kW/m2": ("W/m2", 1000.0, 0.0),
+    "mW/cm2": ("W/m2", 10.0, 0.0),
+    "Btu/(h ft2)": ("W/m2", 1055.05585262 / (3600.0 * 0.3048**2), 0.0),
+    "m/s": ("m/s", 1.0, 0.0),
+    "km/h": ("m/s", 1.0 / 3.6, 0.0),
+    "knot": ("m/s", 1852.0 / 3600.0, 0.0),
+    "mph": ("m/s", 0.44704, 0.0),
+    "ft/s": ("m/s", 0.3048, 0.0),
+    "Pa": ("Pa", 1.0, 0.0),
+    "hPa": ("Pa", 100.0, 0.0),
+    "mbar": ("Pa", 100.0, 0.0),
+    "kPa": ("Pa", 1000.0, 0.0),
+    "bar": ("Pa", 1e5, 0.0),
+    "mmHg": ("Pa", 133.322387415, 0.0),
+    "inHg": ("Pa", 3386.388640341, 0.0),
+    "%": ("%", 1.0, 0.0),
+    "1": ("%", 100.0, 0.0),
+    "tenths": ("tenths", 1.0, 0.0),
+    "oktas": ("tenths", 1.25, 0.0),
+    "deg": ("deg", 1.0, 0.0),
+    "rad": ("deg", 57.29577951308232, 0.0),
+}
+"""Units that a column may have: (unit after conversion, factor, offset).
+
+Factors that are not exact by definition are those of NIST Special Publication 811 (2008), appendix B,
+doi:10.6028/NIST.SP.811e2008.
+"""
+
+ENERGIES: Final[Mapping[str, float]] = {
+    "J/cm2": 1e4,
+    "J/m2": 1.0,
+    "kJ/m2": 1e3,
+    "MJ/m2": 1e6,
+    "Wh/m2": 3600.0,
+    "kWh/m2": 3.6e6,
+    "cal/cm2": 4.184e4,
+    "Btu/ft2": 1055.05585262 / 0.3048**2,
+}
+"""Energies per interval, in J/m2; divided by the interval they become W/m2."""
+
+_FRACTIONS: Final[Mapping[tuple[str, str], float]] = {("%", "tenths"): 0.1, ("1", "tenths"): 10.0}
+"""Further conversions between a unit and the one that is wanted."""
+
+CONVERTED: Final = frozenset({"degC", "W/m2", "m/s", "Pa"})
+"""Units into which every measured column is converted, whatever it is used for."""
+
+_SPELLINGS: Final[Mapping[str, str]] = {
+    "degC": "degc °c c celsius degcelsius degreescelsius degreesc gradc gradcelsius",
+    "K": "k kelvin degk °k",
+    "degF": "degf °f f fahrenheit degfahrenheit degreesf",
+    "W/m2": "w/m2 wm-2 wm2 w/sqm w/qm watt/m2 watts/m2 w/msq",
+    "kW/m2": "kw/m2 kwm-2 kwm2 kw/sqm",
+    "mW/cm2": "mw/cm2 mwcm-2",
+    "Btu/(h ft2)": "btu/hft2 btu/ft2h btu/hr/ft2 btu/h/ft2 btu/hrft2",
+    "m/s": "m/s ms-1 m/sec mps m/sek metres/second meters/second",
+    "km/h": "km/h kmh kph kmh-1 km/hr km/hour",
+    "knot": "knot knots kt kts kn",
+    "mph": "mph mi/h mi/hr miles/h miles/hour",
+    "ft/s": "ft/s fps ft/sec fts-1",
+    "Pa": "pa pascal",
+    "hPa": "hpa hectopascal",
+    "mbar": "mbar mb millibar millibars mbars",
+    "kPa": "kpa",
+    "bar": "bar",
+    "mmHg": "mmhg torr",
+    "inHg": "inhg",
+    "%": "% %rh rh% percent prozent %rf %hr %rel %relh pct",
+    "tenths": "tenths",
+    "oktas": "oktas okta octas 1/8",
+    "deg": "deg ° degree degrees grad °n",
+    "rad": "rad",
+    "J/cm2": "j/cm2 jcm-2",
+    "J/m2": "j/m2 jm-2",
+    "kJ/m2": "kj/m2 kjm-2",
+    "MJ/m2": "mj/m2 mjm-2",
+    "Wh/m2": "wh/m2 whm-2 wh/sqm",
+    "kWh/m2": "kwh/m2 kwhm-2",
+    "cal/cm2": "cal/cm2 ly langley langleys",
+    "Btu/ft2": "btu/ft2",
+    "W": "w watt watts",
+    "kW": "kw",
+    "Btu/h": "btu/h btu/hr btuh",
+    "Wh": "wh",
+    "kWh": "kwh",
+    "J": "j",
+    "kJ": "kj",
+    "m3/h": "m3/h cbm/h m3h-1",
+    "m3/s": "m3/s m3s-1",
+    "L/s": "l/s ls-1",
+    "L/h": "l/h",
+    "L/min": "l/min",
+    "kg/s": "kg/s kgs-1",
+    "kg/h": "kg/h kgh-1",
+    "g/h": "g/h",
+    "g/kg": "g/kg gkg-1",
+    "kg/kg": "kg/kg",
+    "mm": "mm",
+    "mm/h": "mm/h mmh-1",
+    "V": "v volt volts",
+    "mV": "mv",
+    "A": "a ampere",
+    "ppm": "ppm",
+    "lx": "lx lux",
+}
+"""Spellings of each unit, after `_key`."""
+
+_UNITS: Final = {spelling: unit for unit, words in _SPELLINGS.items() for spelling in words.split()}
+#: Mega and milli differ by their case alone: neither is taken for the other.
+_MEGA: Final = re.compile(r"^(?:MW|mW|MV|Mbar|Mb|mJ)(?![A-Za-z/])|^(?:mJ|mWh|MWh)")
+_ENDING: Final = re.compile(r"(?<=[_ ])[^_ ]+(?:/[^_ ]+)?$")
+_COMMA: Final = re.compile(r",\s*([^,()]+?)\s*(?:\(|$)")
+_BRACKETS: Final = re.compile(r"\[([^\][]*)\]|\(((?:[^()]|\([^()]*\))*)\)")
+
+
+@dataclass(frozen=True)
+class StatedUnit:
+    """The unit that a file states for one of its columns.
+
+    Attributes
+    ----------
+    unit : str
+        Key of `FACTORS` or `ENERGIES`, or another unit that is known by name.
+    text : str
+        As it is written.
+    place : str
+        Where it is written, in words.
+    """
+
+    unit: str
+    text: str
+    place: str
+
+
+def parse_unit(text: str) -> str | None:
+    """The unit that a text writes.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``Deg F``, ``W/m^2`` or ``km/h``.
+
+    Returns
+    -------
+    str or None
+        Its plain name; None where the text is no unit that is known.
+
+    Examples
+    --------
+    >>> [parse_unit(text) for text in ("Deg F", "W/m²", "W m-2", "km/hr", "[hPa]", "room 1", "mW", "MW")]
+    ['degF', 'W/m2', 'W/m2', 'km/h', 'hPa', None, None, None]
+    """
+    written = text.strip().strip("[]<>").strip()
+    if _MEGA.match(written):
+        return None
+    return _UNITS.get(_key(written))
+
+
+def _key(text: str) -> str:
+    signs = text.replace("º", "°").replace("˚", "°").replace("−", "-")
+    plain = unicodedata.normalize("NFKC", signs).lower()
+    return re.sub(r"[\s^*·.()⋅]", "", plain)
+
+
+def unit_in_name(name: str) -> tuple[str, str] | None:
+    """Unit in the name of a column: in brackets, after a comma, or at the end.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column.
+
+    Returns
+    -------
+    (str, str) or None
+        The unit and its text.
+
+    Examples
+    --------
+    >>> unit_in_name("Temp, °F (LGR S/N: 1)"), unit_in_name("wind [km/h]"), unit_in_name("T_degF")
+    (('degF', '°F'), ('km/h', 'km/h'), ('degF', 'degF'))
+    >>> unit_in_name("T (attic)"), unit_in_name("wall_C"), unit_in_name("G / W/m2")
+    (None, None, ('W/m2', 'W/m2'))
+    """
+    inside = [first or second for first, second in _BRACKETS.findall(name)]
+    after = _COMMA.findall(name)
+    for text in (*inside, *after):
+        unit = parse_unit(text)
+        if unit is not None and not (len(text.strip()) == 1 and text.strip().islower()):
+            return unit, text.strip()
+    ending = _ENDING.search(name)
+    if ending is None or len(ending[0]) == 1 or ending[0].lower() in _ENDINGS_OF_NAMES:
+        return None
+    unit = parse_unit(ending[0])
+    return None if unit is None else (unit, ending[0])
+
+
+#: Endings of names that are words or numbers of rooms more often than units.
+_ENDINGS_OF_NAMES: Final = frozenset({"ly", "mb", "kn", "deg", "rad", "bar", "grad", "mm", "mv", "ppm"})
+
+
+def conversion(unit: str, target: str, interval: float) -> tuple[float, float] | None:
+    """Factor and offset from a unit to another one.
+
+    Parameters
+    ----------
+    unit : str
+        Key of `FACTORS` or `ENERGIES`.
+    target : str
+        Wanted unit; empty: that of `FACTORS`.
+    interval : float
+        Length of an interval, for energies [s].
+
+    Returns
+    -------
+    (float, float) or None
+        value = factor x + offset; None where the units are of different quantities.
+
+    Examples
+    --------
+    >>> conversion("kW/m2", "W/m2", 3600.0), conversion("Wh/m2", "W/m2", 900.0), conversion("K", "m/s", 1.0)
+    ((1000.0, 0.0), (4.0, 0.0), None)
+    """
+    if unit in ENERGIES and target in ("W/m2", ""):
+        return ENERGIES[unit] / interval, 0.0
+    if (unit, target) in _FRACTIONS:
+        return _FRACTIONS[unit, target], 0.0
+    if unit in FACTORS and target in (FACTORS[unit][0], ""):
+        return FACTORS[unit][1:]
+    return None
+
+
+def units_of(target: str) -> list[str]:
+    """Units that can be turned into a unit.
+
+    Parameters
+    ----------
+    target : str
+        Unit after conversion.
+    """
+    known = [name for name, entry in FACTORS.items() if entry[0] == target]
+    known += [name for name, other in _FRACTIONS if other == target]
+    return known + (list(ENERGIES) if target == "W/m2" else [])
