@@ -149,16 +149,16 @@ def _add(work: Work, zone: Zone, air: Flow) -> None:
             air.item, "a flow with the square of the wind", f"a line through its value at {_WIND:g} m/s"
         )
         wind += squared * _WIND
-    held, given = work.section("zones")[zone.name], air.values.constant
+    held, constant_share = work.section("zones")[zone.name], air.values.constant
     changes = air.flow * 3600.0 / zone.volume
-    if given is not None:
+    if constant_share is not None:
         dense, denser, usual = _densities(air.item)
         parts = {
             "constant": constant * dense,
             "temperature": stack * usual + constant * denser,
             "wind": wind * zone.wind * usual,
         }
-        _infiltrate(held, {key: changes * given * value for key, value in parts.items()})
+        _infiltrate(held, {key: changes * constant_share * value for key, value in parts.items()})
         return
     if constant:
         schedule, most = fraction(work, f"{air.item.name} flow", air.values)
@@ -224,9 +224,9 @@ def _conditions(work: Work, item: Item, schedule: str) -> None:
         return
     active = []
     for key, idle in _IDLE.items():
-        given = item.number(key)
-        if item.text(f"{key}_schedule_name") or (given is not None and abs(given) < abs(idle)):
-            active.append(f"{key.replace('_', ' ')} {'' if given is None else f'{given:g}'}".strip())
+        limit = item.number(key)
+        if item.text(f"{key}_schedule_name") or (limit is not None and abs(limit) < abs(idle)):
+            active.append(f"{key.replace('_', ' ')} {'' if limit is None else f'{limit:g}'}".strip())
     if active:
         work.findings.left_out(
             item,
@@ -253,15 +253,15 @@ def _fan(work: Work, item: Item, zone: Zone, air: Flow) -> None:
 
 
 def _opening(work: Work, item: Item, zone: Zone) -> None:
-    given = item.number("opening_effectiveness")
-    if given is None:
+    effectiveness = item.number("opening_effectiveness")
+    if effectiveness is None:
         work.findings.approximated(
             item, "an effectiveness by wind direction", f"{_EFFECTIVENESS:g} for all directions"
         )
     discharge = item.number("discharge_coefficient_for_opening")
     if discharge is None:
         work.findings.approximated(item, "a discharge coefficient by temperature", "0.65 at all times")
-    effective = (_EFFECTIVENESS if given is None else given) * zone.wind
+    effective = (_EFFECTIVENESS if effectiveness is None else effectiveness) * zone.wind
     values = year(work, item, "opening_area_fraction_schedule_name")
     schedule, most = fraction(work, f"{item.name} open", values)
     area = item.needed("opening_area") * most
@@ -334,8 +334,8 @@ def _mixing(work: Work, zones: dict[str, Zone]) -> None:
 
 
 def _equal(flows: list[tuple[Item, float, Year]], back: list[tuple[Item, float, Year]]) -> bool:
-    there, here = (sum(flow for _, flow, _ in some) for some in (flows, back))
-    return abs(there - here) <= 1e-6 * max(there, here, 1e-12)
+    forward_flow, backward_flow = (sum(flow for _, flow, _ in some) for some in (flows, back))
+    return abs(forward_flow - backward_flow) <= 1e-6 * max(forward_flow, backward_flow, 1e-12)
 
 
 def _path(work: Work, to: str, source: str, flows: list[tuple[Item, float, Year]], crossed: bool) -> None:
@@ -348,6 +348,6 @@ def _path(work: Work, to: str, source: str, flows: list[tuple[Item, float, Year]
     if peak <= 0.0:
         return
     schedule, most = fraction(work, f"{flows[0][0].name} flow", combined(lambda v: v / peak, total))
-    made: dict[str, Any] = {"between": [to, source], "flow": round(peak * most, 8)}
+    path: dict[str, Any] = {"between": [to, source], "flow": round(peak * most, 8)}
     name = work.names.of("air_paths", flows[0][0].name)
-    work.section("air_paths")[name] = made | ({} if schedule is None else {"schedule": schedule})
+    work.section("air_paths")[name] = path | ({} if schedule is None else {"schedule": schedule})

@@ -61,10 +61,10 @@ def describe_conditioning(work: Work, zones: dict[str, Zone]) -> None:
     InputError
         A thermostat, schedule or system that does not exist.
     """
-    given = dict(_thermostats(work, zones))
+    set_points = dict(_thermostats(work, zones))
     systems = _systems(work)
     for key, zone in zones.items():
-        points, system = given.get(key), systems.get(key)
+        points, system = set_points.get(key), systems.get(key)
         if points is None and system is not None:
             work.findings.no_effect([system], "a system without a thermostat", "it conditions nothing")
             continue
@@ -86,19 +86,19 @@ def usual_temperatures(work: Work, zones: dict[str, Zone]) -> dict[str, float]:
     zones : dict of str to Zone
         Zones by the name in the file, in small letters.
     """
-    found = dict.fromkeys(zones, _USUAL)
+    temperatures = dict.fromkeys(zones, _USUAL)
     for key, points in _thermostats(work, zones):
         limits = (
             (points.heating, _USUAL, max),
             (points.cooling, _USUAL, min),
         )
         means = [
-            combined(lambda set_point, rule=rule: rule(set_point, _USUAL), one).mean()
-            for one, _, rule in limits
+            combined(lambda set_point, rule=rule: rule(set_point, _USUAL), set_point_values).mean()
+            for set_point_values, _, rule in limits
         ]
-        if key in found:
-            found[key] = sum(means) - _USUAL
-    return found
+        if key in temperatures:
+            temperatures[key] = sum(means) - _USUAL
+    return temperatures
 
 
 def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetPoints]]:
@@ -114,7 +114,7 @@ def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetP
             continue
         heat = thermostat.number("constant_heating_setpoint")
         cool = thermostat.number("constant_cooling_setpoint")
-        found = SetPoints(
+        set_points = SetPoints(
             year(
                 work,
                 thermostat,
@@ -129,7 +129,7 @@ def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetP
             ),
         )
         for zone in work.zones_of(item, "zone_name"):
-            yield zone.name.casefold(), found
+            yield zone.name.casefold(), set_points
 
 
 def _set_points(work: Work, item: Item) -> SetPoints:
@@ -145,7 +145,7 @@ def _set_points(work: Work, item: Item) -> SetPoints:
             )
     control = year(work, item, "control_type_schedule_name", default=float(max(kinds, default=0)))
     never = {"heating": constant(NEVER_HEATS), "cooling": constant(NEVER_COOLS)}
-    found = {}
+    totals = {}
     for which, keys, types in (("heating", _HEAT, (1, 3, 4)), ("cooling", _COOL, (2, 3, 4))):
         total = never[which]
         for number in types:
@@ -153,21 +153,21 @@ def _set_points(work: Work, item: Item) -> SetPoints:
                 continue
             values = year(work, kinds[number], *keys)
             total = combined(
-                lambda one, active, other, number=number: one if round(active) == number else other,
+                lambda set_point, active, other, number=number: set_point if round(active) == number else other,
                 values, control, total,
             )  # fmt: skip
-        found[which] = total
+        totals[which] = total
     missing = {round(value) for value in control.values} - {0, *kinds}
     if missing:
         work.findings.left_out(
             item, f"control type {min(missing)} without its set point", "the zone is not conditioned then"
         )
-    return SetPoints(found["heating"], found["cooling"])
+    return SetPoints(totals["heating"], totals["cooling"])
 
 
 def _systems(work: Work) -> dict[str, Item]:
     """System of each zone: its ideal loads, or else the first of what it has."""
-    found: dict[str, Item] = {}
+    system_of_zone: dict[str, Item] = {}
     for item in work.model.of("ZoneHVAC:EquipmentConnections"):
         equipment = work.model.named(
             item.text("zone_conditioning_equipment_list_name"), "ZoneHVAC:EquipmentList"
@@ -176,16 +176,16 @@ def _systems(work: Work) -> dict[str, Item]:
         systems = []
         for row in rows:
             kind = str(row.get("zone_equipment_object_type", ""))
-            one = work.model.named(str(row.get("zone_equipment_name", "")), kind)
-            systems += [] if one is None else [one]
-        ideal = [one for one in systems if one.kind == IDEAL]
-        for one in ideal[:1] or systems[:1]:
+            system = work.model.named(str(row.get("zone_equipment_name", "")), kind)
+            systems += [] if system is None else [system]
+        ideal = [system for system in systems if system.kind == IDEAL]
+        for system in ideal[:1] or systems[:1]:
             for zone in work.zones_of(item, "zone_name"):
-                found[zone.name.casefold()] = one
+                system_of_zone[zone.name.casefold()] = system
     for item in work.model.of(_TEMPLATE):
         for zone in work.zones_of(item, "zone_name"):
-            found[zone.name.casefold()] = item
-    return found
+            system_of_zone[zone.name.casefold()] = item
+    return system_of_zone
 
 
 def _flat_equipment(item: Item) -> list[dict[str, Any]]:
@@ -235,8 +235,8 @@ def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: d
     for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
         if values[which].constant == never:
             continue
-        given = temperature(work, f"{zone.item.name} {which} set point", values[which])
-        held[which] = {"setpoint": {"schedule": given} if isinstance(given, str) else given}
+        set_point_value = temperature(work, f"{zone.item.name} {which} set point", values[which])
+        held[which] = {"setpoint": {"schedule": set_point_value} if isinstance(set_point_value, str) else set_point_value}
         limit = _limit(work, system, which) if ideal else None
         if limit is not None:
             held[which]["capacity"] = round(limit, 3)
@@ -252,9 +252,9 @@ def _limit(work: Work, system: Item, which: str) -> float | None:
     kind = "sensible" if which == "heating" else "total"
     limits = []
     if "capacity" in word:
-        given = system.number(f"maximum_{kind}_{which}_capacity")
-        limits += [] if given is None else [given]
-        if given is not None and which == "cooling":
+        capacity = system.number(f"maximum_{kind}_{which}_capacity")
+        limits += [] if capacity is None else [capacity]
+        if capacity is not None and which == "cooling":
             work.findings.approximated(
                 system, "a limit of total cooling", "the same limit of sensible cooling"
             )
@@ -326,12 +326,12 @@ def _outdoor_flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) ->
         item.number("outdoor_air_flow_per_zone_floor_area", "outdoor_air_flow_rate_per_zone_floor_area")
         or 0.0
     )
-    whole = item.number("outdoor_air_flow_per_zone", "outdoor_air_flow_rate_per_zone") or 0.0
+    zone_flow = item.number("outdoor_air_flow_per_zone", "outdoor_air_flow_rate_per_zone") or 0.0
     changes = item.number("outdoor_air_flow_air_changes_per_hour") or 0.0
     parts = {
         "flow/person": person * people_in(work, zone, zones),
         "flow/area": area * zone.floor,
-        "flow/zone": whole,
+        "flow/zone": zone_flow,
         "airchanges/hour": changes * zone.volume / 3600.0,
     }
     method = item.word("outdoor_air_method") or "flow/person"

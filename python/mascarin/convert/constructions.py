@@ -33,8 +33,8 @@ def construction(work: Work, item: Item, *, cut: bool, finite_differences: bool)
         Whether EnergyPlus solves the surface by finite differences.
     """
     melting = finite_differences and _can_melt(work, item)
-    wanted = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
-    name = work.names.of("constructions", wanted)
+    original = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
+    name = work.names.of("constructions", original)
     held = work.section("constructions")
     if name not in held:
         layers = plain_layers(work, item, finite_differences)
@@ -45,8 +45,8 @@ def construction(work: Work, item: Item, *, cut: bool, finite_differences: bool)
 
 
 def _can_melt(work: Work, item: Item) -> bool:
-    given = work.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
-    names = {one.name.casefold() for one in given}
+    properties = work.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+    names = {material_property.name.casefold() for material_property in properties}
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     return any(item.word(key) in names for key in keys if item.word(key))
 
@@ -68,28 +68,28 @@ def inner_part(layers: list[Section], materials: Section) -> list[Section]:
         Their materials.
     """
     held = [_held(layer, materials[layer["material"]]) for layer in layers]
-    whole, capacity = sum(r for r, _ in held), sum(c for _, c in held)
-    if capacity <= 0.0 or whole <= 0.0:
+    total_resistance, capacity = sum(r for r, _ in held), sum(c for _, c in held)
+    if capacity <= 0.0 or total_resistance <= 0.0:
         return layers
     passed = moment = 0.0
     for resistance, heat in held:
         moment += heat * (passed + 0.5 * resistance)
         passed += resistance
-    left = capacity * (1.0 - moment / (capacity * whole))
-    kept: list[Section] = []
+    outer_capacity = capacity * (1.0 - moment / (capacity * total_resistance))
+    inner_layers: list[Section] = []
     for layer, (_, heat) in zip(layers, held, strict=True):
-        if heat <= left:
-            left -= heat
-            if heat == 0.0 and left > 0.0:
+        if heat <= outer_capacity:
+            outer_capacity -= heat
+            if heat == 0.0 and outer_capacity > 0.0:
                 continue
             if heat == 0.0:
-                kept.append(layer)
+                inner_layers.append(layer)
             continue
-        thickness = float(layer["thickness"]) * (1.0 - left / heat)
-        left = 0.0
+        thickness = float(layer["thickness"]) * (1.0 - outer_capacity / heat)
+        outer_capacity = 0.0
         if thickness > _THIN:
-            kept.append(layer | {"thickness": round(thickness, 7)})
-    return kept or layers[-1:]
+            inner_layers.append(layer | {"thickness": round(thickness, 7)})
+    return inner_layers or layers[-1:]
 
 
 def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:
@@ -106,12 +106,12 @@ def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:
 
 def _named_apart(layers: list[Section]) -> list[Section]:
     """Layers with names of their own where a material occurs twice, or is called outside or inside."""
-    seen: dict[str, int] = {}
+    uses: dict[str, int] = {}
     named = []
     for layer in layers:
         material = layer["material"]
-        seen[material] = seen.get(material, 0) + 1
-        if seen[material] > 1 or material in ("outside", "inside"):
-            layer = {"name": f"{material}_layer_{seen[material]}", **layer}
+        uses[material] = uses.get(material, 0) + 1
+        if uses[material] > 1 or material in ("outside", "inside"):
+            layer = {"name": f"{material}_layer_{uses[material]}", **layer}
         named.append(layer)
     return named

@@ -70,7 +70,7 @@ class Conversion:
     @property
     def complete(self) -> bool:
         """Whether nothing that changes the results was left out."""
-        return not any(one.level == "left out" for one in self.findings)
+        return not any(finding.level == "left out" for finding in self.findings)
 
 
 def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversion:
@@ -99,16 +99,16 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     >>> convert("office.idf")  # doctest: +SKIP
     """
     work = Work(read(Path(file)))
-    every = faces(work)
-    if not every and not work.model.of("InternalMass"):
+    all_surfaces = faces(work)
+    if not all_surfaces and not work.model.of("InternalMass"):
         raise InputError(f"{file}: found no surfaces; expected walls, floors and roofs of the zones")
-    inside = openings(work, every)
+    inside = openings(work, all_surfaces)
     describe_site(work, None if weather is None else Path(weather))
-    zones = describe_zones(work, every)
+    zones = describe_zones(work, all_surfaces)
     films = Films(work)
-    surfaces = describe_surfaces(work, every, films)
+    surfaces = describe_surfaces(work, all_surfaces, films)
     describe_openings(work, inside, films, surfaces)
-    describe_shades(work, every, inside)
+    describe_shades(work, all_surfaces, inside)
     describe_gains(work, zones, usual_temperatures(work, zones))
     describe_air(work, zones)
     describe_conditioning(work, zones)
@@ -155,13 +155,13 @@ def _built(work: Work) -> Building:
 def _origins(work: Work, text: str) -> str:
     """Lines on the objects behind the names of an error."""
     lines = {item.name.casefold(): item for item in reversed(work.model.items)}
-    told = []
+    lines_of_objects = []
     for section, names in work.names.original.items():
-        for name, made in names.items():
+        for name, entered_name in names.items():
             item = lines.get(name.casefold())
-            if item is not None and re.search(rf"\b{section}\.{re.escape(made)}\b|'{re.escape(made)}'", text):
-                told.append(f"\n  {section}.{made} is {item.where}")
-    return "".join(told)
+            if item is not None and re.search(rf"\b{section}\.{re.escape(entered_name)}\b|'{re.escape(entered_name)}'", text):
+                lines_of_objects.append(f"\n  {section}.{entered_name} is {item.where}")
+    return "".join(lines_of_objects)
 
 
 def _period(work: Work) -> tuple[str, str]:

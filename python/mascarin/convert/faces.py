@@ -158,7 +158,7 @@ def _checked(item: Item, points: g.Array) -> g.Array:
     return points
 
 
-def openings(work: Work, every: list[Face]) -> list[Opening]:
+def openings(work: Work, surfaces: list[Face]) -> list[Opening]:
     """All openings in the surfaces.
 
     Raises
@@ -166,16 +166,16 @@ def openings(work: Work, every: list[Face]) -> list[Opening]:
     InputError
         An opening in a surface that does not exist, or corners that cannot be used.
     """
-    by_name = {face.item.name.casefold(): face for face in every}
+    by_name = {face.item.name.casefold(): face for face in surfaces}
     rules = g.rules_of(work.model)
-    found = []
+    all_openings = []
     for item in work.model.of(*OPENINGS):
         base = by_name.get(item.word("building_surface_name"))
         if base is None:
             work.model.require(item, "building_surface_name", *SURFACES)
             raise item.error("no surface", "a surface", "Correct building_surface_name")
-        found.append(_opening(work, rules, item, base))
-    return found
+        all_openings.append(_opening(work, rules, item, base))
+    return all_openings
 
 
 def _opening(work: Work, rules: g.Rules, item: Item, base: Face) -> Opening:
@@ -196,10 +196,10 @@ def _opening(work: Work, rules: g.Rules, item: Item, base: Face) -> Opening:
     return Opening(item, base, shape, beyond, _checked(item, points), copies)
 
 
-def floor_area(zone: Item, every: list[Face]) -> float:
+def floor_area(zone: Item, surfaces: list[Face]) -> float:
     """Floor area of a zone: as given, else the sum of its floors. [m2]"""
-    given = zone.number("floor_area")
-    if given is not None and given > 0.0:
-        return given
-    floors = (face for face in every if face.zone is zone and face.shape == "floor")
+    entered_area = zone.number("floor_area")
+    if entered_area is not None and entered_area > 0.0:
+        return entered_area
+    floors = (face for face in surfaces if face.zone is zone and face.shape == "floor")
     return sum(g.area_of(face.points) for face in floors)

@@ -67,9 +67,9 @@ class Films:
 
     def inside(self, user: Item, zone: Item | None, tilt: float, *, window: bool = False) -> Any:
         """Coefficient of an inner surface."""
-        given = self._own(user, "inside")
-        if given is not None:
-            return given
+        own_coefficient = self._own(user, "inside")
+        if own_coefficient is not None:
+            return own_coefficient
         main = self._work.model.one("SurfaceConvectionAlgorithm:Inside")
         word = zone.word("zone_inside_convection_algorithm") if zone is not None else ""
         source = zone if word else main
@@ -84,9 +84,9 @@ class Films:
 
     def outside(self, user: Item, zone: Item | None, roughness: str) -> Film:
         """Coefficient of a surface outdoors."""
-        given = self._own(user, "outside")
-        if given is not None:
-            return Film(given)
+        own_coefficient = self._own(user, "outside")
+        if own_coefficient is not None:
+            return Film(own_coefficient)
         main = self._work.model.one("SurfaceConvectionAlgorithm:Outside")
         word = zone.word("zone_outside_convection_algorithm") if zone is not None else ""
         source = zone if word else main

@@ -42,9 +42,9 @@ class Finding:
 
     def text(self) -> str:
         """The finding on one line."""
-        place = "" if self.line is None else f"line {self.line}: "
+        position = "" if self.line is None else f"line {self.line}: "
         name = f" '{self.name}'" if self.name else ""
-        return f"{place}{self.kind}{name}: {self.what}: {self.effect}"
+        return f"{position}{self.kind}{name}: {self.what}: {self.effect}"
 
 
 @dataclass
@@ -63,16 +63,16 @@ class Findings:
 
     def no_effect(self, items: Iterable[Item], what: str, effect: str) -> None:
         """Note objects of one class that are not needed."""
-        several = list(items)
-        if len(several) == 1:
-            self._add("no effect", several[0], what, effect)
-        elif several:
-            count = f"{len(several)} objects"
-            self.every[Finding("no effect", several[0].kind, count, several[0].line, what, effect)] = None
+        objects = list(items)
+        if len(objects) == 1:
+            self._add("no effect", objects[0], what, effect)
+        elif objects:
+            count = f"{len(objects)} objects"
+            self.every[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
 
     def _add(self, level: Level, item: Item, what: str, effect: str) -> None:
         self.every[Finding(level, item.kind, item.name, item.line, what, effect)] = None
 
     def of(self, level: Level) -> list[Finding]:
         """Findings of one level, by line."""
-        return sorted((one for one in self.every if one.level == level), key=lambda one: one.line or 0)
+        return sorted((finding for finding in self.every if finding.level == level), key=lambda finding: finding.line or 0)

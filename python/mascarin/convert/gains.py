@@ -125,15 +125,15 @@ def _people(work: Work, item: Item, zone: Zone, air: float) -> Heat:
     activity = year(work, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
     if share is None:
-        power = combined(lambda here, heat: count * here * sensible(heat, air), present, activity)
+        power = combined(lambda presence, heat: count * presence * sensible(heat, air), present, activity)
         work.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
             f"that at {air:.1f} degC is used, about 4 % less for each kelvin above it; moisture is left out",
         )
     else:
-        given = share
-        power = combined(lambda here, heat: count * here * heat * given, present, activity)
+        sensible_share = share
+        power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
     return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
 
 
@@ -150,7 +150,7 @@ def _design_level(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) ->
 def _lights(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> Heat:
     level, on = _design_level(work, item, zone, zones), year(work, item, "schedule_name")
     taken = item.number("return_air_fraction") or 0.0
-    radiant, visible = (item.number(f"fraction_{one}") or 0.0 for one in ("radiant", "visible"))
+    radiant, visible = (item.number(f"fraction_{part}") or 0.0 for part in ("radiant", "visible"))
     if taken > 0.0:
         work.findings.approximated(
             item, f"{taken:.0%} of its heat in the return air", "this part does not enter the zone"
@@ -159,21 +159,21 @@ def _lights(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> Heat:
         work.findings.approximated(
             item, "visible radiation", "it is absorbed as long-wave radiation is: none leaves by the windows"
         )
-    left = max(1.0 - taken, 1e-9)
-    power = combined(lambda share: level * share * left, on)
-    return Heat(item, item.name, power, min((radiant + visible) / left, 1.0))
+    remaining_share = max(1.0 - taken, 1e-9)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min((radiant + visible) / remaining_share, 1.0))
 
 
 def _equipment(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> Heat:
     level, on = _design_level(work, item, zone, zones), year(work, item, "schedule_name")
-    latent, radiant, lost = (item.number(f"fraction_{one}") or 0.0 for one in ("latent", "radiant", "lost"))
+    latent, radiant, lost = (item.number(f"fraction_{part}") or 0.0 for part in ("latent", "radiant", "lost"))
     if latent > 0.0:
         work.findings.approximated(
             item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
         )
-    left = max(1.0 - latent - lost, 0.0)
-    power = combined(lambda share: level * share * left, on)
-    return Heat(item, item.name, power, min(radiant / left, 1.0) if left > 0.0 else 0.0)
+    remaining_share = max(1.0 - latent - lost, 0.0)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min(radiant / remaining_share, 1.0) if remaining_share > 0.0 else 0.0)
 
 
 def _enter(work: Work, zone: Zone, heats: list[Heat]) -> None:
@@ -220,12 +220,12 @@ def _netted(work: Work, zone: Zone, heats: list[Heat]) -> list[Heat]:
         )
         total = combined(lambda value: 0.0 if abs(value) < 1e-9 else value, total)
         sums.append(Heat(first.item, f"net {word}", total, radiative))
-    if all(min(one.power.values) >= 0.0 for one in sums):
+    if all(min(net_heat.power.values) >= 0.0 for net_heat in sums):
         return sums
-    kept = [heat for heat in heats if min(heat.power.values) >= 0.0]
+    positive_heats = [heat for heat in heats if min(heat.power.values) >= 0.0]
     for heat in heats:
-        if heat not in kept:
+        if heat not in positive_heats:
             work.findings.left_out(
                 heat.item, f"heat taken from zone '{zone.item.name}'", "the zone is warmer by this heat"
             )
-    return kept
+    return positive_heats

@@ -55,11 +55,11 @@ def glazing(work: Work, user: Item, construction: Item) -> Glazed | None:
         return None
     if name not in held:
         layers = layers_of(work, construction)
-        made = _glazing(work, construction, layers)
-        if made is None:
+        section = _glazing(work, construction, layers)
+        if section is None:
             _no_glazing(work, user, f"the construction '{construction.name}'")
             return None
-        held[name] = made | {"source": f"EnergyPlus {construction.label}"}
+        held[name] = section | {"source": f"EnergyPlus {construction.label}"}
     return Glazed(name)
 
 
@@ -94,10 +94,10 @@ def _glazing(work: Work, construction: Item, layers: list[Item]) -> Section | No
     simple = [item for item in layers if item.kind == "WindowMaterial:SimpleGlazingSystem"]
     if simple:
         return _rated(work, simple[0])
-    kept = _without_shades(work, construction, layers)
+    unshaded_layers = _without_shades(work, construction, layers)
     panes: list[Section] = []
     gaps: list[Section] = []
-    for item in kept:
+    for item in unshaded_layers:
         kind = item.kind.partition(":")[2].casefold()
         if kind == "glazing":
             pane = _pane(work, item)
@@ -130,13 +130,13 @@ def _without_shades(work: Work, construction: Item, layers: list[Item]) -> list[
             f"the shading device '{item.name}' in it",
             "the glazing is unshaded: more sun enters, more heat is lost at night",
         )
-    kept: list[Item] = []
+    unshaded_layers: list[Item] = []
     for item in layers:
         gas = item.kind in ("WindowMaterial:Gas", "WindowMaterial:GasMixture")
-        if item in shaded or (gas and kept and kept[-1].kind == item.kind):
+        if item in shaded or (gas and unshaded_layers and unshaded_layers[-1].kind == item.kind):
             continue
-        kept.append(item)
-    return kept
+        unshaded_layers.append(item)
+    return unshaded_layers
 
 
 def _pane(work: Work, item: Item) -> Section | None:

@@ -120,10 +120,10 @@ def _material(work: Work, item: Item, melts: bool) -> Section:
 
 
 def _variable_conductivity(work: Work, item: Item) -> None:
-    found = work.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
-    if found is not None:
+    variable = work.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
+    if variable is not None:
         work.findings.approximated(
-            found,
+            variable,
             "conductivity that changes with temperature",
             "that of the material is used at every temperature",
         )
@@ -193,14 +193,14 @@ def _two_curves(work: Work, item: Item) -> Section:
         "the model curve_switch conserves heat, that of EnergyPlus does not where it changes between the "
         "curves (docs/pcm-energyplus.md): results differ in and around the melting range",
     )
-    found: Section = {"kind": "pcm"}
+    section: Section = {"kind": "pcm"}
     for key in ("conductivity", "density", "specific_heat"):
         ending = "thermal_conductivity" if key == "conductivity" else key
         pair = [item.needed(f"{phase}_state_{ending}") for phase in ("solid", "liquid")]
-        found[key] = pair[0] if pair[0] == pair[1] else pair
-    found["latent_heat"] = item.needed("latent_heat_during_the_entire_phase_change_process")
+        section[key] = pair[0] if pair[0] == pair[1] else pair
+    section["latent_heat"] = item.needed("latent_heat_during_the_entire_phase_change_process")
     (middle, width), (back, narrow) = curves
-    found |= {"melting_temperature": middle, "law": {"kind": "tanh", "width": width}}
+    section |= {"melting_temperature": middle, "law": {"kind": "tanh", "width": width}}
     if freezing > melting:
         raise item.error(
             f"a freezing peak of {freezing:g} degC above the melting peak of {melting:g} degC",
@@ -210,8 +210,8 @@ def _two_curves(work: Work, item: Item) -> Section:
     if curves[1] != curves[0]:
         cooling = {"model": "curve_switch", "freezing_temperature": back}
         shape = {} if narrow == width else {"law": {"kind": "tanh", "width": narrow}}
-        found["hysteresis"] = cooling | shape
-    return found
+        section["hysteresis"] = cooling | shape
+    return section
 
 
 def _curve(peak: float, low: float, high: float) -> tuple[float, float]:
@@ -237,12 +237,12 @@ def _c_factor(item: Item) -> tuple[float, float]:
     return 1.0 / item.needed("c_factor") + 0.0607 + 0.3479 * item.needed("height"), 0.0
 
 
-def _factor_layers(work: Work, item: Item, whole: float, _: float) -> list[Section]:
+def _factor_layers(work: Work, item: Item, total_resistance: float, _: float) -> list[Section]:
     thickness, conductivity, density, heat = CONCRETE
-    rest = whole - thickness / conductivity
-    if rest <= 0.0:
+    soil_resistance = total_resistance - thickness / conductivity
+    if soil_resistance <= 0.0:
         raise item.error(
-            f"a resistance of {whole:.3f} m2 K/W",
+            f"a resistance of {total_resistance:.3f} m2 K/W",
             f"more than {thickness / conductivity:.3f} m2 K/W, that of the concrete in it",
             "Correct the factor",
         )
@@ -252,7 +252,7 @@ def _factor_layers(work: Work, item: Item, whole: float, _: float) -> list[Secti
     materials: dict[str, Any] = work.section("materials")
     concrete, soil = work.names.of("materials", "factor concrete"), work.names.of("materials", item.name)
     materials[concrete] = {"conductivity": conductivity, "density": density, "specific_heat": heat}
-    materials[soil] = {"kind": "resistance", "resistance": round(rest, 5)}
+    materials[soil] = {"kind": "resistance", "resistance": round(soil_resistance, 5)}
     return [{"material": soil}, {"material": concrete, "thickness": thickness}]
 
 

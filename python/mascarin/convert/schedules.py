@@ -91,28 +91,28 @@ def fraction(work: Work, name: str, values: Year) -> tuple[str | None, float]:
         Its name, None where the value is the same all year, and the factor by which it is to be multiplied:
         fractions of Mascarin are at most 1.
     """
-    given = values.constant
-    if given is not None:
-        return None, given
+    constant_value = values.constant
+    if constant_value is not None:
+        return None, constant_value
     most = max(1.0, *values.values)
     return _entered(work, name, combined(lambda value: value / most, values), "fraction"), most
 
 
 def temperature(work: Work, name: str, values: Year) -> str | float:
     """Enter a schedule of a temperature; the number where it is the same all year. [degC]"""
-    given = values.constant
-    return given if given is not None else _entered(work, name, values, "temperature")
+    constant_value = values.constant
+    return constant_value if constant_value is not None else _entered(work, name, values, "temperature")
 
 
 def _entered(work: Work, name: str, values: Year, kind: str) -> str:
     """Name of a schedule with these values; one that is there already, if it is equal."""
-    made = plain(values, kind, holidays(work))
+    description = plain(values, kind, holidays(work))
     held = work.section("schedules")
-    for known, other in held.items():
-        if other == made:
-            return str(known)
+    for existing_name, other in held.items():
+        if other == description:
+            return str(existing_name)
     free = work.names.new("schedules", name)
-    held[free] = made
+    held[free] = description
     return free
 
 
@@ -124,21 +124,21 @@ def calendar_year(work: Work) -> int:
     item = work.model.one("RunPeriod")
     if item is None:
         return 2017
-    given = item.number("begin_year")
-    if given is not None and not YEARS[0] <= given <= YEARS[1]:
+    begin_year = item.number("begin_year")
+    if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
         raise item.error(
-            f"begin_year: found {given:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
+            f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
         )
-    if given is not None and not calendar.isleap(int(given)):
-        return int(given)
+    if begin_year is not None and not calendar.isleap(int(begin_year)):
+        return int(begin_year)
     month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
     names = [name.casefold() for name in calendar.day_name]
     word = item.word("day_of_week_for_start_day")
-    wanted = names.index(word) if word in names else 6
-    if given is not None and word not in names:
-        wanted = day_of(item, int(given), month, day).weekday()
+    weekday = names.index(word) if word in names else 6
+    if begin_year is not None and word not in names:
+        weekday = day_of(item, int(begin_year), month, day).weekday()
     years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
-    return next(one for one in years if day_of(item, one, month, day).weekday() == wanted)
+    return next(candidate for candidate in years if day_of(item, candidate, month, day).weekday() == weekday)
 
 
 def day_of(item: Item, in_year: int, month: int, day: int) -> date:
@@ -157,14 +157,14 @@ def day_of(item: Item, in_year: int, month: int, day: int) -> date:
 
 def holidays(work: Work) -> list[str]:
     """Holidays of the file, as ``MM-DD``, in order."""
-    found: set[str] = set()
+    dates: set[str] = set()
     for item in work.model.of("RunPeriodControl:SpecialDays"):
         if item.word("special_day_type") not in ("holiday", ""):
             continue
         first = _date(item, item.text("start_date"), calendar_year(work))
         for k in range(int(item.number("duration") or 1)):
-            found.add(f"{first + timedelta(days=k):%m-%d}")
-    return sorted(found)
+            dates.add(f"{first + timedelta(days=k):%m-%d}")
+    return sorted(dates)
 
 
 def _date(item: Item, text: str, in_year: int) -> date:
@@ -217,20 +217,20 @@ def _throughs(item: Item, words: Sequence[str]) -> Iterator[tuple[str, list[tupl
     points: list[tuple[int, float]] = []
     last: int | None = None
     for word in words:
-        head, _, rest = word.partition(":")
+        head, _, tail = word.partition(":")
         low = head.casefold().strip()
         if low.startswith("through"):
             if end:
                 yield end, _closed(item, days, who, points)
-            text = rest.strip() or low.removeprefix("through").strip()
+            text = tail.strip() or low.removeprefix("through").strip()
             end, days, who, points = _end(item, text), [], "", []
         elif low.startswith("for"):
             days = _closed(item, days, who, points) if who else days
-            who, points = (low.removeprefix("for") + " " + rest.casefold()).strip(), []
+            who, points = (low.removeprefix("for") + " " + tail.casefold()).strip(), []
         elif low.startswith("interpolate"):
             continue
         elif low.startswith("until"):
-            last = _minute(item, (low.removeprefix("until") + ":" + rest).strip(": "))
+            last = _minute(item, (low.removeprefix("until") + ":" + tail).strip(": "))
         elif word:
             points.append((last or 0, _value(item, word)))
     if end:
@@ -268,7 +268,7 @@ def _closed(
 
 def _week(work: Work, item: Item, days: Iterable[tuple[str, Day]]) -> Week:
     """A day of each kind; the first entry that names it counts."""
-    found: dict[str, Day] = {}
+    day_of_kind: dict[str, Day] = {}
     for who, day in days:
         words = re.findall(r"[a-z0-9]+", who)
         for word in words:
@@ -281,12 +281,12 @@ def _week(work: Work, item: Item, days: Iterable[tuple[str, Day]]) -> Week:
                     f"found '{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it"
                 )
             for name in names:
-                found.setdefault(name, day)
-    missing = [name for name in DAYS[:7] if name not in found]
+                day_of_kind.setdefault(name, day)
+    missing = [name for name in DAYS[:7] if name not in day_of_kind]
     if missing:
         raise item.error(f"no values for {', '.join(missing)}", "values for every day", "Add AllOtherDays")
-    found.setdefault("holiday", found["sunday"])
-    return tuple(found[name] for name in DAYS)
+    day_of_kind.setdefault("holiday", day_of_kind["sunday"])
+    return tuple(day_of_kind[name] for name in DAYS)
 
 
 def _weeks(work: Work, item: Item) -> Year:
@@ -307,8 +307,8 @@ def _week_of(work: Work, item: Item) -> Week:
     days = []
     for row in item.rows("data"):
         who = re.sub(r"^for:?", "", str(row.get("daytype_list", "")).strip().casefold())
-        one = work.model.require(item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name")))
-        days.append((who, _day(one)))
+        day_schedule = work.model.require(item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name")))
+        days.append((who, _day(day_schedule)))
     return _week(work, item, days)
 
 
@@ -348,7 +348,7 @@ def _file(work: Work, item: Item) -> Year:
 def _column(work: Work, item: Item) -> list[float]:
     named = Path(item.text("file_name").replace("\\", "/"))
     folder = work.model.file.parent
-    path = next((one for one in (folder / named, folder / named.name) if one.is_file()), None)
+    path = next((candidate for candidate in (folder / named, folder / named.name) if candidate.is_file()), None)
     if path is None:
         raise item.error(f"file_name: found no file '{named}'", f"a table in {folder}", "Put it there")
     mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[
@@ -359,11 +359,11 @@ def _column(work: Work, item: Item) -> list[float]:
         require_regular(path).open(encoding="utf-8-sig", errors="replace", newline="") as lines,
     ):
         rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
-    place = int(item.needed("column_number")) - 1
+    column = int(item.needed("column_number")) - 1
     rows = [row for row in rows[int(item.number("rows_to_skip_at_top") or 0) :] if row]
     try:
-        return [finite(row[place]) for row in rows]
+        return [finite(row[column]) for row in rows]
     except (IndexError, ValueError) as error:
         raise item.error(
-            f"{path.name}: {error}", f"numbers in column {place + 1}", "Correct the file"
+            f"{path.name}: {error}", f"numbers in column {column + 1}", "Correct the file"
         ) from None

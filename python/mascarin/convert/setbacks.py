@@ -28,10 +28,10 @@ def setback(opening: Opening) -> g.Array:
     opening : Opening
         The opening; zeros where it lies in its wall, or is not parallel to it.
     """
-    out, own = (g.normal_of(points) for points in (opening.base.points, opening.points))
-    out, own = out / np.linalg.norm(out), own / np.linalg.norm(own)
+    out, opening_normal = (g.normal_of(points) for points in (opening.base.points, opening.points))
+    out, opening_normal = out / np.linalg.norm(out), opening_normal / np.linalg.norm(opening_normal)
     depth = float((opening.base.points.mean(axis=0) - opening.points.mean(axis=0)) @ out)
-    if float(out @ own) < _PARALLEL or abs(depth) <= TOLERANCE:
+    if float(out @ opening_normal) < _PARALLEL or abs(depth) <= TOLERANCE:
         return np.zeros(3)
     moved: g.Array = depth * out
     return moved
@@ -44,8 +44,8 @@ def outward(opening: Opening) -> float:
 
 def shift_of_shades(base: Face, openings: list[Opening]) -> g.Array:
     """How far shades of a wall move out: as its deepest window; shape (3,). [m]"""
-    own = [one for one in openings if one.base is base and outward(one) > 0.0]
-    return setback(max(own, key=outward)) if own else np.zeros(3)
+    outer_openings = [opening for opening in openings if opening.base is base and outward(opening) > 0.0]
+    return setback(max(outer_openings, key=outward)) if outer_openings else np.zeros(3)
 
 
 def describe_setback(work: Work, opening: Opening, outline: g.Array) -> None:

@@ -23,7 +23,7 @@ _SIMPLE: Final = ("Shading:Site", "Shading:Building")
 _HALF: Final = 0.5
 
 
-def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> None:
+def describe_shades(work: Work, surfaces: list[Face], openings: list[Opening]) -> None:
     """Enter all shading surfaces.
 
     Raises
@@ -31,7 +31,7 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
     InputError
         A shade of a window or surface that does not exist.
     """
-    rules, by_face = g.rules_of(work.model), {face.item.name.casefold(): face for face in every}
+    rules, by_face = g.rules_of(work.model), {face.item.name.casefold(): face for face in surfaces}
     by_opening = {opening.item.name.casefold(): opening for opening in openings}
     for item in work.model.of(*_DETAILED):
         points = _detailed(work, rules, item, by_face, openings)
@@ -43,7 +43,7 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
         "Shading:Overhang": _overhang, "Shading:Overhang:Projection": _overhang,
         "Shading:Fin": _fins, "Shading:Fin:Projection": _fins,
     }  # fmt: skip
-    for kind, made in attached.items():
+    for kind, outlines_of in attached.items():
         for item in work.model.of(kind):
             window = by_opening.get(item.word("window_or_door_name"))
             if window is None:
@@ -52,7 +52,7 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
                     "a window or door of the file",
                     "Correct it",
                 )
-            for name, points in made(item, window.points + setback(window)):
+            for name, points in outlines_of(item, window.points + setback(window)):
                 _enter(work, item, name, points)
     _reflectances(work)
 
@@ -90,8 +90,8 @@ def _opaque(work: Work, item: Item) -> bool:
     if work.model.named(item.text("transmittance_schedule_name"), *SCHEDULES) is None:
         work.model.require(item, "transmittance_schedule_name", *SCHEDULES)
     values = year(work, item, "transmittance_schedule_name", default=0.0)
-    given = values.constant
-    if given == 0.0:
+    transmittance = values.constant
+    if transmittance == 0.0:
         return True
     mean = values.mean()
     if mean > _HALF:
@@ -122,7 +122,7 @@ def _edges(points: g.Array) -> tuple[g.Plane, g.Array, float, float]:
 
 def _overhang(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     plane, corner, width, height = _edges(points)
-    left, right, above = (
+    left_extension, right_extension, above = (
         item.number(key) or 0.0
         for key in (
             "left_extension_from_window_door_width",
@@ -132,15 +132,15 @@ def _overhang(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     )
     depth = _depth(item, "depth", height)
     reach = _leaning(item, "tilt_angle_from_window_door", plane.up, plane.out) * depth
-    start = corner - left * plane.right + (height + above) * plane.up
-    along = (width + left + right) * plane.right
+    start = corner - left_extension * plane.right + (height + above) * plane.up
+    along = (width + left_extension + right_extension) * plane.right
     if depth > 0.0:
         yield item.name, np.array([start, start + along, start + along + reach, start + reach])
 
 
 def _fins(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     plane, corner, width, height = _edges(points)
-    for side, sign, place in (("left", -1.0, 0.0), ("right", 1.0, width)):
+    for side, sign, edge in (("left", -1.0, 0.0), ("right", 1.0, width)):
         depth = _depth(item, f"{side}_depth", width)
         if depth <= 0.0:
             continue
@@ -149,7 +149,7 @@ def _fins(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
         below = item.number(f"{side}_distance_below_bottom_of_window") or 0.0
         angle = f"{side}_tilt_angle_from_window_door"
         reach = _leaning(item, angle, sign * plane.right, plane.out) * depth
-        start = corner + (place + sign * beside) * plane.right - below * plane.up
+        start = corner + (edge + sign * beside) * plane.right - below * plane.up
         up = (height + top + below) * plane.up
         yield f"{item.name} {side}", np.array([start, start + up, start + up + reach, start + reach])
 
@@ -167,8 +167,8 @@ def _depth(item: Item, key: str, size: float) -> float:
 
 
 def _leaning(item: Item, key: str, along: g.Array, out: g.Array) -> g.Array:
-    given = item.number(key)
-    angle = math.radians(90.0 if given is None else given)
+    tilt = item.number(key)
+    angle = math.radians(90.0 if tilt is None else tilt)
     direction: g.Array = math.cos(angle) * along + math.sin(angle) * out
     return direction
 

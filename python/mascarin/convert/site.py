@@ -41,17 +41,17 @@ def describe_site(work: Work, weather: Path | None) -> None:
     InputError
         The file has no ``Site:Location`` and no weather file is given.
     """
-    found = work.section("site")
-    found |= _location(work, weather)
+    site = work.section("site")
+    site |= _location(work, weather)
     reflectance = _monthly(work.model.one("Site:GroundReflectance"), "ground_reflectance")
     if reflectance is not None:
         mean = sum(v * n for v, n in zip(reflectance, _LENGTHS, strict=True)) / 365.0
-        found["ground_reflectance"] = round(mean, 4)
+        site["ground_reflectance"] = round(mean, 4)
         if max(reflectance) - min(reflectance) > 1e-6:
             item = work.model.of("Site:GroundReflectance")[0]
             work.findings.approximated(item, "a reflectance by month", "its mean over the year is used")
-    found["wind"] = _wind(work)
-    _sky(work, found)
+    site["wind"] = _wind(work)
+    _sky(work, site)
 
 
 def _location(work: Work, weather: Path | None) -> dict[str, Any]:
@@ -90,16 +90,16 @@ def _wind(work: Work) -> dict[str, Any]:
     heights = work.model.one("Site:HeightVariation")
     if heights is not None:
         for key, name in (("exponent", "exponent"), ("layer", "boundary_layer_thickness")):
-            given = heights.fields.get(f"wind_speed_profile_{name}")
-            wind |= {} if given is None else {key: float(given)}
+            entered_value = heights.fields.get(f"wind_speed_profile_{name}")
+            wind |= {} if entered_value is None else {key: float(entered_value)}
     station = work.model.one("Site:WeatherStation")
     for key, name in (
         ("mast_height", "wind_sensor_height_above_ground"),
         ("mast_exponent", "wind_speed_profile_exponent"),
         ("mast_layer", "wind_speed_profile_boundary_layer_thickness"),
     ):
-        given = None if station is None else station.number(name)
-        wind |= {} if given is None else {key: given}
+        entered_value = None if station is None else station.number(name)
+        wind |= {} if entered_value is None else {key: entered_value}
     return wind
 
 

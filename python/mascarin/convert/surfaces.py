@@ -49,7 +49,7 @@ class Surfaces:
     reversed_names: set[str] = field(default_factory=set)
 
 
-def describe_surfaces(work: Work, every: list[Face], films: Films) -> Surfaces:
+def describe_surfaces(work: Work, all_surfaces: list[Face], films: Films) -> Surfaces:
     """Enter all surfaces.
 
     Raises
@@ -58,9 +58,9 @@ def describe_surfaces(work: Work, every: list[Face], films: Films) -> Surfaces:
         A boundary condition or a construction that does not exist.
     """
     done = Surfaces()
-    by_name = {face.item.name.casefold(): face for face in every}
+    by_name = {face.item.name.casefold(): face for face in all_surfaces}
     finite = _finite_differences(work)
-    for face in every:
+    for face in all_surfaces:
         if face.item.name.casefold() in done.reversed_names:
             continue
         outside, cut = _outside(work, face, by_name, films, done)
@@ -72,12 +72,12 @@ def describe_surfaces(work: Work, every: list[Face], films: Films) -> Surfaces:
         else:
             solved = finite.get(face.item.name.casefold(), finite.get(item.name.casefold(), finite[""]))
             layers = construction(work, item, cut=cut, finite_differences=solved)
-        shape, drawn = _shape(work, face)
-        made = {"construction": layers, **shape, "outside": outside, "inside": inside}
+        shape, has_vertices = _shape(work, face)
+        section = {"construction": layers, **shape, "outside": outside, "inside": inside}
         if outside.get("zone") == inside["zone"]:
-            made["internal_mass"] = True
-        work.section("surfaces")[name] = made
-        done.placed[face.item.name.casefold()], done.drawn[name] = name, drawn
+            section["internal_mass"] = True
+        work.section("surfaces")[name] = section
+        done.placed[face.item.name.casefold()], done.drawn[name] = name, has_vertices
     _masses(work, films, finite[""])
     return done
 
@@ -96,8 +96,8 @@ def _shape(work: Work, face: Face) -> tuple[Section, bool]:
 
 
 def _flat(points: g.Array) -> Section:
-    found = {"area": g.area_of(points), "tilt": g.tilt_of(points), "azimuth": g.azimuth_of(points)}
-    return {key: round(value, 5) for key, value in found.items()}
+    geometry = {"area": g.area_of(points), "tilt": g.tilt_of(points), "azimuth": g.azimuth_of(points)}
+    return {key: round(value, 5) for key, value in geometry.items()}
 
 
 def _toward_zone(work: Work, face: Face, films: Films, item: Item, *, outer: bool) -> Section:
@@ -143,28 +143,28 @@ def _outside(
     if boundary == "othersideconditionsmodel":
         work.findings.left_out(item, "a model of its other side", "no heat flows through this surface")
         return {"adiabatic": True}, False
-    known = "Outdoors, Surface, Zone, Adiabatic, Ground, OtherSideCoefficients"
-    raise item.error(f"outside_boundary_condition: found '{boundary}'", f"one of {known}", "Correct it")
+    conditions = "Outdoors, Surface, Zone, Adiabatic, Ground, OtherSideCoefficients"
+    raise item.error(f"outside_boundary_condition: found '{boundary}'", f"one of {conditions}", "Correct it")
 
 
 def held_at(work: Work, name: str, values: Year) -> Section:
     """A side that touches something of a given temperature. [degC]"""
-    given = temperature(work, name, values)
-    return {"scheduled": given} if isinstance(given, str) else {"ground": {"temperature": given}}
+    temperature_value = temperature(work, name, values)
+    return {"scheduled": temperature_value} if isinstance(temperature_value, str) else {"ground": {"temperature": temperature_value}}
 
 
 def _outdoors(work: Work, face: Face, films: Films) -> Section:
     side = skin(work, construction_of(work, face.item), outer=True)
     film = films.outside(face.item, face.zone, side["roughness"])
-    found = {"outdoors": True, "convection": film.convection, "emissivity": side["emissivity"]}
+    side_section = {"outdoors": True, "convection": film.convection, "emissivity": side["emissivity"]}
     if face.sun:
-        found["absorptance"] = side["absorptance"]
+        side_section["absorptance"] = side["absorptance"]
     if film.combined:
-        found["longwave"] = "none"
+        side_section["longwave"] = "none"
     hidden = {key: False for key, on in (("sun", face.sun), ("wind", face.wind)) if not on}
     if hidden:
-        found["exposure"] = hidden
-    return found
+        side_section["exposure"] = hidden
+    return side_section
 
 
 def _between_zones(
@@ -207,7 +207,7 @@ def _other_side(work: Work, face: Face) -> Outside:
     weight = item.number("constant_temperature_coefficient") or 0.0
     air = item.number("external_dry_bulb_temperature_coefficient") or 0.0
     soil = item.number("ground_temperature_coefficient") or 0.0
-    others = [
+    weather_coefficients = [
         key
         for key in (
             "wind_speed_coefficient",
@@ -217,21 +217,21 @@ def _other_side(work: Work, face: Face) -> Outside:
         if item.number(key)
     ]
     film = item.number("combined_convective_radiative_film_coefficient") or 0.0
-    if others or (air and (abs(air - 1.0) > 1e-9 or weight or soil)):
-        what = ", ".join(others) or "outdoor air mixed with other temperatures"
+    if weather_coefficients or (air and (abs(air - 1.0) > 1e-9 or weight or soil)):
+        what = ", ".join(weather_coefficients) or "outdoor air mixed with other temperatures"
         work.findings.left_out(face.item, f"{item.label} with {what}", "no heat flows through this surface")
         return {"adiabatic": True}, False
     if air:
         exposure = {"sun": False, "wind": False, "sky": False}
         convection = film if film > 0.0 else 1000.0
-        found = {"outdoors": True, "convection": convection, "emissivity": 0.9, "longwave": "none"}
-        return found | {"exposure": exposure}, False
+        outdoor_side = {"outdoors": True, "convection": convection, "emissivity": 0.9, "longwave": "none"}
+        return outdoor_side | {"exposure": exposure}, False
     fixed = item.number("constant_temperature") or 0.0
     values = year(work, item, "constant_temperature_schedule_name", default=fixed)
     if item.word("sinusoidal_variation_of_constant_temperature_coefficient") == "yes":
         work.findings.left_out(item, "a sinusoidal temperature", "its constant part alone is used")
     below = ground(work) if soil else constant(0.0)
-    total = combined(lambda one, two: weight * one + soil * two, values, below)
+    total = combined(lambda fixed_value, soil_value: weight * fixed_value + soil * soil_value, values, below)
     side = held_at(work, item.name, total)
     if film <= 0.0:
         return side, False
@@ -264,12 +264,12 @@ def _masses(work: Work, films: Films, finite: bool) -> None:
     """Internal masses: their area, and the part of their construction inside of its plane without flow."""
     for item in work.model.of("InternalMass"):
         zones = work.zones_of(item, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
-        made = construction_of(work, item)
-        side = skin(work, made, outer=False)
+        mass_construction = construction_of(work, item)
+        side = skin(work, mass_construction, outer=False)
         for zone in zones:
             name = work.names.of("surfaces", item.name if len(zones) == 1 else f"{item.name} {zone.name}")
             work.section("surfaces")[name] = {
-                "construction": construction(work, made, cut=True, finite_differences=finite),
+                "construction": construction(work, mass_construction, cut=True, finite_differences=finite),
                 "area": item.needed("surface_area"),
                 "tilt": 90,
                 "azimuth": 0,
@@ -289,7 +289,7 @@ def _finite_differences(work: Work) -> dict[str, bool]:
     word = main.word("algorithm") if main is not None else ""
     if main is not None:
         _moisture(work, main, word)
-    found = {"": word.startswith("conductionfinite")}
+    uses_finite_differences = {"": word.startswith("conductionfinite")}
     named: dict[str, tuple[Item, str]] = {}
     for item in work.model.of("SurfaceProperty:HeatTransferAlgorithm"):
         named[item.word("surface_name")] = item, item.word("algorithm")
@@ -298,13 +298,13 @@ def _finite_differences(work: Work) -> dict[str, bool]:
     for item in work.model.of("SurfaceProperty:HeatTransferAlgorithm:SurfaceList"):
         words: list[Any] = [value for row in item.rows("surface") for value in row.values()]
         words += [value for key, value in item.fields.items() if key.startswith("surface_name_")]
-        named |= {str(one).strip().casefold(): (item, item.word("algorithm")) for one in words}
+        named |= {str(name).strip().casefold(): (item, item.word("algorithm")) for name in words}
     for item in work.model.of("SurfaceProperty:HeatTransferAlgorithm:MultipleSurface"):
         work.findings.left_out(item, "an algorithm for a group of surfaces", "that of the building is used")
     for key, (item, algorithm) in named.items():
         _moisture(work, item, algorithm)
-        found[key] = algorithm.startswith("conductionfinite")
-    return found
+        uses_finite_differences[key] = algorithm.startswith("conductionfinite")
+    return uses_finite_differences
 
 
 def _moisture(work: Work, item: Item, algorithm: str) -> None:

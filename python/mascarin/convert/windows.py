@@ -28,7 +28,7 @@ _MOST: Final = 5.8
 FrameData = tuple[float, float, float, float]
 
 
-def describe_openings(work: Work, every: list[Opening], films: Films, surfaces: Surfaces) -> None:
+def describe_openings(work: Work, openings: list[Opening], films: Films, surfaces: Surfaces) -> None:
     """Enter all windows, and doors as surfaces of their own.
 
     Raises
@@ -37,8 +37,8 @@ def describe_openings(work: Work, every: list[Opening], films: Films, surfaces: 
         A construction that does not exist.
     """
     _shading_controls(work)
-    names = {opening.item.name.casefold() for opening in every}
-    for opening in every:
+    names = {opening.item.name.casefold() for opening in openings}
+    for opening in openings:
         if opening.base.item.name.casefold() in surfaces.reversed_names:
             if opening.beyond.casefold() not in names:
                 work.findings.left_out(
@@ -64,59 +64,59 @@ def _window(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> N
         return
     if outdoors and not base.sun:
         work.findings.approximated(item, "a window in a wall without sun", "the sun shines on the window")
-    found = glazing(work, item, construction_of(work, item))
-    if found is None:
+    glazed = glazing(work, item, construction_of(work, item))
+    if glazed is None:
         return
-    frame = _frame_of(work, item) or found.frame
+    frame = _frame_of(work, item) or glazed.frame
     points = g.without_repeats(opening.points + setback(opening))
     shape = _glazed_shape(work, opening, points, frame, surfaces.drawn[wall])
     film = films.outside(item, base.zone, "very_smooth")
     tilt = g.tilt_of(base.points)
-    made: Section = {"surface": wall, "glazing": found.name, **shape}
+    window: Section = {"surface": wall, "glazing": glazed.name, **shape}
     if outdoors:
         # EnergyPlus adds long-wave radiation to a combined coefficient on windows, not on walls.
-        made["outside"] = {"convection": film.convection}
+        window["outside"] = {"convection": film.convection}
     else:
-        made["outside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
-    made["inside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
-    work.section("windows")[work.names.of("windows", item.name)] = made
+        window["outside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
+    window["inside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
+    work.section("windows")[work.names.of("windows", item.name)] = window
 
 
 def _glazed_shape(
-    work: Work, opening: Opening, points: g.Array, frame: FrameData | None, drawn: bool
+    work: Work, opening: Opening, points: g.Array, frame: FrameData | None, has_vertices: bool
 ) -> Section:
     """Corners, area and frame of a window; the glass of EnergyPlus lies inside its frame."""
     glass = g.area_of(opening.points)
-    made: Section = {}
+    shape: Section = {}
     outline = points
     if frame is not None:
         outline = _framed(points, frame[0])
-        whole = g.area_of(outline)
+        outer_area = g.area_of(outline)
         _, u_value, absorptance, emissivity = frame
-        made["frame"] = {
-            "fraction": round(1.0 - glass / whole, 9),
+        shape["frame"] = {
+            "fraction": round(1.0 - glass / outer_area, 9),
             "u_value": min(round(u_value, 9), _MOST),
             "absorptance": absorptance,
             "emissivity": emissivity,
         }
-        glass = whole
+        glass = outer_area
     total = round(glass * opening.copies, 6)
-    if not drawn or not _accepted(opening, outline):
-        if drawn:
+    if not has_vertices or not _accepted(opening, outline):
+        if has_vertices:
             work.findings.approximated(
                 opening.item, "corners outside of its wall", "its area alone: nothing shades it"
             )
-        return {"area": total} | made
+        return {"area": total} | shape
     describe_setback(work, opening, outline)
-    made = {"vertices": g.rounded(outline), **made}
+    shape = {"vertices": g.rounded(outline), **shape}
     if opening.copies > 1:
         work.findings.approximated(
             opening.item,
             f"{opening.copies} windows",
             "one window of their area, with the shadows of the first",
         )
-        made["area"] = total
-    return made
+        shape["area"] = total
+    return shape
 
 
 def _accepted(opening: Opening, points: g.Array) -> bool:
@@ -172,7 +172,7 @@ def _door(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> Non
     """An opaque door: a surface that lies in its wall."""
     wall_name = surfaces.placed[opening.base.item.name.casefold()]
     wall = work.section("surfaces")[wall_name]
-    made = construction_of(work, opening.item)
+    door_construction = construction_of(work, opening.item)
     points = g.without_repeats(opening.points + setback(opening))
     if not surfaces.drawn[wall_name] or not _accepted(opening, points):
         work.findings.left_out(
@@ -185,14 +185,14 @@ def _door(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> Non
         work.findings.left_out(opening.item, f"{opening.copies} doors", "there is one of them")
     sides = {}
     for side, outer in (("outside", True), ("inside", False)):
-        own = {key: value for key, value in skin(work, made, outer).items() if key in wall[side]}
-        sides[side] = wall[side] | own
+        film_values = {key: value for key, value in skin(work, door_construction, outer).items() if key in wall[side]}
+        sides[side] = wall[side] | film_values
     if wall["outside"].get("outdoors"):
-        film = films.outside(opening.item, opening.base.zone, skin(work, made, outer=True)["roughness"])
+        film = films.outside(opening.item, opening.base.zone, skin(work, door_construction, outer=True)["roughness"])
         sides["outside"]["convection"] = film.convection
     cut = bool(wall["outside"].get("adiabatic"))
     work.section("surfaces")[work.names.of("surfaces", opening.item.name)] = {
-        "construction": construction(work, made, cut=cut, finite_differences=False),
+        "construction": construction(work, door_construction, cut=cut, finite_differences=False),
         "vertices": g.rounded(points),
         **sides,
     }

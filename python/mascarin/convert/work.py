@@ -42,12 +42,12 @@ class Names:
         room = "parts" if section in ("zones", "surfaces", "windows") else section
         plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
         plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
-        found, count = plain, 1
-        while (room, found.casefold()) in self.taken:
+        candidate, count = plain, 1
+        while (room, candidate.casefold()) in self.taken:
             count += 1
-            found = f"{plain}_{count}"
-        self.taken.add((room, found.casefold()))
-        return found
+            candidate = f"{plain}_{count}"
+        self.taken.add((room, candidate.casefold()))
+        return candidate
 
 
 @dataclass
@@ -87,19 +87,19 @@ class Work:
         InputError
             There is no such zone.
         """
-        model, wanted = self.model, user.text(*keys)
-        if (zone := model.named(wanted, "Zone")) is not None:
+        model, name_of_target = self.model, user.text(*keys)
+        if (zone := model.named(name_of_target, "Zone")) is not None:
             return [zone]
-        if (zones := model.named(wanted, "ZoneList")) is not None:
+        if (zones := model.named(name_of_target, "ZoneList")) is not None:
             return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
-        if (space := model.named(wanted, "Space")) is not None:
+        if (space := model.named(name_of_target, "Space")) is not None:
             return [model.require(space, "zone_name", "Zone")]
-        if (spaces := model.named(wanted, "SpaceList")) is not None:
-            every = [model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")]
-            return [model.require(space, "zone_name", "Zone") for space in every]
+        if (spaces := model.named(name_of_target, "SpaceList")) is not None:
+            space_objects = [model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")]
+            return [model.require(space, "zone_name", "Zone") for space in space_objects]
         # Named so that the error lists the zones.
         key = next((key for key in keys if user.text(key)), keys[0])
-        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=wanted)]
+        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)]
 
 
 def listed(item: Item, wrapper: str) -> list[str]:

@@ -44,7 +44,7 @@ class Zone:
     wind: float
 
 
-def describe_zones(work: Work, every: list[Face]) -> dict[str, Zone]:
+def describe_zones(work: Work, surfaces: list[Face]) -> dict[str, Zone]:
     """Enter all zones that have surfaces.
 
     Returns
@@ -61,16 +61,16 @@ def describe_zones(work: Work, every: list[Face]) -> dict[str, Zone]:
     if not items:
         raise InputError(f"{work.model.file}: found no Zone; expected at least one")
     wind = Wind(**work.sections["site"]["wind"])
-    found = {}
+    zones = {}
     for item in items:
-        own = [face for face in every if face.zone is item]
+        zone_surfaces = [face for face in surfaces if face.zone is item]
         facing = [
             face
-            for face in every
+            for face in surfaces
             if face.boundary == "zone" and face.beyond.casefold() == item.name.casefold()
         ]
         masses = [mass for mass in work.model.of("InternalMass") if item in _zones_of_mass(work, mass)]
-        if not own and not facing and not masses:
+        if not zone_surfaces and not facing and not masses:
             work.findings.left_out(item, "a zone without surfaces", "it has no counterpart here")
             continue
         if (item.number("multiplier") or 1.0) > 1.0:
@@ -80,30 +80,30 @@ def describe_zones(work: Work, every: list[Face]) -> dict[str, Zone]:
                 "temperatures and loads are those of one of the zones: multiply its loads",
             )
         name = work.names.of("zones", item.name)
-        sizes = _sizes(work, item, own, wind)
+        sizes = _sizes(work, item, zone_surfaces, wind)
         work.section("zones")[name] = {"volume": round(sizes.volume, 6)}
-        found[item.name.casefold()] = sizes
+        zones[item.name.casefold()] = sizes
     _capacities(work)
-    return found
+    return zones
 
 
 def _zones_of_mass(work: Work, mass: Item) -> list[Item]:
     return work.zones_of(mass, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
 
 
-def _sizes(work: Work, item: Item, own: list[Face], wind: Wind) -> Zone:
-    floor = floor_area(item, own)
+def _sizes(work: Work, item: Item, zone_surfaces: list[Face], wind: Wind) -> Zone:
+    floor = floor_area(item, zone_surfaces)
     volume = item.number("volume") or 0.0
     ceiling = item.number("ceiling_height") or 0.0
     if volume <= 0.0:
-        volume = floor * ceiling if ceiling > 0.0 else abs(g.signed_volume([face.points for face in own]))
+        volume = floor * ceiling if ceiling > 0.0 else abs(g.signed_volume([face.points for face in zone_surfaces]))
     if volume <= 0.01:
         volume = floor * _HEIGHT
         if volume <= 0.0:
             raise item.error("no volume", "a volume [m3], or surfaces that enclose it", "Give 'Volume'")
         work.findings.approximated(item, "an unknown height", f"{_HEIGHT:g} m are used for its volume")
-    outer = [face for face in own if face.boundary == "outdoors"]
-    heights = np.concatenate([face.points[:, 2] for face in own]) if own else np.array([3.0])
+    outer = [face for face in zone_surfaces if face.boundary == "outdoors"]
+    heights = np.concatenate([face.points[:, 2] for face in zone_surfaces]) if zone_surfaces else np.array([3.0])
     middle = float(0.5 * (heights.min() + heights.max()))
     return Zone(
         item=item,
