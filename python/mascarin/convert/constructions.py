@@ -10,42 +10,42 @@ from __future__ import annotations
 
 from typing import Any
 
+from mascarin.convert.context import Context, Section
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.materials import plain_layers
-from mascarin.convert.source import Item
-from mascarin.convert.work import Section, Work
 
 #: Layers below this are left out where a construction is cut [m].
-_THIN = 1e-5
+_MIN_THICKNESS = 1e-5
 
 
-def construction(work: Work, item: Item, *, cut: bool, finite_differences: bool) -> str:
+def construction(context: Context, item: IdfObject, *, cut: bool, finite_differences: bool) -> str:
     """Enter a construction, if it is not there, and return its name.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
-    item : Item
+    item : IdfObject
         The construction of EnergyPlus.
     cut : bool
         Whether only the part inside of the plane without heat flow is wanted.
     finite_differences : bool
         Whether EnergyPlus solves the surface by finite differences.
     """
-    melting = finite_differences and _can_melt(work, item)
+    melting = finite_differences and _can_melt(context, item)
     original = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
-    name = work.names.of("constructions", original)
-    held = work.section("constructions")
+    name = context.names.of("constructions", original)
+    held = context.section("constructions")
     if name not in held:
-        layers = plain_layers(work, item, finite_differences)
+        layers = plain_layers(context, item, finite_differences)
         if cut:
-            layers = inner_part(layers, work.section("materials"))
+            layers = inner_part(layers, context.section("materials"))
         held[name] = {"layers": _named_apart(layers)}
     return name
 
 
-def _can_melt(work: Work, item: Item) -> bool:
-    properties = work.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+def _can_melt(context: Context, item: IdfObject) -> bool:
+    properties = context.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
     names = {material_property.name.casefold() for material_property in properties}
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     return any(item.word(key) in names for key in keys if item.word(key))
@@ -87,7 +87,7 @@ def inner_part(layers: list[Section], materials: Section) -> list[Section]:
             continue
         thickness = float(layer["thickness"]) * (1.0 - outer_capacity / heat)
         outer_capacity = 0.0
-        if thickness > _THIN:
+        if thickness > _MIN_THICKNESS:
             inner_layers.append(layer | {"thickness": round(thickness, 7)})
     return inner_layers or layers[-1:]
 

@@ -11,63 +11,63 @@ from mascarin.building import Building
 from mascarin.building.geometry import view_factors
 from mascarin.building.rules import surface_names
 from mascarin.building.zone_surfaces import ZoneSurface, closed, floors
+from mascarin.convert.context import Context
 from mascarin.convert.geometry import Array
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.zones import Zone
 from mascarin.errors import InputError
 
 #: Surfaces whose directions differ by less do not see each other [deg].
 _SAME_DIRECTION: Final = 10.0
-_BARE: Final = "surfaces without corners"
+_NO_CORNERS: Final = "surfaces without corners"
 
 
-def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) -> None:
+def describe_enclosures(context: Context, building: Building, zones: dict[str, Zone]) -> None:
     """Enter the distribution of the sun, and view factors where those from the corners do not exist.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion; its building has no ``sun`` yet.
     building : Building
         The building as far as it is described.
     zones : dict of Zone
         Its zones.
     """
-    main = work.model.one("Building")
+    main = context.model.one("Building")
     word = main.word("solar_distribution") if main is not None else ""
     traced = word.startswith("fullinterior")
     if word.startswith("minimal"):
-        work.section("site")["self_shading"] = False
+        context.section("site")["self_shading"] = False
     for zone in zones.values():
         zone_surfaces = building.connections.of(zone.name)
-        held = work.section("zones")[zone.name]
+        held = context.section("zones")[zone.name]
         reason = _not_exact(zone_surfaces)
-        if reason not in ("", _BARE):
+        if reason not in ("", _NO_CORNERS):
             held["view_factors"] = by_areas(zone_surfaces)
-            work.findings.approximated(
+            context.findings.approximated(
                 zone.item, reason, "view factors by areas, as those of EnergyPlus: some tenths of a kelvin"
             )
         if not any(item.window is not None for item in zone_surfaces):
             continue
         if traced and reason:
-            work.findings.approximated(zone.item, reason, "beams fall on the floor, not where they would")
-        held["sun"] = _sun(work, zone.item, zone_surfaces, traced and not reason)
+            context.findings.approximated(zone.item, reason, "beams fall on the floor, not where they would")
+        held["sun"] = _sun(context, zone.item, zone_surfaces, traced and not reason)
 
 
-def _sun(work: Work, item: Item, zone_surfaces: Sequence[ZoneSurface], traced: bool) -> str:
+def _sun(context: Context, item: IdfObject, zone_surfaces: Sequence[ZoneSurface], traced: bool) -> str:
     if traced:
         return "geometry"
     if any(floors(zone_surfaces)):
         return "floor"
-    work.findings.approximated(item, "a sunlit zone without a floor", "sun falls evenly on all surfaces")
+    context.findings.approximated(item, "a sunlit zone without a floor", "sun falls evenly on all surfaces")
     return "area"
 
 
 def _not_exact(zone_surfaces: Sequence[ZoneSurface]) -> str:
     """Why exact view factors and traced beams do not exist in a zone; empty where they do."""
     if not closed(zone_surfaces):
-        return _BARE
+        return _NO_CORNERS
     outlines = {item.name: item.polygon for item in zone_surfaces if item.polygon is not None}
     try:
         view_factors(list(outlines.values()))
@@ -112,7 +112,9 @@ def by_areas(zone_surfaces: Sequence[ZoneSurface]) -> dict[str, dict[str, float]
 def _visible(zone_surfaces: Sequence[ZoneSurface]) -> Array:
     """One where two surfaces may see each other, zero for one direction and for a surface itself."""
     visibility = 1.0 - np.eye(len(zone_surfaces))
-    normals: list[Any] = [None if surface.polygon is None else surface.polygon.normal for surface in zone_surfaces]
+    normals: list[Any] = [
+        None if surface.polygon is None else surface.polygon.normal for surface in zone_surfaces
+    ]
     limit = np.cos(np.radians(_SAME_DIRECTION))
     for i, first in enumerate(normals):
         for j, second in enumerate(normals[:i]):

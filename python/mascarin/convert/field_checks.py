@@ -11,7 +11,7 @@ AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
 
 
 #: No number of a model is larger; products of such numbers are finite.
-_LARGEST: Final = 1e30
+_MAX_NUMBER: Final = 1e30
 
 
 def finite(text: str) -> float:
@@ -24,7 +24,7 @@ def finite(text: str) -> float:
     """
     number = float(text)
     if not _is_finite(number):
-        raise ValueError(f"found {text}, expected a finite number up to {_LARGEST:g}")
+        raise ValueError(f"found {text}, expected a finite number up to {_MAX_NUMBER:g}")
     return number
 
 
@@ -76,7 +76,7 @@ def _fault(value: Any, definition: Mapping[str, Any]) -> str | None:
         words = [option.get("enum") for option in kinds if option.get("type") not in ("number", "integer")]
         return None if not numeric or _is_word(value, words) else "a number"
     if not _is_finite(value):
-        return f"a finite number up to {_LARGEST:g}"
+        return f"a finite number up to {_MAX_NUMBER:g}"
     return _outside(float(value), numeric[0]) if numeric else None
 
 
@@ -87,7 +87,7 @@ def _is_word(value: Any, words: list[list[str] | None]) -> bool:
 
 
 def _is_finite(value: float) -> bool:
-    return abs(value) <= _LARGEST  # false for nan, and exact for whole numbers of any length
+    return abs(value) <= _MAX_NUMBER  # false for nan, and exact for whole numbers of any length
 
 
 def _outside(value: float, definition: Mapping[str, Any]) -> str | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from mascarin.convert.source import Item
+from mascarin.convert.idf import IdfObject
 
 Level = Literal["left out", "approximated", "no effect"]
 
@@ -51,28 +51,31 @@ class Finding:
 class Findings:
     """Findings in the order in which they were made, each once."""
 
-    every: dict[Finding, None] = field(default_factory=dict)
+    unique: dict[Finding, None] = field(default_factory=dict)
 
-    def left_out(self, item: Item, what: str, effect: str) -> None:
+    def left_out(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is not carried over and changes the results."""
         self._add("left out", item, what, effect)
 
-    def approximated(self, item: Item, what: str, effect: str) -> None:
+    def approximated(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is carried over in another form."""
         self._add("approximated", item, what, effect)
 
-    def no_effect(self, items: Iterable[Item], what: str, effect: str) -> None:
+    def no_effect(self, items: Iterable[IdfObject], what: str, effect: str) -> None:
         """Note objects of one class that are not needed."""
         objects = list(items)
         if len(objects) == 1:
             self._add("no effect", objects[0], what, effect)
         elif objects:
             count = f"{len(objects)} objects"
-            self.every[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
+            self.unique[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
 
-    def _add(self, level: Level, item: Item, what: str, effect: str) -> None:
-        self.every[Finding(level, item.kind, item.name, item.line, what, effect)] = None
+    def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
+        self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
 
     def of(self, level: Level) -> list[Finding]:
         """Findings of one level, by line."""
-        return sorted((finding for finding in self.every if finding.level == level), key=lambda finding: finding.line or 0)
+        return sorted(
+            (finding for finding in self.unique if finding.level == level),
+            key=lambda finding: finding.line or 0,
+        )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.convert.source import Item, Model
+from mascarin.convert.idf import IdfModel, IdfObject
 
 Array = npt.NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Rules:
     north: float
 
 
-def rules_of(model: Model) -> Rules:
+def rules_of(model: IdfModel) -> Rules:
     """Read ``GlobalGeometryRules`` and ``Building``."""
     geometry_rules, building = model.one("GlobalGeometryRules"), model.one("Building")
 
@@ -81,7 +81,7 @@ class Frame:
 TRUE = Frame(np.zeros(3), 0.0, 0.0)
 
 
-def frame_of(zone: Item | None, rules: Rules, relative: bool) -> Frame:
+def frame_of(zone: IdfObject | None, rules: Rules, relative: bool) -> Frame:
     """Coordinates in which the corners of a zone's surfaces are given; of the building without a zone."""
     if not relative:
         return TRUE
@@ -99,7 +99,7 @@ def _turned(points: Array, degrees: float) -> Array:
     return np.column_stack([x * c + y * s, -x * s + y * c, z])
 
 
-def corners_of(item: Item) -> Array:
+def corners_of(item: IdfObject) -> Array:
     """Corners of a detailed object as they are given, shape (n, 3). [m]
 
     Raises
@@ -123,7 +123,7 @@ def corners_of(item: Item) -> Array:
     return np.array(corners)
 
 
-def _coordinate(item: Item, number: int, value: object) -> float:
+def _coordinate(item: IdfObject, number: int, value: object) -> float:
     try:
         coordinate = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):

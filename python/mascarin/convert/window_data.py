@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.source import Item
+from mascarin.convert.idf import IdfObject
 
 #: Surface resistances that a conductance of the file does not contain (EN 673) [m2 K/W].
 _FILMS: Final = 0.17
@@ -47,12 +47,12 @@ class DataFile:
     dividers: bool
 
 
-def read_data_file(item: Item, folder: Path) -> DataFile:
+def read_data_file(item: IdfObject, folder: Path) -> DataFile:
     """Read the window of a ``Construction:WindowDataFile``.
 
     Parameters
     ----------
-    item : Item
+    item : IdfObject
         The construction; it names the file and the window.
     folder : Path
         Folder of the model, in which a relative path is looked up.
@@ -64,7 +64,9 @@ def read_data_file(item: Item, folder: Path) -> DataFile:
     """
     named = item.text("file_name") or "Window5DataFile.dat"
     path = Path(named.replace("\\", "/"))
-    report = next((candidate for candidate in (folder / path, folder / path.name) if candidate.is_file()), None)
+    report = next(
+        (candidate for candidate in (folder / path, folder / path.name) if candidate.is_file()), None
+    )
     if report is None:
         raise item.error(
             f"file_name: found no file '{named}'", f"a report of WINDOW in {folder}", "Put it there"
@@ -76,7 +78,9 @@ def read_data_file(item: Item, folder: Path) -> DataFile:
     start = next((k for k in windows if lines[k].partition(":")[2].strip().casefold() == window_name), None)
     if start is None:
         window_names = ", ".join(lines[k].partition(":")[2].strip() for k in windows)
-        raise item.error(f"no window '{item.name}' in {report.name}", f"one of {window_names}", "Correct the name")
+        raise item.error(
+            f"no window '{item.name}' in {report.name}", f"one of {window_names}", "Correct the name"
+        )
     end = next((k for k in windows if k > start), len(lines))
     try:
         return _window(report.name, lines[start:end])

@@ -26,7 +26,8 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
     """
     for level in LEVELS:
         findings = sorted(
-            (finding for finding in conversion.findings if finding.level == level), key=lambda finding: finding.line or 0
+            (finding for finding in conversion.findings if finding.level == level),
+            key=lambda finding: finding.line or 0,
         )
         if findings:
             yield _HEADINGS[level]
@@ -79,8 +80,10 @@ def report(conversion: Conversion) -> dict[str, Any]:
             "steps_per_hour": conversion.steps_per_hour,
         },
         "findings": [
-            {"level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line, "found": finding.what,
-             "effect": finding.effect}
+            {
+                "level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line,
+                "found": finding.what, "effect": finding.effect,
+            }
             for finding in conversion.findings
         ],
         "names": conversion.names,

@@ -27,7 +27,7 @@ _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
 
 
 @dataclass(frozen=True)
-class Item:
+class IdfObject:
     """One object of the file.
 
     Attributes
@@ -118,12 +118,12 @@ class Item:
         """Groups of an extensible field."""
         return [row for row in self.fields.get(key) or [] if isinstance(row, Mapping)]
 
-    def error(self, found: str, expected: str, advice: str) -> InputError:
+    def error(self, problem: str, expected: str, advice: str) -> InputError:
         """An error that names the object and its line."""
-        return InputError(f"{self.where}: {found}; expected {expected}. {advice}")
+        return InputError(f"{self.where}: {problem}; expected {expected}. {advice}")
 
 
-class Model:
+class IdfModel:
     """All objects of a file, by class and by name, without regard to case.
 
     Parameters
@@ -132,40 +132,40 @@ class Model:
         The file.
     version : tuple of int
         Version of EnergyPlus that it is written for.
-    items : list of Item
+    items : list of IdfObject
         In the order of the file.
     groups : mapping of str to str
         Group of each class that occurs, in the dictionary of this version.
     """
 
     def __init__(
-        self, file: Path, version: tuple[int, ...], items: list[Item], groups: Mapping[str, str]
+        self, file: Path, version: tuple[int, ...], items: list[IdfObject], groups: Mapping[str, str]
     ) -> None:
         self.file, self.version, self.items, self.groups = file, version, items, groups
         self._asked: set[str] = set()
-        self._by_kind: dict[str, list[Item]] = {}
-        self._by_name: dict[tuple[str, str], Item] = {}
+        self._by_kind: dict[str, list[IdfObject]] = {}
+        self._by_name: dict[tuple[str, str], IdfObject] = {}
         for item in items:
             self._by_kind.setdefault(item.kind.casefold(), []).append(item)
             self._by_name.setdefault((item.kind.casefold(), item.name.casefold()), item)
 
-    def of(self, *kinds: str) -> list[Item]:
+    def of(self, *kinds: str) -> list[IdfObject]:
         """Objects of some classes; the classes count as read."""
         self._asked |= {kind.casefold() for kind in kinds}
         return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
 
-    def one(self, kind: str) -> Item | None:
+    def one(self, kind: str) -> IdfObject | None:
         """The object of a class of which there is one; None without it."""
         objects = self.of(kind)
         return objects[0] if objects else None
 
-    def named(self, name: str, *kinds: str) -> Item | None:
+    def named(self, name: str, *kinds: str) -> IdfObject | None:
         """The object of one of some classes with a name."""
         self._asked |= {kind.casefold() for kind in kinds}
         keys = ((kind.casefold(), name.strip().casefold()) for kind in kinds)
         return next((self._by_name[key] for key in keys if key in self._by_name), None)
 
-    def require(self, user: Item, key: str, *kinds: str, name: str | None = None) -> Item:
+    def require(self, user: IdfObject, key: str, *kinds: str, name: str | None = None) -> IdfObject:
         """The object that a field names.
 
         Raises
@@ -184,14 +184,14 @@ class Model:
             )
         return target_object
 
-    def unread(self) -> Iterator[tuple[str, list[Item]]]:
+    def unread(self) -> Iterator[tuple[str, list[IdfObject]]]:
         """Classes that no part of the conversion has read, with their objects."""
         for key, items in self._by_kind.items():
             if key not in self._asked:
                 yield items[0].kind, items
 
 
-def read(path: Path) -> Model:
+def read(path: Path) -> IdfModel:
     """Read an IDF or epJSON file of EnergyPlus 8.9 or later.
 
     Parameters
@@ -230,12 +230,14 @@ def read(path: Path) -> Model:
         raise _unreadable(path, error) from None
     except kit.IdfKitError as error:
         raise InputError(f"{path}: {error}; expected a model of EnergyPlus") from None
-    if document.version[:2] not in {version[:2] for version in kit.get_schema_manager().get_supported_versions()}:
+    if document.version[:2] not in {
+        version[:2] for version in kit.get_schema_manager().get_supported_versions()
+    }:
         raise _unknown_version(kit, path)
     items, schema = _items(document, path, form), document.schema
     kinds = {item.kind for item in items}
     groups = {kind: str(schema.get_group(kind) or "") for kind in kinds} if schema is not None else {}
-    return Model(path, tuple(document.version), items, groups)
+    return IdfModel(path, tuple(document.version), items, groups)
 
 
 def _idfkit() -> Any:
@@ -298,7 +300,9 @@ def _unreadable(path: Path, error: Any) -> InputError:
     messages = []
     for diagnostic in error.diagnostics:
         position = f"{path}{'' if diagnostic.line is None else f':{diagnostic.line}'}"
-        name = f"{diagnostic.obj_type or 'object'}{f' {diagnostic.obj_name!r}' if diagnostic.obj_name else ''}"
+        name = (
+            f"{diagnostic.obj_type or 'object'}{f' {diagnostic.obj_name!r}' if diagnostic.obj_name else ''}"
+        )
         messages.append(f"{position}: {name}: {diagnostic.message}")
     return InputError(
         "\n".join(messages or [f"{path}: {error}"])
@@ -307,7 +311,7 @@ def _unreadable(path: Path, error: Any) -> InputError:
     )
 
 
-def _items(document: Any, path: Path, form: str) -> list[Item]:
+def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
     schema = document.schema
     lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
     defaults: dict[str, dict[str, Any]] = {}
@@ -324,7 +328,7 @@ def _items(document: Any, path: Path, form: str) -> list[Item]:
             defaults[kind] = _defaults(schema, kind)
         plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
         line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
-        item = Item(kind, str(entry.name or ""), plain, defaults[kind], line, path.name)
+        item = IdfObject(kind, str(entry.name or ""), plain, defaults[kind], line, path.name)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
             raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")
