@@ -71,9 +71,9 @@ def correlation(axes: Axes, names: Sequence[str], matrix: Floats) -> None:
         Correlations. [-]
     """
     axes.imshow(matrix, cmap="RdBu_r", vmin=-1.0, vmax=1.0)
-    places = np.arange(len(names))
-    axes.set_xticks(places, [str(k + 1) for k in places], fontsize=8)
-    axes.set_yticks(places, [f"{k + 1}  {name}" for k, name in enumerate(names)], fontsize=8)
+    positions = np.arange(len(names))
+    axes.set_xticks(positions, [str(k + 1) for k in positions], fontsize=8)
+    axes.set_yticks(positions, [f"{k + 1}  {name}" for k, name in enumerate(names)], fontsize=8)
     for i, row in enumerate(matrix):
         for k, value in enumerate(row):
             color = "white" if abs(value) > 0.6 else colors.INK

@@ -53,10 +53,10 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 
 def _rooms(study: Mapping[str, Any]) -> dict[str, Any] | None:
     """The plan of the rooms, and what its caption says."""
-    found = rooms.drawn(study)
-    if found is None:
+    room_drawing = rooms.drawn(study)
+    if room_drawing is None:
         return None
-    drawing_of_rooms, plan, period = found
+    drawing_of_rooms, plan, period = room_drawing
     return {"drawing": drawing_of_rooms, "exact": plan.exact, "period": period}
 
 
