@@ -38,7 +38,7 @@ def test_a_linear_model_has_parabolas_and_the_interval_of_the_fit(prior: tuple[f
         assert not profile.words
     # Where one is fixed, the one with the similar effect compensates.
     second = profiles(fit, ["b"])[0]
-    assert np.corrcoef(second.values, second.others[:, 2])[0, 1] < -0.99
+    assert np.corrcoef(second.values, second.parameter_values[:, 2])[0, 1] < -0.99
 
 
 def test_it_minimizes_over_the_others_in_a_curved_valley() -> None:

@@ -199,10 +199,10 @@ class Evaluator:
         of_sensors = self.cost.of_sensors(residuals)
         lines = []
         for k in range(x.shape[0]):
-            kept = residuals[k] if keep else None
-            self._remember(x[k], of_sensors[k], kept)
+            stored_residuals = residuals[k] if keep else None
+            self._remember(x[k], of_sensors[k], stored_residuals)
             if self._path is not None:
-                lines.append(self._line(x[k], of_sensors[k], kept))
+                lines.append(self._line(x[k], of_sensors[k], stored_residuals))
         if self._path is not None:
             # One write per batch; it is complete even if the program is killed right after it.
             self._file.write("".join(lines).encode())
@@ -244,24 +244,24 @@ class Evaluator:
 
     def _open(self, path: Path) -> None:
         """Read the record, remove an incomplete last line, and open the file to append."""
-        whole = 0
+        complete_bytes = 0
         if path.is_symlink() or (path.exists() and not path.is_file()):
             raise InputError(
                 f"{path}: found no regular file, expected a record or nothing; name another file"
             )
         if path.exists():
-            whole = self._read(path)
+            complete_bytes = self._read(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("r+b" if path.exists() else "w+b")
-        self._file.truncate(whole)
-        self._file.seek(whole)
-        if whole == 0:
+        self._file.truncate(complete_bytes)
+        self._file.seek(complete_bytes)
+        if complete_bytes == 0:
             self._file.write((json.dumps(self._header()) + "\n").encode())
             self._file.flush()
 
     def _read(self, path: Path) -> int:
         """Read complete lines and return their number of bytes."""
-        whole = 0
+        complete_bytes = 0
         with path.open("rb") as file:
             for number, line in enumerate(file, start=1):
                 if not line.endswith(b"\n"):
@@ -271,16 +271,16 @@ class Evaluator:
                     self._check_header(path, entry)
                 else:
                     self._take(path, number, entry)
-                whole += len(line)
-        return whole
+                complete_bytes += len(line)
+        return complete_bytes
 
-    def _check_header(self, path: Path, found: dict[str, Any]) -> None:
+    def _check_header(self, path: Path, header: dict[str, Any]) -> None:
         expected = self._header()
-        if found.get("mascarin_record") != _FORMAT:
+        if header.get("mascarin_record") != _FORMAT:
             raise InputError(
                 f"{path}: the first line is not that of a record of a calibration; name another file"
             )
-        differing = [key for key in expected if found.get(key) != expected[key]]
+        differing = [key for key in expected if header.get(key) != expected[key]]
         if differing:
             msg = (
                 f"{path}: this record belongs to another calibration (differing: {', '.join(differing)}); "

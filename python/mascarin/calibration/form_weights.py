@@ -93,8 +93,8 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
     days = by_day.shape[1]
     less = by_day[best] - by_day
     doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
-    near = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
-    return int(min(near, key=lambda k: (changes[k], -total[k])))
+    candidates = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
+    return int(min(candidates, key=lambda k: (changes[k], -total[k])))
 
 
 def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -> Floats:
@@ -123,5 +123,5 @@ def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -
     mass = np.concatenate([np.full(s.size, w / s.size) for s, w in zip(samples, weights, strict=True)])
     order = np.argsort(values, kind="stable")
     reached = np.cumsum(mass[order]) / mass.sum()
-    at = np.searchsorted(reached, levels - 1e-12)
-    return np.asarray(values[order][np.minimum(at, values.size - 1)])
+    index = np.searchsorted(reached, levels - 1e-12)
+    return np.asarray(values[order][np.minimum(index, values.size - 1)])

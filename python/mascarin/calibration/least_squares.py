@@ -16,11 +16,11 @@ from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
 
-#: A search ends when so many steps lower the cost by less than a part `_MOVING` of it.
-_IDLE: Final = 6
-_MOVING: Final = 1e-7
+#: A search ends when so many steps lower the cost by less than a part `_MIN_COST_DECREASE` of it.
+_IDLE_STEPS: Final = 6
+_MIN_COST_DECREASE: Final = 1e-7
 #: Rows of one block of the QR decomposition.
-_BLOCK: Final = 256
+_BLOCK_ROWS: Final = 256
 
 
 class _Idle(Exception):
@@ -41,17 +41,17 @@ class _Watch:
         self.best: Floats = np.empty(0)
 
     def __call__(self, z: Floats) -> Floats:
-        found = self._size(z)
-        cost = float(found @ found)
+        residuals = self._size(z)
+        cost = float(residuals @ residuals)
         before = self._lowest[-1] if self._lowest else np.inf
         if cost < before or not self._lowest:
             self.best = np.array(z)
         self._lowest.append(float(np.fmin(cost, before)))
-        if len(self._lowest) > _IDLE:
-            fall = self._lowest[-1 - _IDLE] - self._lowest[-1]
-            if fall <= _MOVING * self._lowest[-1]:
+        if len(self._lowest) > _IDLE_STEPS:
+            fall = self._lowest[-1 - _IDLE_STEPS] - self._lowest[-1]
+            if fall <= _MIN_COST_DECREASE * self._lowest[-1]:
                 raise _Idle
-        return found
+        return residuals
 
 
 def least_squares(
@@ -89,7 +89,7 @@ def least_squares(
         tight = rules.tolerance
         watch = _Watch(squares.size)
         try:
-            found = optimize.least_squares(
+            solution = optimize.least_squares(
                 watch,
                 z,
                 jac=squares.condensed,
@@ -100,9 +100,9 @@ def least_squares(
                 gtol=tight,
                 max_nfev=100,
             )
-            ended, message = found.x, str(found.message)
+            ended, message = solution.x, str(solution.message)
         except _Idle:
-            ended, message = watch.best, f"the cost did not move in {_IDLE} steps"
+            ended, message = watch.best, f"the cost did not move in {_IDLE_STEPS} steps"
         # The method stays a little inside its bounds: an end that near to a bound is the bound.
         end = np.where(ended < 1e-6, 0.0, np.where(ended > 1.0 - 1e-6, 1.0, ended))
         x = problem.values(end[None])[0]
@@ -142,13 +142,13 @@ class Squares:
     def condensed(self, z: Floats) -> Floats:
         """Return the Jacobian (P + 1, P) for `size`: of R in [r J] = Q R all but the first column."""
         long = np.column_stack([self.weighted(z[None])[0], self.jacobian(z)])
-        rows = max(_BLOCK, long.shape[1])
+        rows = max(_BLOCK_ROWS, long.shape[1])
         count = -(-len(long) // rows)
         blocks = np.zeros((count * rows, long.shape[1]))
         blocks[: len(long)] = long
         parts = _triangles(blocks.reshape(count, rows, -1))
-        found = _triangles(parts.reshape(-1, long.shape[1]))
-        return np.asarray(np.copysign(1.0, found[0, 0]) * found[:, 1:])
+        triangle = _triangles(parts.reshape(-1, long.shape[1]))
+        return np.asarray(np.copysign(1.0, triangle[0, 0]) * triangle[:, 1:])
 
     def residuals(self, z: Floats) -> Floats:
         """Return residuals over their uncertainty, then those of the priors."""

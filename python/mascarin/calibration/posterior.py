@@ -42,7 +42,7 @@ METHOD: Final = (
 _BURN_IN: Final = 0.2  # part of the moves that is discarded
 _LONG_ENOUGH: Final = 50.0  # autocorrelation times
 _FEWEST_WALKERS: Final = 32
-_WIDEST: Final = 0.2  # of the range, standard deviation of the first positions
+_MAX_START_SPREAD: Final = 0.2  # of the range, standard deviation of the first positions
 
 
 def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration:
@@ -102,18 +102,18 @@ class _Posterior:
         density = np.full(len(z), -np.inf)
         inside = np.all((z >= 0.0) & (z <= 1.0), axis=1)
         if inside.any():
-            there = z[inside]
-            at = np.clip(self._center + (there - self._center) @ self._stretch, 0.0, 1.0)
-            data = self._evaluator.of_sensors(self._problem.values(at)).sum(axis=1) - self._highest
-            prior = self._evaluator.cost.prior_residuals(self._problem.values(there))
-            found = -data - 0.5 * np.sum(prior**2, axis=1)
-            density[inside] = np.where(np.isfinite(found), found, -np.inf)
+            valid = z[inside]
+            stretched = np.clip(self._center + (valid - self._center) @ self._stretch, 0.0, 1.0)
+            data = self._evaluator.of_sensors(self._problem.values(stretched)).sum(axis=1) - self._highest
+            prior = self._evaluator.cost.prior_residuals(self._problem.values(valid))
+            log_density = -data - 0.5 * np.sum(prior**2, axis=1)
+            density[inside] = np.where(np.isfinite(log_density), log_density, -np.inf)
         return density
 
     def first_positions(self, walkers: int, seed: int) -> Floats:
         """Draw the first positions of the walkers: about the maximum, within the range."""
         sd = np.sqrt(np.diag(self._covariance))
-        shrink = np.minimum(1.0, _WIDEST / np.maximum(sd, 1e-300))
+        shrink = np.minimum(1.0, _MAX_START_SPREAD / np.maximum(sd, 1e-300))
         root = symmetric_power(self._covariance * np.outer(shrink, shrink), 0.5)
         normal = np.random.default_rng([seed, walkers]).standard_normal((walkers, self._center.size))
         z = self._center + normal @ root

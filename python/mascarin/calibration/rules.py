@@ -22,8 +22,8 @@ FINEST: Final = 24
 SlopesName = Literal["differences", "exact"]
 SLOPES: Final[tuple[SlopesName, ...]] = ("differences", "exact")
 
-_AGREE: Final = {"hooke-jeeves": 10}
-_AGREE_OTHERS: Final = 2
+_MIN_AGREEING: Final = {"hooke-jeeves": 10}
+_MIN_AGREEING_OTHERS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +98,9 @@ class Rules:
         least = {"starts": 1, "sequences": 1, "reductions": 1, "together": 1, "agree": 1}
         least |= {"evaluations": 1, "particles": 4, "generations": 2, "walkers": 4, "moves": 50}
         for name, smallest in least.items():
-            found = getattr(self, name)
-            if found is not None and found < smallest:
-                msg = f"{name}: found {found}, expected at least {smallest}"
+            option = getattr(self, name)
+            if option is not None and option < smallest:
+                msg = f"{name}: found {option}, expected at least {smallest}"
                 raise InputError(msg)
         if self.slopes not in SLOPES:
             msg = f"slopes: found '{self.slopes}', expected {' or '.join(SLOPES)}"
@@ -118,4 +118,4 @@ class Rules:
 
     def agreeing(self, method: str) -> int:
         """Return the number of sequences of a method that must reach the same minimum. [-]"""
-        return self.agree if self.agree is not None else _AGREE.get(method, _AGREE_OTHERS)
+        return self.agree if self.agree is not None else _MIN_AGREEING.get(method, _MIN_AGREEING_OTHERS)

@@ -157,13 +157,13 @@ def _solved(
         return fit
 
 
-def _require(method: str, cost: str, confidence: float, own: bool) -> None:
+def _require(method: str, cost: str, confidence: float, own_cost: bool) -> None:
     if method not in METHODS:
         msg = (
             f"method: found '{method}', expected one of {', '.join(METHODS)}. {did_you_mean(method, METHODS)}"
         )
         raise InputError(msg)
-    if method in WITH_SQUARES and cost != "nll" and not own:
+    if method in WITH_SQUARES and cost != "nll" and not own_cost:
         msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)
     if not 0.0 < confidence < 1.0:
@@ -187,8 +187,11 @@ def _require_start(problem: CalibrationProblem, evaluator: Evaluator) -> None:
         for s, sensor in enumerate(problem.sensors)
         if not np.isfinite(simulated[sensor.mask, s]).all()
     ]
-    at = ", ".join(f"{p.path} = {p.first:g} {p.unit}".rstrip() for p in problem.parameters)
-    msg = f"the cost is not a number at the start ({at}): the model gives no number for {', '.join(bad)}"
+    start_text = ", ".join(f"{p.path} = {p.first:g} {p.unit}".rstrip() for p in problem.parameters)
+    msg = (
+        f"the cost is not a number at the start ({start_text}): the model gives no number for "
+        f"{', '.join(bad)}"
+    )
     raise InputError(msg)
 
 
@@ -208,7 +211,7 @@ def _report(
     z = problem.positions(best.x)
     residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
     weights = cost.weights(residuals)
-    found = estimate(
+    uncertainty = estimate(
         problem,
         z,
         residuals,
@@ -222,8 +225,8 @@ def _report(
     if cost.ignores_bias:
         centered = np.where(problem.mask, residuals - residuals.sum(axis=0) / problem.mask.sum(axis=0), 0.0)
     slope = np.einsum("ts,tsp->p", weights * centered, jacobian)
-    notes = warnings(problem, z, found, residuals, jacobian)
-    low, high = problem.values(found.low[None])[0], problem.values(found.high[None])[0]
+    notes = warnings(problem, z, uncertainty, residuals, jacobian)
+    low, high = problem.values(uncertainty.low[None])[0], problem.values(uncertainty.high[None])[0]
     if cost.name in ONE_NUMBER:
         low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
         text = f"the cost '{cost.name}' compares means only: there are no intervals; use it as a criterion"
@@ -238,13 +241,13 @@ def _report(
         x=best.x,
         low=low,
         high=high,
-        correlation=found.correlation,
+        correlation=uncertainty.correlation,
         confidence=confidence,
         cost=best.cost,
         of_sensors=of_sensors,
         residuals=np.where(problem.mask, residuals, np.nan),
-        uncertainty=found,
-        on_bound=on_bounds(problem, z, slope, found),
+        uncertainty=uncertainty,
+        on_bound=on_bounds(problem, z, slope, uncertainty),
         warnings=tuple(notes),
         minima=tuple(minima),
         reason=reason,

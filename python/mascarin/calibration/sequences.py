@@ -35,8 +35,8 @@ Make = Callable[[Space, int], Optimizer]
 """Makes the optimizer of one sequence from its space and its seed."""
 
 _GRID: Final = 2.0**26
-_LONGEST: Final = 5000  # evaluations of one evolution strategy
-_FINE: Final = 1e-6  # of the range, where an evolution strategy ends
+_MAX_EVALUATIONS: Final = 5000  # evaluations of one evolution strategy
+_MIN_STEP: Final = 1e-6  # of the range, where an evolution strategy ends
 
 
 def maker(method: str, rules: Rules) -> Make:
@@ -61,7 +61,7 @@ def maker(method: str, rules: Rules) -> Make:
             space, _swarm(rules, seed), reductions=rules.reductions, rounding=_exact
         ),
         "cma-es": lambda space, seed: CovarianceSearch(
-            space, sigma=rules.step, max_evaluations=_LONGEST, seed=seed, finest=_FINE
+            space, sigma=rules.step, max_evaluations=_MAX_EVALUATIONS, seed=seed, finest=_MIN_STEP
         ),
     }[method]
 
@@ -204,15 +204,15 @@ def _leading(ended: dict[int, Minimum]) -> list[Minimum]:
 
 def _start(problem: CalibrationProblem, rules: Rules, number: int, seed: int, make: Make) -> _Sequence:
     """Start a sequence: at the given start for the first one, at one drawn from its number for the others."""
-    drawn = np.random.default_rng([seed, number])
+    rng = np.random.default_rng([seed, number])
     if number == 0:
         start = problem.positions(np.array([p.first for p in problem.parameters]))
     else:
-        start = drawn.random(len(problem.parameters))
+        start = rng.random(len(problem.parameters))
     # Start and step on a binary grid: every point of every refined mesh is then an exact number, and a mesh
     # point reached twice is the same point.
     start = np.round(start * _GRID) / _GRID
     step = max(round(rules.step * _GRID), 1) / _GRID
     n = len(problem.parameters)
     space = box(problem.paths, start.tolist(), [0.0] * n, [1.0] * n, [step] * n)
-    return _Sequence(number, start, make(space, int(drawn.integers(1, 2**31))))
+    return _Sequence(number, start, make(space, int(rng.integers(1, 2**31))))

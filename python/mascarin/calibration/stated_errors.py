@@ -76,11 +76,11 @@ def shared_errors(sensor: States, stated: SensorUncertainty) -> SensorError:
     stated : SensorUncertainty
         Standard uncertainty of a reading.
     """
-    rest = stated.absolute if sensor.repeatability is None else 0.0
+    offset = stated.absolute if sensor.repeatability is None else 0.0
     if sensor.repeatability is not None and stated.absolute > sensor.repeatability:
-        rest = math.sqrt(stated.absolute**2 - sensor.repeatability**2)
+        offset = math.sqrt(stated.absolute**2 - sensor.repeatability**2)
     return SensorError(
-        offset=rest if sensor.offset is None else sensor.offset,
+        offset=offset if sensor.offset is None else sensor.offset,
         common=sensor.common,
         gain=sensor.gain if sensor.gain else stated.relative,
         reference=sensor.reference,
@@ -169,7 +169,7 @@ def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[s
     InputError
         The sensor is not one of the building, inside a wall.
     """
-    found = {}
+    uncertainty_of_depth = {}
     for (name, sensor), output in zip(sensors.items(), simulation.outputs, strict=True):
         if sensor.depth is None:
             continue
@@ -179,5 +179,5 @@ def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[s
                 f"sensors: {name}: found a depth for {output.name}, which is not inside a wall; expected a "
                 "sensor of the building (sensors), such as probe.temperature. Leave depth out"
             )
-        found[f"sensors.{probe}.depth"] = sensor.depth
-    return found
+        uncertainty_of_depth[f"sensors.{probe}.depth"] = sensor.depth
+    return uncertainty_of_depth
