@@ -29,12 +29,12 @@ from mascarin.validation.sensor_faults import NORMAL_95, Fault, Series, pairs_al
 Floats = NDArray[np.float64]
 
 #: Neither part of the record is shorter than this, nor than this part of it. [s], [-]
-_SHORTEST: Final = 86400.0
+_MIN_PART: Final = 86400.0
 _LEAST_PART: Final = 0.04
 #: Jumps of a clock that are tried: daylight saving. [s]
 _JUMPS: Final = (-3600.0, 3600.0)
 #: Difference of the deviance that tells the side of a change.
-_SIDE: Final = 2.0
+_MIN_SIDE_DEVIANCE: Final = 2.0
 
 
 def changes(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
@@ -66,17 +66,17 @@ def changes(joint: Joint, active: Sequence[int], null: Solution, series: Series)
     ('offset', (120, 240), 1.0)
     """
     n = len(series.measured)
-    edge = max(math.ceil(_SHORTEST / series.interval), math.ceil(_LEAST_PART * n))
+    edge = max(math.ceil(_MIN_PART / series.interval), math.ceil(_LEAST_PART * n))
     if n < 3 * edge:
         return []
     search = _Search(joint, active, null, series, edge)
-    found: list[Fault] = []
+    faults: list[Fault] = []
     for s in range(joint.sensors):
         if joint.count[s] >= 3:
-            found += [*search.offset(s), *search.clock(s)]
+            faults += [*search.offset(s), *search.clock(s)]
     for i, j in pairs_alike(joint, series):
-        found += search.swap(i, j)
-    return sorted(found, key=lambda fault: -fault.deviance)
+        faults += search.swap(i, j)
+    return sorted(faults, key=lambda fault: -fault.deviance)
 
 
 class _Search:
@@ -93,13 +93,17 @@ class _Search:
     def offset(self, s: int) -> list[Fault]:
         """An offset of one sensor after a change, or before it."""
         step = self._after(s, np.ones(self.n))
-        own = step.square - np.sum((step.across @ self._known[1]) * step.across, axis=1)
-        scores = step.slope**2 / np.maximum(own, 1e-6 * step.square + 1e-12)
+        conditional_square = step.square - np.sum((step.across @ self._free_part[1]) * step.across, axis=1)
+        scores = step.slope**2 / np.maximum(conditional_square, 1e-6 * step.square + 1e-12)
         first = self.edge + int(np.argmax(scores[self.edge : self.n - self.edge + 1]))
         # Which side is wrong is told by the stated uncertainty of the other; else it is the shorter one.
         sides = sorted([(0, first), (first, self.n)], key=lambda rows: rows[1] - rows[0])
-        found = [self._offset(s, rows) for rows in sides]
-        best = found[1] if found[1].deviance > found[0].deviance + _SIDE else found[0]
+        candidates = [self._offset(s, rows) for rows in sides]
+        best = (
+            candidates[1]
+            if candidates[1].deviance > candidates[0].deviance + _MIN_SIDE_DEVIANCE
+            else candidates[0]
+        )
         return [best] if best.effect > NORMAL_95 * self.series.uncertainty[s] else []
 
     def _offset(self, s: int, rows: tuple[int, int]) -> Fault:
@@ -114,14 +118,14 @@ class _Search:
     def clock(self, s: int) -> list[Fault]:
         """A clock of one sensor that jumps by an hour."""
         measured, simulated = self.series.measured[:, s], self.series.simulated[:, s]
-        found = []
+        faults = []
         for jump in _JUMPS:
             late = shifted(simulated, jump, self.series.interval)
             fault = self._replaced("clock", (s,), {s: measured - late}, jump)
             effect = float(np.sqrt(np.mean((late - simulated) ** 2)))
             if fault is not None and effect > self.series.uncertainty[s]:
-                found.append(replace(fault, effect=effect))
-        return found
+                faults.append(replace(fault, effect=effect))
+        return faults
 
     def swap(self, i: int, j: int) -> list[Fault]:
         """Two columns that are exchanged."""
@@ -162,10 +166,10 @@ class _Search:
         across = np.sum([part.across for part in parts], axis=0)
         slope = np.sum([part.slope for part in parts], axis=0)
         square = np.sum([part.square for part in parts], axis=0)
-        return np.asarray(np.sum((across @ self._known[1]) * across, axis=1) - 2.0 * slope - square)
+        return np.asarray(np.sum((across @ self._free_part[1]) * across, axis=1) - 2.0 * slope - square)
 
     @cached_property
-    def _known(self) -> tuple[NDArray[np.int64], Floats, list[Floats]]:
+    def _free_part(self) -> tuple[NDArray[np.int64], Floats, list[Floats]]:
         """Columns that are free, their covariance, and what remains of each sensor without a fault."""
         index = np.asarray(self.active, dtype=np.int64)
         free = np.flatnonzero(self.null.free[: index.size])
@@ -180,27 +184,27 @@ class _Search:
         Whitening makes a pulse of its beginning, so that every row is looked at; after the pulse the products
         are sums from the end.
         """
-        free, _, left = self._known
+        free, _, residual = self._free_part
         rows, variance = self.joint.rows[s], self.null.variance[s]
-        whole = np.where(rows, self.joint.whitening.series(change, s), 0.0)
+        whitened = np.where(rows, self.joint.whitening.series(change, s), 0.0)
         table = np.zeros((self.n, free.size + 2))
         table[rows, :-2] = self.joint.white[s][:, free]
-        table[rows, -2] = left[s]
-        table[:, -1] = whole
+        table[rows, -2] = residual[s]
+        table[:, -1] = whitened
         phi = self.joint.whitening.coefficients[s]
         order = phi.size
         total = np.zeros((self.n + 1 + order, free.size + 2))
-        total[: self.n] = np.cumsum((table * whole[:, None])[::-1], axis=0)[::-1]
+        total[: self.n] = np.cumsum((table * whitened[:, None])[::-1], axis=0)[::-1]
         products = total[order:].copy()
         square = products[:, -1].copy()
         padded = np.concatenate([table, np.zeros((order + 1, table.shape[1]))])
-        there = np.concatenate([rows, np.zeros(order + 1, dtype=bool)])
+        comparable = np.concatenate([rows, np.zeros(order + 1, dtype=bool)])
         values = np.concatenate([change, np.zeros(order + 1)])
         for j in range(order):
             pulse = values[j : j + self.n + 1].copy()
             for lag in range(1, j + 1):
                 pulse -= phi[lag - 1] * values[j - lag : j - lag + self.n + 1]
-            pulse *= there[j : j + self.n + 1]
+            pulse *= comparable[j : j + self.n + 1]
             products += pulse[:, None] * padded[j : j + self.n + 1]
             square += pulse**2
         return _Part(
@@ -221,11 +225,11 @@ class _Part:
     across: Floats
     slope: Floats
     square: Floats
-    whole: Floats
+    total: Floats
 
     def before(self) -> _Part:
         """The same for a change until each row."""
-        square = self.square[0] - 2.0 * self.whole + self.square
+        square = self.square[0] - 2.0 * self.total + self.square
         return _Part(
-            self.across[0] - self.across, self.slope[0] - self.slope, square, self.whole[0] - self.whole
+            self.across[0] - self.across, self.slope[0] - self.slope, square, self.total[0] - self.total
         )

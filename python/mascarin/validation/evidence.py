@@ -56,15 +56,15 @@ def chance(
     improvement = np.zeros(int(block[-1]) + 1)
     first = before[0].remaining(before[1], before[2])
     second = after[0].remaining(after[1], after[2], after[3])
-    for s, (one, other) in enumerate(zip(first, second, strict=True)):
+    for s, (before_series, after_series) in enumerate(zip(first, second, strict=True)):
         v, w = before[1].variance[s], after[1].variance[s]
         with np.errstate(divide="ignore", invalid="ignore"):
             logs = math.log(v / w)
-        for rows, left, sign, variance in (
-            (before[0].rows[s], one, 1.0, v),
-            (after[0].rows[s], other, -1.0, w),
+        for rows, whitened, sign, variance in (
+            (before[0].rows[s], before_series, 1.0, v),
+            (after[0].rows[s], after_series, -1.0, w),
         ):
-            improvement += sign * np.bincount(block[rows], left**2 / variance, improvement.size)
+            improvement += sign * np.bincount(block[rows], whitened**2 / variance, improvement.size)
         improvement += logs * np.bincount(block[before[0].rows[s]], minlength=improvement.size)
     used = improvement[improvement != 0.0]
     if used.size < 3:
@@ -108,14 +108,14 @@ def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> f
     inside = (np.arange(errors.size) >= rows[0]) & (np.arange(errors.size) < rows[1])
     means, parts = [], []
     for part in (inside, ~inside):
-        there = errors[part]
-        day = np.arange(there.size) // length
-        known = np.isfinite(there)
-        count = np.bincount(day[known])
-        total = np.bincount(day[known], weights=there[known])
+        part_errors = errors[part]
+        day = np.arange(part_errors.size) // length
+        finite = np.isfinite(part_errors)
+        count = np.bincount(day[finite])
+        total = np.bincount(day[finite], weights=part_errors[finite])
         means.append(total[count > 0] / count[count > 0])
         parts.append(means[-1] - means[-1].mean() if means[-1].size else means[-1])
-    size = np.array([one.size for one in means], dtype=np.float64)
+    size = np.array([day_means.size for day_means in means], dtype=np.float64)
     if size.min() < 2:
         return 1.0
     square = sum(float(part @ part) for part in parts)
@@ -167,9 +167,9 @@ class Squares:
 
     def share(self, after: Floats) -> tuple[float, float]:
         """Part taken away over all sensors, and of the sensor where it is largest. [-]"""
-        whole = 1.0 - float(after.sum()) / max(float(self.before.sum()), 1e-300)
+        share_of_all = 1.0 - float(after.sum()) / max(float(self.before.sum()), 1e-300)
         each = 1.0 - after / np.maximum(self.before, 1e-300)
-        return whole, float(each.max(initial=0.0))
+        return share_of_all, float(each.max(initial=0.0))
 
     def _of(
         self,
@@ -179,9 +179,9 @@ class Squares:
         extra: Sequence[Extra],
         gone: int | None,
     ) -> Floats:
-        left = joint.remaining(solution, active, extra)
+        remaining = joint.remaining(solution, active, extra)
         first = len(joint.columns) - joint.sensors
         for value, k in zip(solution.values, active, strict=False):
             if k >= first and k - first != gone:
-                left[k - first] = left[k - first] + value
-        return np.array([float(r @ r) for r in left]) / self._u**2
+                remaining[k - first] = remaining[k - first] + value
+        return np.array([float(r @ r) for r in remaining]) / self._u**2

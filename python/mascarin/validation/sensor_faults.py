@@ -29,12 +29,12 @@ NORMAL_95: Final = 1.96
 #: Halvings of the step of the search for a shift.
 _HALVINGS: Final = 5
 #: A shift of this size that makes the objective worse by so much on both sides is not looked for. [s], [-]
-_NEAR: Final = 600.0
-_NEARLY: Final = 4.0
+_NEAR_DELAY: Final = 600.0
+_NEAR_DEVIANCE: Final = 4.0
 #: Parts of the day of which the quietest quarter gives the white noise.
 _PARTS: Final = 8
 #: Mean of the two lowest of eight normal variables, below their mean. [standard deviations]
-_LOWEST: Final = 1.14
+_QUIET_SCORE: Final = 1.14
 #: Smaller errors of a gain cannot be distinguished from the form of a model. [-]
 _LEAST_GAIN: Final = 0.03
 #: Largest number of pairs of columns that are tried, the most similar ones.
@@ -137,9 +137,9 @@ def shifted(series: Floats, seconds: float, interval: float) -> Floats:
 
     if seconds == 0.0:
         return series
-    place = np.arange(len(series), dtype=np.float64)
-    spline = CubicSpline(place, series)
-    return np.asarray(spline(np.clip(place - seconds / interval, 0.0, len(series) - 1.0)))
+    sample = np.arange(len(series), dtype=np.float64)
+    spline = CubicSpline(sample, series)
+    return np.asarray(spline(np.clip(sample - seconds / interval, 0.0, len(series) - 1.0)))
 
 
 def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
@@ -162,16 +162,16 @@ def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: S
     list of Fault
         Those whose effect is larger than the stated uncertainty, the largest fall of the deviance first.
     """
-    found: list[Fault] = []
+    faults: list[Fault] = []
     objective = joint.screen(active, null)
     for s in range(joint.sensors):
         if joint.count[s] < 3:
             continue
-        found += [*_columns(joint, active, null, series, s)]
+        faults += [*_columns(joint, active, null, series, s)]
         clock = _clock(joint, active, null, series, s, objective)
-        found += [clock] if clock is not None else []
-    found += _swaps(joint, active, null, series)
-    return sorted(found, key=lambda fault: -fault.deviance)
+        faults += [clock] if clock is not None else []
+    faults += _swaps(joint, active, null, series)
+    return sorted(faults, key=lambda fault: -fault.deviance)
 
 
 def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series, s: int) -> list[Fault]:
@@ -188,7 +188,7 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
     ]
     for name, other in series.neighbours.get(s, {}).items():
         tried.append(("place", name, other - simulated, (0.0, 1.0)))
-    found = []
+    faults = []
     for what, name, column, limits in tried:
         if not np.any(column) or (what == "gain" and np.ptp(simulated) == 0.0):
             continue
@@ -205,13 +205,13 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
             continue
         if effect > limit:
             error = fit.standard_error(fit.values.size - 1)
-            found.append(
+            faults.append(
                 Fault(
                     what, (s,), value, error, null.deviance - fit.deviance, effect, name, (extra,),
                     solution=fit,
                 )
             )  # fmt: skip
-    return found
+    return faults
 
 
 def _clock(
@@ -240,7 +240,7 @@ def _clock(
         if abs(hours) * 3600.0 <= longest:
             score(3600.0 * hours)
     best = min(scores, key=lambda delay: scores[delay])
-    if best == 0.0 and min(score(-_NEAR), score(_NEAR)) > score(0.0) + _NEARLY:
+    if best == 0.0 and min(score(-_NEAR_DELAY), score(_NEAR_DELAY)) > score(0.0) + _NEAR_DEVIANCE:
         return None
     best = _refined(best, lambda delay: fit_of(delay).deviance)
     moved = measured - shifted(simulated, best, interval)
@@ -269,8 +269,8 @@ def _refined(start: float, objective: Callable[[float], float]) -> float:
         low, middle, high = values[best - step], values[best], values[best + step]
         bend = low + high - 2.0 * middle
         if bend > 0.0:
-            there = best + float(np.clip(0.5 * step * (low - high) / bend, -step, step))
-            values.setdefault(there, objective(there))
+            vertex = best + float(np.clip(0.5 * step * (low - high) / bend, -step, step))
+            values.setdefault(vertex, objective(vertex))
         best = min(values, key=lambda delay: values[delay])
         step *= 0.5
     return best
@@ -308,7 +308,7 @@ def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
 def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
     """Pairs of sensors of one unit whose columns are exchanged."""
     y, m = series.measured, series.simulated
-    found = []
+    faults = []
     for i, j in pairs_alike(joint, series):
         residual = {i: y[:, j] - m[:, i], j: y[:, i] - m[:, j]}
         same = np.isfinite(y[:, i]) == np.isfinite(y[:, j])
@@ -317,13 +317,13 @@ def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) 
         fit = joint.with_residual(residual).solve(active, start=null)
         effect = float(np.sqrt(np.nanmean((y[:, i] - y[:, j]) ** 2)))
         if effect > max(series.uncertainty[i], series.uncertainty[j]) and fit.deviance < null.deviance:
-            found.append(
+            faults.append(
                 Fault(
                     "swapped", (i, j), math.nan, math.nan, null.deviance - fit.deviance, effect,
                     residual=residual, solution=fit,
                 )
             )  # fmt: skip
-    return found
+    return faults
 
 
 def white_noise(errors: Floats, interval: float) -> tuple[float, float]:
@@ -354,16 +354,16 @@ def white_noise(errors: Floats, interval: float) -> tuple[float, float]:
     """
     second = errors[:-2] - 2.0 * errors[1:-1] + errors[2:]
     hour = ((np.arange(second.size) * interval / 3600.0) % 24.0).astype(np.int64) * _PARTS // 24
-    known = np.isfinite(second)
-    if known.sum() < 24:
+    finite = np.isfinite(second)
+    if finite.sum() < 24:
         return math.nan, math.nan
-    count = np.bincount(hour[known], minlength=_PARTS)
-    power = np.bincount(hour[known], weights=second[known] ** 2 / 6.0, minlength=_PARTS)
+    count = np.bincount(hour[finite], minlength=_PARTS)
+    power = np.bincount(hour[finite], weights=second[finite] ** 2 / 6.0, minlength=_PARTS)
     mean = power[count > 0] / count[count > 0]
     quiet = np.sort(mean)[: max(1, mean.size // 4)]
     # Relative standard deviation of a mean square of overlapping second differences of white noise, whose
     # autocorrelations are -2/3 and 1/6; and the expected place of the lowest quarter among such means.
     spread = math.sqrt(2.0 * (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)) / float(np.mean(count[count > 0])))
-    lowest = _LOWEST if mean.size == _PARTS else 0.0
+    lowest = _QUIET_SCORE if mean.size == _PARTS else 0.0
     sd = math.sqrt(float(np.mean(quiet)) / max(1.0 - lowest * spread, 0.5))
     return sd, 0.5 * sd * spread / math.sqrt(quiet.size)
