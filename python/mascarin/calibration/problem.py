@@ -185,8 +185,8 @@ class FitSensor:
             raise InputError(msg)
         if compared.size > 1 and np.ptp(compared) == 0.0:
             msg = (
-                f"sensor '{self.name}' shows {compared[0]:g} {self.unit} in all {compared.size} samples and does "
-                f"not measure: mask it or leave it out"
+                f"sensor '{self.name}' shows {compared[0]:g} {self.unit} in all {compared.size} samples and "
+                f"does not measure: mask it or leave it out"
             )
             raise InputError(msg)
         uncertainty = SensorUncertainty.stated(

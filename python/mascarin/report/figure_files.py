@@ -13,7 +13,7 @@ from mascarin.figures import colors
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.figures.files import save, save_both
 from mascarin.report import text
-from mascarin.report.compared import by_unit, compared_sensors, model_looks, sensor_looks
+from mascarin.report.comparison_data import by_unit, compared_sensors, model_looks, sensor_looks
 from mascarin.report.labels import label_of, model_label, period_label, short_periods, unit_of
 from mascarin.report.series import Series, moment
 

@@ -10,7 +10,7 @@ from typing import Any, Final
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.report import text
-from mascarin.report.compared import model_looks
+from mascarin.report.comparison_data import model_looks
 from mascarin.report.labels import label_of, main_model, model_label, period_label, short_periods, unit_of
 from mascarin.report.sections import (
     carpets,

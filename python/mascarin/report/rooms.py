@@ -180,7 +180,7 @@ def _apart(centres: Array, half: Array) -> Array:
     return centres
 
 
-def drawn(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
+def plan_drawing(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
     """The plan with the error of the air temperature of each room; north is up.
 
     Parameters

@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io import atomic, units
 from mascarin.building.output_kinds import KINDS
 from mascarin.report import text
-from mascarin.report.drawn import short_day, time_axis
+from mascarin.report.axes import short_day, time_axis
 from mascarin.report.sections.energy import ledger_bars
 from mascarin.report.series import Array
 from mascarin.report.svg import Axis, Chart

@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from mascarin._io.terminal import printable
 from mascarin.figures import colors
-from mascarin.report.numbering import Numbering
+from mascarin.report.cross_references import CrossReferences
 from mascarin.report.text import significant, typeset
 
 
@@ -44,12 +44,12 @@ CURVES: Final = Library(
 )
 
 
-def environment(numbering: Numbering | None = None) -> Environment:
+def environment(references: CrossReferences | None = None) -> Environment:
     """Templates of all packages, by their path below ``mascarin``; they extend ``report/base.html``.
 
     Parameters
     ----------
-    numbering : Numbering, optional
+    references : CrossReferences, optional
         Numbers of tables and figures; new ones if not given.
 
     Examples
@@ -67,7 +67,7 @@ def environment(numbering: Numbering | None = None) -> Environment:
         keep_trailing_newline=True,
     )
     templates.filters |= {"typeset": typeset, "significant": significant, "symbol": _symbol}
-    templates.globals["numbering"] = numbering or Numbering()
+    templates.globals["references"] = references or CrossReferences()
     return templates
 
 

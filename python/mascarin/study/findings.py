@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.tables.quality import Stretch
-    from mascarin.validation.causes import Diagnosis
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
     from mascarin.validation.error_sources import ErrorSources
+    from mascarin.validation.hypotheses import Diagnosis
     from mascarin.validation.residuals import ResidualAnalysis
 
     Array = npt.NDArray[np.float64]

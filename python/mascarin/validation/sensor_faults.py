@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.validation.joint import Extra, Joint, Solution
+from mascarin.validation.whitened_regression import Extra, Solution, WhitenedRegression
 
 Floats = NDArray[np.float64]
 Objective = Callable[[dict[int, Floats]], float]
@@ -142,12 +142,14 @@ def shifted(series: Floats, seconds: float, interval: float) -> Floats:
     return np.asarray(spline(np.clip(sample - seconds / interval, 0.0, len(series) - 1.0)))
 
 
-def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+def sensor_faults(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series
+) -> list[Fault]:
     """Fit every fault of every sensor by itself.
 
     Parameters
     ----------
-    joint : Joint
+    regression : WhitenedRegression
         Residuals of the model and the effects of its parameters; its last S columns are the offsets of the
         sensors within their stated uncertainty.
     active : sequence of int
@@ -163,22 +165,24 @@ def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: S
         Those whose effect is larger than the stated uncertainty, the largest fall of the deviance first.
     """
     faults: list[Fault] = []
-    objective = joint.screen(active, null)
-    for s in range(joint.sensors):
-        if joint.count[s] < 3:
+    objective = regression.screen(active, null)
+    for s in range(regression.sensors):
+        if regression.count[s] < 3:
             continue
-        faults += [*_columns(joint, active, null, series, s)]
-        clock = _clock(joint, active, null, series, s, objective)
+        faults += [*_columns(regression, active, null, series, s)]
+        clock = _clock(regression, active, null, series, s, objective)
         faults += [clock] if clock is not None else []
-    faults += _swaps(joint, active, null, series)
+    faults += _swaps(regression, active, null, series)
     return sorted(faults, key=lambda fault: -fault.deviance)
 
 
-def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series, s: int) -> list[Fault]:
+def _columns(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series, s: int
+) -> list[Fault]:
     """Faults of one sensor that are a column."""
     simulated, u = series.simulated[:, s], series.uncertainty[s]
     n = simulated.size
-    offset = len(joint.columns) - joint.sensors + s
+    offset = len(regression.columns) - regression.sensors + s
     centred = simulated - simulated.mean()
     tried: list[tuple[str, str, Floats, tuple[float, float]]] = [
         ("offset", "", np.ones(n), (-np.inf, np.inf)),
@@ -193,7 +197,7 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
         if not np.any(column) or (what == "gain" and np.ptp(simulated) == 0.0):
             continue
         extra = Extra(s, column, limits=limits)
-        fit = joint.solve(active, [extra], start=null)
+        fit = regression.solve(active, [extra], start=null)
         value = float(fit.values[-1])
         effect = abs(value) * float(np.sqrt(np.mean(column**2)))
         limit = u
@@ -215,7 +219,12 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
 
 
 def _clock(
-    joint: Joint, active: Sequence[int], null: Solution, series: Series, s: int, objective: Objective
+    regression: WhitenedRegression,
+    active: Sequence[int],
+    null: Solution,
+    series: Series,
+    s: int,
+    objective: Objective,
 ) -> Fault | None:
     """The delay of one series with the largest likelihood."""
     measured, simulated, interval = series.measured[:, s], series.simulated[:, s], series.interval
@@ -232,7 +241,7 @@ def _clock(
     def fit_of(delay: float) -> Solution:
         if delay not in fits:
             moved = measured - shifted(simulated, delay, interval)
-            fits[delay] = joint.with_residual({s: moved}).solve(active, start=null)
+            fits[delay] = regression.with_residual({s: moved}).solve(active, start=null)
         return fits[delay]
 
     longest = 0.25 * measured.size * interval
@@ -248,7 +257,7 @@ def _clock(
     if abs(best) < series.shortest or effect <= series.uncertainty[s]:
         return None
     # A small further delay changes the series by its slope: standard error with the parameters free.
-    changed = joint.with_residual({s: moved})
+    changed = regression.with_residual({s: moved})
     fit = fit_of(best)
     further = Extra(s, -shifted(slope, best, interval))
     local = changed.solve(active, [further], start=fit)
@@ -276,12 +285,12 @@ def _refined(start: float, objective: Callable[[float], float]) -> float:
     return best
 
 
-def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
+def pairs_alike(regression: WhitenedRegression, series: Series) -> list[tuple[int, int]]:
     """Pairs of sensors of one unit whose columns may be exchanged, those that fit best exchanged first.
 
     Parameters
     ----------
-    joint : Joint
+    regression : WhitenedRegression
         Gives the number of values.
     series : Series
         Measured and simulated.
@@ -292,9 +301,9 @@ def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
     """
     y, m = series.measured, series.simulated
     pairs = []
-    for i in range(joint.sensors):
-        for j in range(i + 1, joint.sensors):
-            if series.units[i] != series.units[j] or min(joint.count[i], joint.count[j]) < 3:
+    for i in range(regression.sensors):
+        for j in range(i + 1, regression.sensors):
+            if series.units[i] != series.units[j] or min(regression.count[i], regression.count[j]) < 3:
                 continue
             both = np.isfinite(y[:, i]) & np.isfinite(y[:, j])
             if not both.any():
@@ -305,16 +314,18 @@ def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
     return [(i, j) for _, i, j in sorted(pairs)[:_MOST_PAIRS]]
 
 
-def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+def _swaps(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series
+) -> list[Fault]:
     """Pairs of sensors of one unit whose columns are exchanged."""
     y, m = series.measured, series.simulated
     faults = []
-    for i, j in pairs_alike(joint, series):
+    for i, j in pairs_alike(regression, series):
         residual = {i: y[:, j] - m[:, i], j: y[:, i] - m[:, j]}
         same = np.isfinite(y[:, i]) == np.isfinite(y[:, j])
         if not same.all():
             residual = {k: np.where(same, r, np.nan) for k, r in residual.items()}
-        fit = joint.with_residual(residual).solve(active, start=null)
+        fit = regression.with_residual(residual).solve(active, start=null)
         effect = float(np.sqrt(np.nanmean((y[:, i] - y[:, j]) ** 2)))
         if effect > max(series.uncertainty[i], series.uncertainty[j]) and fit.deviance < null.deviance:
             faults.append(

@@ -10,7 +10,7 @@ import numpy as np
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
 from mascarin.report import text
-from mascarin.report.drawing import fill_of
+from mascarin.report.building_drawings import fill_of
 from mascarin.report.svg import Svg
 
 if TYPE_CHECKING:

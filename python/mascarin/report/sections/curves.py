@@ -11,8 +11,8 @@ from markupsafe import Markup
 
 from mascarin._io.units import bracketed, shown
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
-from mascarin.report import embedding, text
-from mascarin.report.compared import (
+from mascarin.report import html_figures, text
+from mascarin.report.comparison_data import (
     by_unit,
     compared_sensors,
     error_unit,
@@ -130,7 +130,7 @@ def _single(
     study: Mapping[str, Any], times: list[datetime], sensor: str, compared: Compared, key: str
 ) -> Panels:
     """One sensor with the prediction interval."""
-    upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 110.0)
+    upper, lower = html_figures.axes(340.0, 170.0), html_figures.axes(340.0, 110.0)
     main = replace(compared, models={compared.main: compared.models[compared.main]})
     named, only = _named(study, compared), _named(study, main)
     looks = model_looks(study)
@@ -140,8 +140,8 @@ def _single(
     _finish(lower, times, bracketed("error", error_unit(study, sensor)))
     return Panels(
         compared.label,
-        embedding.drawn(upper, f"{compared.label}: measured and simulated", key),
-        embedding.drawn(lower, f"{compared.label}: simulated minus measured", key),
+        html_figures.markup_of(upper, f"{compared.label}: measured and simulated", key),
+        html_figures.markup_of(lower, f"{compared.label}: simulated minus measured", key),
     )
 
 
@@ -162,7 +162,7 @@ def _together(
     """All sensors of one unit."""
     looks = sensor_looks(study)
     chosen = [(sensors[name], looks[name]) for name in names]
-    upper, lower = embedding.axes(700.0, 290.0), embedding.axes(700.0, 170.0)
+    upper, lower = html_figures.axes(700.0, 290.0), html_figures.axes(700.0, 170.0)
     together(upper, times, chosen)
     errors_together(lower, times, chosen)
     _finish(upper, times, bracketed("", shown(unit)))
@@ -170,11 +170,11 @@ def _together(
     words = ", ".join(compared.label for compared, _ in chosen)
     return Panels(
         shown(unit),
-        embedding.drawn(upper, f"Measured and simulated: {words}", key),
-        embedding.drawn(lower, f"Simulated minus measured: {words}", key),
+        html_figures.markup_of(upper, f"Measured and simulated: {words}", key),
+        html_figures.markup_of(lower, f"Simulated minus measured: {words}", key),
     )
 
 
 def _finish(ax: Axes, times: list[datetime], name: str) -> None:
-    embedding.titled(ax, name)
-    embedding.days(ax, times)
+    html_figures.titled(ax, name)
+    html_figures.days(ax, times)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mascarin.figures import colors
-from mascarin.report.drawn import Figure, hours_of, time_axis
+from mascarin.report.axes import Figure, hours_of, time_axis
 from mascarin.report.labels import period_label, short_periods
 from mascarin.report.series import Series
 from mascarin.report.svg import Axis, Chart

@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.report import text
-from mascarin.report.drawn import Figure, hour_marks
+from mascarin.report.axes import Figure, hour_marks
 from mascarin.report.labels import label_of, period_label, unit_of
 from mascarin.report.series import Series
 from mascarin.report.svg import Axis, Chart

@@ -11,8 +11,8 @@ import numpy as np
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.figures.sensitivity import indices_over_time, time_axis
-from mascarin.report import embedding, text
-from mascarin.report.drawn import Figure
+from mascarin.report import html_figures, text
+from mascarin.report.axes import Figure
 from mascarin.report.labels import label_of, layout, parameter_label, unit_of
 from mascarin.report.series import Array, Series
 from mascarin.report.svg import Axis, Chart
@@ -235,9 +235,9 @@ def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) 
     index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:_MAX_NAMED]
     looks = _looks(study)
     named = [("", looks[path]) for path in entry.get("paths", [])[: len(index)]]
-    ax = embedding.axes(340.0, 190.0, bottom=32.0)
+    ax = html_figures.axes(340.0, 190.0, bottom=32.0)
     indices_over_time(ax, hours, index, named, remainder="")
     time_axis(ax, hours=True)
-    embedding.titled(ax, "first-order index S1 [%]")
+    html_figures.titled(ax, "first-order index S1 [%]")
     label = label_of(study, sensor)
-    return Figure(label, embedding.drawn(ax, f"First-order indices over the day, {label}"))
+    return Figure(label, html_figures.markup_of(ax, f"First-order indices over the day, {label}"))

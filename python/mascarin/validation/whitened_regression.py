@@ -161,7 +161,7 @@ class Extra:
     limits: tuple[float, float] = (-np.inf, np.inf)
 
 
-class Joint:
+class WhitenedRegression:
     """Residuals of several series, and columns that may explain them.
 
     Parameters
@@ -224,9 +224,9 @@ class Joint:
         filled = np.where(np.isfinite(series), series, 0.0)
         return self.whitening.series(filled, s)[self.rows[s]]
 
-    def with_residual(self, changed: dict[int, Floats]) -> Joint:
+    def with_residual(self, changed: dict[int, Floats]) -> WhitenedRegression:
         """The same with other residuals of some sensors, measured at the same instants."""
-        other = object.__new__(Joint)
+        other = object.__new__(WhitenedRegression)
         other.__dict__.update(self.__dict__)
         other.left, other.right, other.total = list(self.left), list(self.right), self.total.copy()
         other.residual = self.residual.copy()
@@ -237,7 +237,7 @@ class Joint:
             other.total[s] = other.left[s] @ other.left[s]
         return other
 
-    def in_directions(self, unchanged: Sequence[int]) -> Joint:
+    def in_directions(self, unchanged: Sequence[int]) -> WhitenedRegression:
         """The same problem with few columns in place of many.
 
         Columns with a prior about zero are replaced by those combinations of them that the measurements can
@@ -253,7 +253,7 @@ class Joint:
 
         Returns
         -------
-        Joint
+        WhitenedRegression
             Columns in the same order, the combinations where the first of the replaced ones was.
         """
         replaced = (self.precision > 0.0) & (self.center == 0.0)
@@ -271,7 +271,7 @@ class Joint:
         before, after = unreplaced[unreplaced < of[0]], unreplaced[unreplaced > of[0]]
         combined = np.tensordot((sd[:, None] * directions).T, self.columns[of], 1)
         none = np.tile([-np.inf, np.inf], (len(combined), 1))
-        return Joint(
+        return WhitenedRegression(
             self.residual,
             np.concatenate([self.columns[before], combined, self.columns[after]]),
             np.concatenate([self.center[before], np.zeros(len(combined)), self.center[after]]),

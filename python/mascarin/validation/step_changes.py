@@ -23,8 +23,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.validation.joint import Extra, Joint, Solution
 from mascarin.validation.sensor_faults import NORMAL_95, Fault, Series, pairs_alike, shifted
+from mascarin.validation.whitened_regression import Extra, Solution, WhitenedRegression
 
 Floats = NDArray[np.float64]
 
@@ -37,12 +37,14 @@ _JUMPS: Final = (-3600.0, 3600.0)
 _MIN_SIDE_DEVIANCE: Final = 2.0
 
 
-def changes(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+def step_changes(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series
+) -> list[Fault]:
     """Fit every fault of a part of the record by itself.
 
     Parameters
     ----------
-    joint, active, null, series
+    regression, active, null, series
         As for `mascarin.validation.sensor_faults.sensor_faults`.
 
     Returns
@@ -55,13 +57,13 @@ def changes(joint: Joint, active: Sequence[int], null: Solution, series: Series)
     --------
     An offset of 1 in the second half of ten days:
 
-    >>> from mascarin.validation.joint import Whitening
+    >>> from mascarin.validation.whitened_regression import Whitening
     >>> noise = np.random.default_rng(1).normal(0.0, 0.1, (240, 1))
     >>> measured = noise + (np.arange(240) >= 120)[:, None]
-    >>> joint = Joint(measured, np.ones((1, 240, 1)), np.zeros(1), np.array([4.0]), np.array([[-9.0, 9.0]]),
+    >>> regression = WhitenedRegression(measured, np.ones((1, 240, 1)), np.zeros(1), np.array([4.0]), np.array([[-9.0, 9.0]]),
     ...               Whitening((np.empty(0),)))
     >>> compared = Series(measured, np.zeros((240, 1)), np.array([0.1]), 3600.0, 1800.0, ("degC",), {})
-    >>> found = changes(joint, [0], joint.solve([0]), compared)[0]
+    >>> fault = step_changes(regression, [0], regression.solve([0]), compared)[0]
     >>> found.what, found.rows, round(found.value, 1)
     ('offset', (120, 240), 1.0)
     """
@@ -69,12 +71,12 @@ def changes(joint: Joint, active: Sequence[int], null: Solution, series: Series)
     edge = max(math.ceil(_MIN_PART / series.interval), math.ceil(_LEAST_PART * n))
     if n < 3 * edge:
         return []
-    search = _Search(joint, active, null, series, edge)
+    search = _Search(regression, active, null, series, edge)
     faults: list[Fault] = []
-    for s in range(joint.sensors):
-        if joint.count[s] >= 3:
+    for s in range(regression.sensors):
+        if regression.count[s] >= 3:
             faults += [*search.offset(s), *search.clock(s)]
-    for i, j in pairs_alike(joint, series):
+    for i, j in pairs_alike(regression, series):
         faults += search.swap(i, j)
     return sorted(faults, key=lambda fault: -fault.deviance)
 
@@ -83,9 +85,9 @@ class _Search:
     """Every row as the time of a change, and what each takes away."""
 
     def __init__(
-        self, joint: Joint, active: Sequence[int], null: Solution, series: Series, edge: int
+        self, regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series, edge: int
     ) -> None:
-        self.joint, self.active, self.null, self.series = joint, list(active), null, series
+        self.regression, self.active, self.null, self.series = regression, list(active), null, series
         self.n = len(series.measured)
         self.edge = edge
         self.price = 2.0 * math.log(max(self.n - 2 * edge, 2))
@@ -110,7 +112,7 @@ class _Search:
         column = np.zeros(self.n)
         column[slice(*rows)] = 1.0
         extra = Extra(s, column)
-        fit = self.joint.solve(self.active, [extra], start=self.null)
+        fit = self.regression.solve(self.active, [extra], start=self.null)
         value, error = float(fit.values[-1]), fit.standard_error(fit.values.size - 1)
         gain = self.null.deviance - fit.deviance - self.price
         return Fault("offset", (s,), value, error, gain, abs(value), extra=(extra,), solution=fit, rows=rows)
@@ -140,7 +142,7 @@ class _Search:
         self, what: str, sensors: tuple[int, ...], other: dict[int, Floats], value: float
     ) -> Fault | None:
         """A fault that replaces residuals after or before a change."""
-        base = {s: self.joint.residual[:, s] for s in sensors}
+        base = {s: self.regression.residual[:, s] for s in sensors}
         if any((np.isfinite(base[s]) != np.isfinite(other[s])).any() for s in sensors):
             return None
         parts = [self._after(s, np.nan_to_num(other[s] - base[s])) for s in sensors]
@@ -155,7 +157,7 @@ class _Search:
         rows = best[1]
         inside = (np.arange(self.n) >= rows[0]) & (np.arange(self.n) < rows[1])
         residual = {s: np.where(inside, other[s], base[s]) for s in sensors}
-        fit = self.joint.with_residual(residual).solve(self.active, start=self.null)
+        fit = self.regression.with_residual(residual).solve(self.active, start=self.null)
         gained = self.null.deviance - fit.deviance - self.price
         if gained <= 0.0:
             return None
@@ -176,7 +178,7 @@ class _Search:
         covariance = np.asarray(
             np.linalg.pinv(self.null.information[np.ix_(free, free)], hermitian=True), dtype=np.float64
         )
-        return index[free], covariance, self.joint.remaining(self.null, self.active)
+        return index[free], covariance, self.regression.remaining(self.null, self.active)
 
     def _after(self, s: int, change: Floats) -> _Part:
         """A change (n,) of a residual from each row on.
@@ -185,13 +187,13 @@ class _Search:
         are sums from the end.
         """
         free, _, residual = self._free_part
-        rows, variance = self.joint.rows[s], self.null.variance[s]
-        whitened = np.where(rows, self.joint.whitening.series(change, s), 0.0)
+        rows, variance = self.regression.rows[s], self.null.variance[s]
+        whitened = np.where(rows, self.regression.whitening.series(change, s), 0.0)
         table = np.zeros((self.n, free.size + 2))
-        table[rows, :-2] = self.joint.white[s][:, free]
+        table[rows, :-2] = self.regression.white[s][:, free]
         table[rows, -2] = residual[s]
         table[:, -1] = whitened
-        phi = self.joint.whitening.coefficients[s]
+        phi = self.regression.whitening.coefficients[s]
         order = phi.size
         total = np.zeros((self.n + 1 + order, free.size + 2))
         total[: self.n] = np.cumsum((table * whitened[:, None])[::-1], axis=0)[::-1]

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from mascarin.figures import colors
 from mascarin.figures.page import embedded
-from mascarin.report.drawn import short_day
+from mascarin.report.axes import short_day
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,7 +61,7 @@ def days(ax: Axes, times: Sequence[datetime]) -> None:
     ax.xaxis.set_major_formatter(ticker.FuncFormatter(date))
 
 
-def drawn(ax: Axes, description: str, key: str = "") -> Markup:
+def markup_of(ax: Axes, description: str, key: str = "") -> Markup:
     """The figure of some axes as an element of the page; see `embedded`."""
     figure: Figure = ax.get_figure(root=True)  # type: ignore[assignment]
     return Markup(embedded(figure, description, _COLORS, key=key))  # noqa: S704 (texts are escaped by matplotlib)
