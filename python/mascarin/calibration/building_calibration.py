@@ -16,8 +16,8 @@ from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
 from mascarin.calibration.result import Calibration
-from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
+from mascarin.calibration.search_options import MethodName, SearchOptions
 from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
@@ -61,7 +61,7 @@ def calibrate(
     warm_up: str | float = "3d",
     method: MethodName = "least-squares",
     cost: CostName = "nll",
-    rules: Rules | None = None,
+    options: SearchOptions | None = None,
     seed: int = 0,
     record: str | Path | None = None,
     progress: ProgressOption = None,
@@ -101,7 +101,7 @@ def calibrate(
         Length of the period that is repeated. [s]
     warm_up : str or float
         Length of the run before `start`, which is not compared. [s]
-    method, cost, rules, seed, record
+    method, cost, options, seed, record
         See `solve`.
     progress : bool or callable, optional
         Shows progress, see `solve`.
@@ -182,12 +182,12 @@ def calibrate(
         method=method,
         cost=cost,
         seed=seed,
-        rules=rules,
+        options=options,
         record=None if record is None else Path(record),
         progress=progress,
     )
     if errors:
-        fit = with_sensor_errors(fit, simulation, observation, named, rules or Rules())
+        fit = with_sensor_errors(fit, simulation, observation, named, options or SearchOptions())
     notes = (*fit.warnings, *_said_of_the_run(simulation, fit))
     return replace(fit, nominal_building=chosen, times=observation.times, warnings=notes)
 

@@ -207,14 +207,14 @@ class DayData:
         wide = self.basis[:, :, :, None] * rows[None, :, None, :]
         return np.asarray(wide.reshape(days, size, functions * self.sensors))
 
-    def gaussian(self, sizes: Discrepancy) -> DayGaussian:
+    def gaussian(self, covariances: Discrepancy) -> DayGaussian:
         """Return the distribution of the errors; shared effects: known, repeating, level of all days."""
-        shared = [self.effects, self.repeating(root_of(sizes.hour))]
-        if sizes.alike:
-            rows = np.tile(root_of(sizes.alike * sizes.day), (self.grid.slots, 1))
+        shared = [self.effects, self.repeating(root_of(covariances.hour))]
+        if covariances.alike:
+            rows = np.tile(root_of(covariances.alike * covariances.day), (self.grid.slots, 1))
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
-        block = sizes.block(self.grid)
+        block = covariances.block(self.grid)
         return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
 
 
@@ -252,17 +252,17 @@ def estimate_discrepancy(
 
 
 def _maximized(
-    data: DayData, sizes: Discrepancy, scale: Floats, limit: Floats, iterations: int
+    data: DayData, covariances: Discrepancy, scale: Floats, limit: Floats, iterations: int
 ) -> Discrepancy:
     """Improve all sizes together, step by step, until none changes."""
     grid, sensors = data.grid, data.sensors
     shape = (grid.days, grid.slots, sensors)
-    drift = drift_kernel(grid, sizes.correlation_hours)
+    drift = drift_kernel(grid, covariances.correlation_hours)
     kernels = {"day": np.ones_like(drift), "drift": drift}
     prior = _PRIOR_WEIGHT * np.diag(scale**2)
     functions = data.repeating(np.eye(sensors))
     for _ in range(iterations):
-        now = data.gaussian(sizes)
+        now = data.gaussian(covariances)
         weighted = now.solve(data.error).reshape(shape)
         inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
         improved: dict[str, Any] = {}
@@ -271,28 +271,30 @@ def _maximized(
         for name, kernel in kernels.items():
             square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
             trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
-            if name == "day" and sizes.alike:
+            if name == "day" and covariances.alike:
                 # The first function of the error by hour is a constant, that of the common level.
-                level = sizes.alike / _SPECTRUM[0]
+                level = covariances.alike / _SPECTRUM[0]
                 square = square + level * np.outer(of_hour[0], of_hour[0])
                 trace = trace + level * spread[:sensors, :sensors]
-            improved[name] = _step(getattr(sizes, name), square, trace, prior, limit)
+            improved[name] = _step(getattr(covariances, name), square, trace, prior, limit)
         count = of_hour.shape[0]
         trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
-        improved["hour"] = _step(sizes.hour, of_hour.T @ of_hour, trace, prior, limit)
-        curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / sizes.white
-        squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / sizes.white**2
-        improved["white"] = np.minimum(sizes.white * np.sqrt(squares / curvature), limit**2)
+        improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
+        curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
+        squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
+        improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
         moved = max(
             float(
-                np.max(np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(sizes, name)))) / scale)
+                np.max(
+                    np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(covariances, name)))) / scale
+                )
             )
             for name, value in improved.items()
         )
-        sizes = replace(sizes, **improved)
+        covariances = replace(covariances, **improved)
         if moved < _MAX_CHANGE:
             break
-    return sizes
+    return covariances
 
 
 def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limit: Floats) -> Floats:

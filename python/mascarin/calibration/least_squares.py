@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Minimum
-from mascarin.calibration.rules import Rules
+from mascarin.calibration.search_options import SearchOptions
 from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
@@ -55,7 +55,7 @@ class _Watch:
 
 
 def least_squares(
-    problem: CalibrationProblem, evaluator: Evaluator, rules: Rules, seed: int
+    problem: CalibrationProblem, evaluator: Evaluator, options: SearchOptions, seed: int
 ) -> tuple[list[Minimum], str]:
     """Run one trust-region search from each start.
 
@@ -65,7 +65,7 @@ def least_squares(
         Parameters, measured series and model.
     evaluator : Evaluator
         Evaluates and keeps the record.
-    rules : Rules
+    options : SearchOptions
         Number of starts, kind of derivatives and tolerance.
     seed : int
         Of the Latin hypercube of starts.
@@ -81,12 +81,12 @@ def least_squares(
 
     minima = []
     skipped = 0
-    for k, z in enumerate(_hypercube(problem, rules.starts, seed)):
+    for k, z in enumerate(_hypercube(problem, options.starts, seed)):
         if k and not np.isfinite(evaluator.residuals(problem.values(z[None]))).all():
             skipped += 1
             continue
-        squares = Squares(problem, evaluator, rules)
-        tight = rules.tolerance
+        squares = Squares(problem, evaluator, options)
+        tight = options.tolerance
         watch = _Watch(squares.size)
         try:
             solution = optimize.least_squares(
@@ -127,11 +127,11 @@ class Squares:
     libraries would use several threads, which wait for each other on a busy machine.
     """
 
-    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, rules: Rules) -> None:
+    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, options: SearchOptions) -> None:
         self._problem = problem
         self._evaluator = evaluator
-        self._exact = rules.slopes == "exact"
-        self._difference = rules.difference
+        self._exact = options.slopes == "exact"
+        self._difference = options.difference
         self._scale = scale_of(problem)
         self.evaluations = 0
 
@@ -215,12 +215,12 @@ def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Float
 
 
 def residuals_and_derivatives(
-    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, rules: Rules
+    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, options: SearchOptions
 ) -> tuple[Floats, Floats]:
-    """Compute residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules say."""
-    if rules.slopes == "exact":
+    """Compute residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the options say."""
+    if options.slopes == "exact":
         return evaluator.residuals(problem.values(z[None]))[0], exact(problem, evaluator, z)
-    return derivative(problem, z, rules.difference)
+    return derivative(problem, z, options.difference)
 
 
 def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mascarin.calibration.evaluations import Evaluator
     from mascarin.calibration.problem import CalibrationProblem
     from mascarin.calibration.result import Calibration
-    from mascarin.calibration.rules import Rules
+    from mascarin.calibration.search_options import SearchOptions
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ _FEWEST_WALKERS: Final = 32
 _MAX_START_SPREAD: Final = 0.2  # of the range, standard deviation of the first positions
 
 
-def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration:
+def sampled(fit: Calibration, evaluator: Evaluator, options: SearchOptions) -> Calibration:
     """Replace the intervals and correlations of a calibration by those of a posterior sample.
 
     Parameters
@@ -54,7 +54,7 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
         By least squares, at the most probable values.
     evaluator : Evaluator
         Evaluates and keeps the record.
-    rules : Rules
+    options : SearchOptions
         Number of walkers and moves.
 
     Returns
@@ -69,7 +69,7 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
     emcee = _emcee()
     problem = fit.problem
     count = len(problem.parameters)
-    walkers = rules.walkers if rules.walkers is not None else max(2 * count, _FEWEST_WALKERS)
+    walkers = options.walkers if options.walkers is not None else max(2 * count, _FEWEST_WALKERS)
     if walkers < 2 * count:
         msg = f"walkers: found {walkers}, expected at least {2 * count} for {count} parameters"
         raise InputError(msg)
@@ -79,11 +79,11 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
         target.first_positions(walkers, fit.seed),
         random_state=np.random.RandomState(fit.seed % 2**32).get_state(),
     )
-    sampler.run_mcmc(first, rules.moves)
-    discard = int(_BURN_IN * rules.moves)
+    sampler.run_mcmc(first, options.moves)
+    discard = int(_BURN_IN * options.moves)
     chain = np.asarray(sampler.get_chain(discard=discard, flat=True), dtype=np.float64)
     times = np.asarray(sampler.get_autocorr_time(discard=discard, quiet=True, tol=0.0), dtype=np.float64)
-    return _with_sample(fit, evaluator, problem, chain, times, rules.moves - discard)
+    return _with_sample(fit, evaluator, problem, chain, times, options.moves - discard)
 
 
 class _Posterior:

@@ -25,8 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
+from mascarin.calibration.joint_estimation import METHOD
 from mascarin.calibration.least_squares import derivative, scale_of
-from mascarin.calibration.refining import METHOD
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 

@@ -16,7 +16,7 @@ from mascarin.calibration.least_squares import least_squares, residuals_and_deri
 from mascarin.calibration.posterior import sampled
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Calibration, Minimum
-from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
+from mascarin.calibration.search_options import METHODS, WITH_SQUARES, MethodName, SearchOptions
 from mascarin.calibration.sequences import Make, maker, multi_start
 from mascarin.calibration.uncertainty import estimate
 from mascarin.calibration.warnings import on_bounds, warnings
@@ -33,7 +33,7 @@ def solve(
     method: MethodName = "least-squares",
     cost: CostName = "nll",
     seed: int = 0,
-    rules: Rules | None = None,
+    options: SearchOptions | None = None,
     optimizer: Callable[[Space], Optimizer] | None = None,
     record: Path | None = None,
     batch: int = 64,
@@ -50,7 +50,7 @@ def solve(
     method : str
         ``least-squares``: the sum of squared residuals over the uncertainty of the sensors (and priors), by a
         trust-region method within the bounds from several starts, with derivatives by differences (one batch
-        of runs) or exact ones (`Rules.slopes`).
+        of runs) or exact ones (`SearchOptions.slopes`).
         ``hooke-jeeves``: any cost, by pattern search from random starts until several sequences have reached
         the same minimum.
         ``particle-swarm``, ``hybrid`` (a swarm, then a pattern search from its best point), ``cma-es`` (an
@@ -59,8 +59,8 @@ def solve(
     cost : str
         What is minimized, see `mascarin.calibration.cost`; least squares and emcee support ``nll`` only.
     seed : int
-        Of all random numbers. The same problem, seed and rules give the same result.
-    rules : Rules, optional
+        Of all random numbers. The same problem, seed and options give the same result.
+    options : SearchOptions, optional
         Options of the search.
     optimizer : callable, optional
         Makes the optimizer of one sequence from its space (positions between 0 and 1, with the start);
@@ -112,7 +112,9 @@ def solve(
             if on_batch is not None:
                 on_batch(count, lowest)
 
-        return _solved(problem, method, cost, seed, rules, optimizer, record, batch, confidence, report_batch)
+        return _solved(
+            problem, method, cost, seed, options, optimizer, record, batch, confidence, report_batch
+        )
 
 
 def _solved(
@@ -120,7 +122,7 @@ def _solved(
     method: MethodName,
     cost: CostName,
     seed: int,
-    rules: Rules | None,
+    options: SearchOptions | None,
     optimizer: Callable[[Space], Optimizer] | None,
     record: Path | None,
     batch: int,
@@ -129,9 +131,9 @@ def _solved(
 ) -> Calibration:
     _require(method, cost, confidence, optimizer is not None)
     whole_number("seed", seed)
-    if rules is not None:
-        require_type("rules", rules, Rules, "mascarin.calibration.Rules")
-    chosen = rules or Rules()
+    if options is not None:
+        require_type("options", options, SearchOptions, "mascarin.calibration.SearchOptions")
+    chosen = options or SearchOptions()
     if chosen.slopes == "exact":
         problem.require_slopes()
     function = Cost(problem, cost)
@@ -198,7 +200,7 @@ def _require_start(problem: CalibrationProblem, evaluator: Evaluator) -> None:
 def _report(
     problem: CalibrationProblem,
     evaluator: Evaluator,
-    rules: Rules,
+    options: SearchOptions,
     minima: list[Minimum],
     reason: str,
     method: str,
@@ -209,7 +211,7 @@ def _report(
     """The result at the best minimum, with its uncertainty."""
     cost = evaluator.cost
     z = problem.positions(best.x)
-    residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
+    residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, options)
     weights = cost.weights(residuals)
     uncertainty = estimate(
         problem,

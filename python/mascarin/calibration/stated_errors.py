@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Final, Protocol
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration.joint import ErrorStatement
-from mascarin.calibration.refining import refined
+from mascarin.calibration.joint_estimation import estimate_jointly
+from mascarin.calibration.joint_posterior import ErrorStatement
 from mascarin.calibration.sensor_errors import SensorError
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.calibration.result import Calibration
-    from mascarin.calibration.rules import Rules
+    from mascarin.calibration.search_options import SearchOptions
     from mascarin.simulation.simulation import Simulation
     from mascarin.validation.observation import Observation
     from mascarin.validation.sensors import Sensor, SensorUncertainty
@@ -120,7 +120,7 @@ def with_sensor_errors(
     simulation: Simulation,
     observation: Observation,
     sensors: Mapping[str, Sensor],
-    rules: Rules,
+    options: SearchOptions,
 ) -> Calibration:
     """Estimate parameters again, together with the errors of the sensors and of the model.
 
@@ -134,7 +134,7 @@ def with_sensor_errors(
         The measured series.
     sensors : mapping of str to Sensor
         What each states.
-    rules : Rules
+    options : SearchOptions
         Kind of derivatives.
 
     Raises
@@ -158,7 +158,7 @@ def with_sensor_errors(
         _, slopes = simulation.jacobian_vector(list(depths), simulation.vector(fit.values))
         for k, uncertainty in enumerate(depths.values()):
             further[..., k] = uncertainty * observation.simulated(simulation.index, slopes[k])
-    return refined(fit, stated, rules, further)[0]
+    return estimate_jointly(fit, stated, options, further)[0]
 
 
 def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, float]:

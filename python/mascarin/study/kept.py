@@ -36,7 +36,7 @@ NAME: Final = "kept"
 CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.discrepancy": ("Discrepancy",),
     "mascarin.calibration.evaluations": ("Trace",),
-    "mascarin.calibration.joint": ("Joint",),
+    "mascarin.calibration.joint_posterior": ("JointPosterior",),
     "mascarin.calibration.problem": ("FitParameter",),
     "mascarin.calibration.result": ("Calibration", "Minimum"),
     "mascarin.calibration.uncertainty": ("Uncertainty",),

@@ -60,11 +60,13 @@ def step_changes(
     >>> from mascarin.validation.whitened_regression import Whitening
     >>> noise = np.random.default_rng(1).normal(0.0, 0.1, (240, 1))
     >>> measured = noise + (np.arange(240) >= 120)[:, None]
-    >>> regression = WhitenedRegression(measured, np.ones((1, 240, 1)), np.zeros(1), np.array([4.0]), np.array([[-9.0, 9.0]]),
-    ...               Whitening((np.empty(0),)))
+    >>> regression = WhitenedRegression(
+    ...     measured, np.ones((1, 240, 1)), np.zeros(1), np.array([4.0]), np.array([[-9.0, 9.0]]),
+    ...     Whitening((np.empty(0),)),
+    ... )
     >>> compared = Series(measured, np.zeros((240, 1)), np.array([0.1]), 3600.0, 1800.0, ("degC",), {})
     >>> fault = step_changes(regression, [0], regression.solve([0]), compared)[0]
-    >>> found.what, found.rows, round(found.value, 1)
+    >>> fault.what, fault.rows, round(fault.value, 1)
     ('offset', (120, 240), 1.0)
     """
     n = len(series.measured)

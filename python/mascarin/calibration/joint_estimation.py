@@ -1,4 +1,7 @@
-"""A calibration refined with the errors of the sensors and of the model; see `mascarin.calibration.joint`."""
+"""A calibration refined with the errors of the sensors and of the model.
+
+The method: `mascarin.calibration.joint_posterior`.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,18 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.joint import ErrorStatement, Joint, Linear, best_positions, joint, objective
+from mascarin.calibration.joint_posterior import (
+    ErrorStatement,
+    JointPosterior,
+    Linear,
+    best_positions,
+    joint_posterior,
+    objective,
+)
 from mascarin.calibration.least_squares import residuals_and_derivatives
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Calibration
-from mascarin.calibration.rules import Rules
+from mascarin.calibration.search_options import SearchOptions
 from mascarin.calibration.sensor_errors import sensor_columns
 from mascarin.calibration.uncertainty import AT_BOUND
 from mascarin.calibration.warnings import on_bounds, warnings
@@ -39,14 +49,14 @@ _CONFIDENCE: Final = 0.95
 _MIN_DECREASE: Final = 0.05
 
 
-def refined(
+def estimate_jointly(
     fit: Calibration,
     stated: ErrorStatement,
-    rules: Rules,
+    options: SearchOptions,
     further: Floats | None = None,
     *,
     keep: Keep | None = None,
-) -> tuple[Calibration, Joint]:
+) -> tuple[Calibration, JointPosterior]:
     """Estimate the parameters again, together with the errors of the sensors and of the model.
 
     Parameters
@@ -55,7 +65,7 @@ def refined(
         From `solve`; where the first linearization is made.
     stated : ErrorStatement
         What is known of the errors.
-    rules : Rules
+    options : SearchOptions
         Kind of derivatives.
     further : ndarray, shape (T, S, K), optional
         Effects of numbers that are not estimated, for one standard uncertainty. [unit]
@@ -66,7 +76,7 @@ def refined(
     -------
     Calibration
         With the estimates and intervals of the joint distribution.
-    Joint
+    JointPosterior
         The joint distribution.
 
     Raises
@@ -80,7 +90,7 @@ def refined(
 
     def linear(z: Floats) -> Linear:
         residuals, jacobian = compute(
-            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, rules)
+            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, options)
         )
         simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
         return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
@@ -88,7 +98,7 @@ def refined(
     # The estimates are those of the model as it will be used, with all other numbers as described.
     linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
     effects = linearization.further if further is None else further
-    distribution = joint(problem, replace(linearization, further=effects), stated)
+    distribution = joint_posterior(problem, replace(linearization, further=effects), stated)
     return _reported(
         fit, problem, replace(linearization, further=effects), distribution, stated
     ), distribution
@@ -99,15 +109,15 @@ def _searched(
 ) -> Linear:
     """Linearize about better and better estimates, until the density no longer rises."""
     linearization = linear(first)
-    sizes = None
+    covariances = None
     for step in range(_MAX_STEPS):
-        goal, sizes = best_positions(
-            problem, linearization, stated, sizes if step >= _ESTIMATED_STEPS else None
+        goal, covariances = best_positions(
+            problem, linearization, stated, covariances if step >= _ESTIMATED_STEPS else None
         )
-        before = objective(problem, linearization, stated, sizes)
+        before = objective(problem, linearization, stated, covariances)
         for _ in range(_MAX_HALVINGS):
             trial = linear(goal)
-            after = objective(problem, trial, stated, sizes)
+            after = objective(problem, trial, stated, covariances)
             if after <= before:
                 break
             goal = 0.5 * (goal + linearization.z)
@@ -122,7 +132,7 @@ def _reported(
     fit: Calibration,
     problem: CalibrationProblem,
     linearization: Linear,
-    distribution: Joint,
+    distribution: JointPosterior,
     stated: ErrorStatement,
 ) -> Calibration:
     """The calibration with the estimates of the joint distribution."""
@@ -142,7 +152,7 @@ def _reported(
     )
     uncertainty = replace(
         fit.uncertainty, low=low, high=high, sd=sd, correlation=correlation, covariance=covariance,
-        error=tuple(distribution.sizes.spread.tolist()),
+        error=tuple(distribution.error_covariances.spread.tolist()),
     )  # fmt: skip
     of_sensors = sensor_columns(problem, stated.sensors, linearization.simulated, stated.step)[0]
     error_columns = np.concatenate([of_sensors, linearization.further], axis=2)
@@ -168,7 +178,7 @@ def _reported(
     )
 
 
-def _outward(z: Floats, distribution: Joint) -> Floats:
+def _outward(z: Floats, distribution: JointPosterior) -> Floats:
     """Sign of the derivative of the cost by positions (P,) on an end of their range, 0 if not significant."""
     from scipy import stats
 

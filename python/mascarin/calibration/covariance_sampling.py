@@ -46,12 +46,12 @@ _SEED: Final = 21
 
 
 @dataclass(frozen=True, eq=False)
-class SizeSample:
+class CovarianceSample:
     """Sizes of the errors, and the coefficients of the shared effects given each of them.
 
     Attributes
     ----------
-    sizes : tuple of Discrepancy, length K
+    covariances : tuple of Discrepancy, length K
         Drawn sizes.
     mean : ndarray, shape (K, q)
         Mean of the coefficients given them: known effects in standard deviations of their priors [-], then
@@ -60,38 +60,42 @@ class SizeSample:
         Their covariance.
     """
 
-    sizes: tuple[Discrepancy, ...]
+    covariances: tuple[Discrepancy, ...]
     mean: Floats
     covariance: Floats
 
     @classmethod
-    def of_sizes(cls, data: DayData, sizes: Discrepancy) -> SizeSample:
+    def of_covariances(cls, data: DayData, covariances: Discrepancy) -> CovarianceSample:
         """Sizes that are known."""
         from scipy import linalg
 
-        gaussian = data.gaussian(sizes)
-        parts = [np.eye(data.effects.shape[2]), np.kron(np.eye(data.basis.shape[2]), root_of(sizes.hour))]
-        if sizes.alike:
-            parts.append(root_of(sizes.alike * sizes.day))
+        gaussian = data.gaussian(covariances)
+        parts = [
+            np.eye(data.effects.shape[2]),
+            np.kron(np.eye(data.basis.shape[2]), root_of(covariances.hour)),
+        ]
+        if covariances.alike:
+            parts.append(root_of(covariances.alike * covariances.day))
         turn = linalg.block_diag(*parts)
         mean = turn @ gaussian.coefficients(data.error)
-        return cls((sizes,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
+        return cls((covariances,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
 
     @property
     def typical(self) -> Discrepancy:
         """Sizes with the mean of every variance."""
         mean_of = {
-            name: np.mean([getattr(covariances, name) for covariances in self.sizes], axis=0)
-            for name in _PARTS
+            name: np.mean([getattr(draw, name) for draw in self.covariances], axis=0) for name in _PARTS
         }
-        hours = [covariances.correlation_hours for covariances in self.sizes]
-        return replace(self.sizes[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
+        hours = [draw.correlation_hours for draw in self.covariances]
+        return replace(self.covariances[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
 
 
 _PARTS: Final = ("hour", "day", "drift", "white")
 
 
-def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats) -> SizeSample:
+def sample_covariances(
+    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats
+) -> CovarianceSample:
     """Draw sizes of the errors, the same numbers in every call.
 
     Parameters
@@ -107,7 +111,7 @@ def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Flo
 
     Returns
     -------
-    SizeSample
+    CovarianceSample
 
     Examples
     --------
@@ -126,15 +130,15 @@ def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Flo
     True
     """
     chain = _Chain(data, first, scale, limit)
-    sizes, mean, covariance = [], [], []
+    covariances, mean, covariance = [], [], []
     for move in range(_BURN_IN + _MOVES):
-        now = chain.sizes
+        now = chain.covariances
         middle, root = chain.move()
         if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
-            sizes.append(now)
+            covariances.append(now)
             mean.append(middle)
             covariance.append(root @ root.T)
-    return SizeSample(tuple(sizes), np.array(mean), np.array(covariance))
+    return CovarianceSample(tuple(covariances), np.array(mean), np.array(covariance))
 
 
 class _Chain:
@@ -144,7 +148,7 @@ class _Chain:
     """
 
     def __init__(self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats) -> None:
-        self.sizes, self.scale, self.limit = first, scale, limit
+        self.covariances, self.scale, self.limit = first, scale, limit
         self.rng = np.random.default_rng(_SEED)
         grid, self.sensors = data.grid, data.sensors
         self.shape = (grid.days, grid.slots, self.sensors)
@@ -173,17 +177,19 @@ class _Chain:
         ndarray, shape (q, q)
             A root of their covariance.
         """
-        sizes = self.sizes
-        value, vector = self.spectra[sizes.correlation_hours]
-        noise = np.sqrt(sizes.white)
-        strength, turn = np.linalg.eigh(sizes.drift / np.outer(noise, noise))
+        covariances = self.covariances
+        value, vector = self.spectra[covariances.correlation_hours]
+        noise = np.sqrt(covariances.white)
+        strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
         to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
         slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
         weight = 1.0 / (1.0 + slow_part)
-        columns = np.einsum("js,dhsq->dhjq", to_sensor, self.turned[sizes.correlation_hours], optimize=True)
+        columns = np.einsum(
+            "js,dhsq->dhjq", to_sensor, self.turned[covariances.correlation_hours], optimize=True
+        )
         values = _along_slots(vector.T, self.value) @ to_sensor.T
         ones = vector.T.sum(axis=1)[:, None, None] * to_sensor[None]  # (H, S, S): a constant of a day
-        middle, root, days = self._shared(sizes, columns, values, ones, weight)
+        middle, root, days = self._shared(covariances, columns, values, ones, weight)
         shared = middle + root @ self.rng.standard_normal(middle.size)
         remaining = values - columns @ shared
         of_day = days(remaining)
@@ -199,7 +205,7 @@ class _Chain:
         return middle, root
 
     def _shared(
-        self, sizes: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
+        self, covariances: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
     ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
         """Mean and root of the covariance of the coefficients, and a function that draws errors of days.
 
@@ -210,10 +216,10 @@ class _Chain:
         end = self.effect_count + self.functions * self.sensors
         precision[: self.effect_count, : self.effect_count] = np.eye(self.effect_count)
         precision[self.effect_count : end, self.effect_count : end] = np.kron(
-            np.eye(self.functions), np.linalg.inv(sizes.hour)
+            np.eye(self.functions), np.linalg.inv(covariances.hour)
         )
-        if sizes.alike:
-            precision[end:, end:] = np.linalg.inv(sizes.alike * sizes.day)
+        if covariances.alike:
+            precision[end:, end:] = np.linalg.inv(covariances.alike * covariances.day)
         flat = columns.reshape(-1, columns.shape[3])
         heavy = (columns * weight[None, :, :, None]).reshape(flat.shape)
         precision += flat.T @ heavy
@@ -221,7 +227,7 @@ class _Chain:
         # Constants of days: their own precision is the same on all days.
         weighted_ones = (ones * weight[:, :, None]).reshape(-1, self.sensors)
         day_covariance = np.linalg.inv(
-            np.linalg.inv(sizes.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
+            np.linalg.inv(covariances.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
         )
         with_columns = (
             np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ weighted_ones
@@ -243,21 +249,21 @@ class _Chain:
         return middle, root, days
 
     def _draw_sizes(self, shared: Floats, of_day: Floats, slow: Floats, white: Floats) -> None:
-        sizes, end = self.sizes, self.effect_count + self.functions * self.sensors
+        covariances, end = self.covariances, self.effect_count + self.functions * self.sensors
         repeating = shared[self.effect_count : end].reshape(self.functions, self.sensors)
         of_days, days = of_day.T @ of_day, len(of_day)
-        if sizes.alike:
+        if covariances.alike:
             level = shared[end:]
-            of_days, days = of_days + np.outer(level, level) / sizes.alike, days + 1
+            of_days, days = of_days + np.outer(level, level) / covariances.alike, days + 1
         hours = self._correlation(slow)
         value, vector = self.spectra[hours]
         turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]
         squares = np.einsum("dhs,dht->st", turned, turned, optimize=True)
-        self.sizes = replace(
-            sizes,
-            hour=self._covariance(sizes.hour, repeating.T @ repeating, self.functions),
-            day=self._covariance(sizes.day, of_days, days),
-            drift=self._covariance(sizes.drift, squares, slow.shape[0] * slow.shape[1]),
+        self.covariances = replace(
+            covariances,
+            hour=self._covariance(covariances.hour, repeating.T @ repeating, self.functions),
+            day=self._covariance(covariances.day, of_days, days),
+            drift=self._covariance(covariances.drift, squares, slow.shape[0] * slow.shape[1]),
             white=self._variance(white),
             correlation_hours=hours,
         )
@@ -273,7 +279,7 @@ class _Chain:
 
     def _variance(self, white: Floats) -> Floats:
         """Draw the variances of independent errors."""
-        rate = _FREEDOM / self.sizes.white + self.scale**-2
+        rate = _FREEDOM / self.covariances.white + self.scale**-2
         inverse = self.rng.gamma(0.5 * (_FREEDOM + 1.0), 1.0, rate.size) / rate
         count = white.shape[0] * white.shape[1]
         total = 0.5 * np.sum(white**2, axis=(0, 1)) + _FREEDOM * inverse
@@ -282,7 +288,7 @@ class _Chain:
 
     def _correlation(self, slow: Floats) -> float:
         """Draw the correlation time given the slow errors."""
-        inverse = np.linalg.inv(self.sizes.drift)
+        inverse = np.linalg.inv(self.covariances.drift)
         logs = []
         for value, vector in self.spectra.values():
             turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]

@@ -25,6 +25,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.calibration.covariance_sampling import CovarianceSample, sample_covariances
 from mascarin.calibration.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.discrepancy import (
     DayData,
@@ -34,8 +35,7 @@ from mascarin.calibration.discrepancy import (
 )
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.size_sample import SizeSample, sample_sizes
-from mascarin.calibration.truncated import within_bounds
+from mascarin.calibration.truncated_normal import within_bounds
 from mascarin.calibration.uncertainty import AT_BOUND
 
 Floats = NDArray[np.float64]
@@ -96,7 +96,7 @@ class ErrorStatement:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class JointPosterior:
     """Parameters and errors given the measurements.
 
     Attributes
@@ -110,7 +110,7 @@ class Joint:
         Of the coefficients, with the doubt about the sizes of the errors.
     sample : ndarray, shape (n, P)
         Sample of the positions. [-]
-    sizes : Discrepancy
+    error_covariances : Discrepancy
         Sizes of the errors of the model: the mean of every variance.
     names : tuple of str
         Of the errors of sensors.
@@ -129,7 +129,7 @@ class Joint:
     mean: Floats
     covariance: Floats
     sample: Floats
-    sizes: Discrepancy
+    error_covariances: Discrepancy
     names: tuple[str, ...]
     by_day: Floats
     density: float
@@ -205,12 +205,12 @@ class Joint:
         return np.concatenate([jacobian, effects_of_errors, repeating.reshape(shape)], axis=2)
 
 
-def joint(
+def joint_posterior(
     problem: CalibrationProblem,
     linear: Linear,
     stated: ErrorStatement,
-    sizes: Discrepancy | None = None,
-) -> Joint:
+    covariances: Discrepancy | None = None,
+) -> JointPosterior:
     """Estimate parameters and errors together from one linearization.
 
     Parameters
@@ -221,18 +221,18 @@ def joint(
         The model.
     stated : ErrorStatement
         What is known of the errors.
-    sizes : Discrepancy, optional
+    covariances : Discrepancy, optional
         Sizes of the errors of the model; drawn from their distribution when absent.
 
     Returns
     -------
-    Joint
+    JointPosterior
     """
-    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, sizes)
-    if sizes is None:
-        draws = sample_sizes(data, most_probable, scale=_scale(problem), limit=stated.limit)
+    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, covariances)
+    if covariances is None:
+        draws = sample_covariances(data, most_probable, scale=_scale(problem), limit=stated.limit)
     else:
-        draws = SizeSample.of_sizes(data, sizes)
+        draws = CovarianceSample.of_covariances(data, covariances)
     count, stated_count = len(problem.parameters), data.effects.shape[2]
     shared_count = stated_count + data.basis.shape[2] * data.sensors
     # The level that the days of the identification have in common says nothing of other days.
@@ -247,7 +247,7 @@ def joint(
     bounded_mean, bounded = _bounded(middle, together, sample)
     names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
     z, beyond = _most_probable(gaussian, likely, scale, count)
-    return Joint(
+    return JointPosterior(
         z,
         bounded_mean,
         bounded,
@@ -262,9 +262,12 @@ def joint(
 
 
 def best_positions(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None = None
+    problem: CalibrationProblem,
+    linear: Linear,
+    stated: ErrorStatement,
+    covariances: Discrepancy | None = None,
 ) -> tuple[Floats, Discrepancy]:
-    """Find the most probable positions alone, with the sizes of the errors; arguments as for `joint`.
+    """Find the most probable positions alone, with the covariances of the errors.
 
     Returns
     -------
@@ -273,38 +276,38 @@ def best_positions(
     Discrepancy
         Sizes of the errors of the model.
     """
-    gaussian, _, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
-    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], sizes
+    gaussian, _, mean, scale, covariances = _estimated(problem, linear, stated, covariances)
+    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], covariances
 
 
 def _estimated(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy | None
 ) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
     """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
     center, spread = _priors(problem)
     data = _data(problem, linear, stated, center, spread)
-    if sizes is None:
-        sizes = estimate_discrepancy(
+    if covariances is None:
+        covariances = estimate_discrepancy(
             data, scale=0.25 * _scale(problem), limit=stated.limit, persistence=stated.persistence
         )
-    gaussian = data.gaussian(sizes)
+    gaussian = data.gaussian(covariances)
     unit = gaussian.coefficients(data.error)
     scale = np.ones(unit.size)
     scale[: center.size] = spread
     mean = unit * scale
     mean[: center.size] += center
-    return gaussian, data, mean, scale, sizes
+    return gaussian, data, mean, scale, covariances
 
 
 def objective(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy
 ) -> float:
     """Compute minus the log density of parameters and measurements at the positions of a linearization.
 
     Parameters
     ----------
-    problem, linear, stated, sizes
-        As for `joint`; only the series of the linearization is used.
+    problem, linear, stated, covariances
+        As for `joint_posterior`; only the series of the linearization is used.
 
     Returns
     -------
@@ -315,7 +318,7 @@ def objective(
     empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
     data = _data(problem, empty, stated, center[:0], spread[:0])
     prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
-    return prior - data.gaussian(sizes).log_density(data.error)
+    return prior - data.gaussian(covariances).log_density(data.error)
 
 
 def _data(
@@ -356,7 +359,7 @@ def _scale(problem: CalibrationProblem) -> Floats:
 
 
 def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> tuple[Floats, Floats]:
-    """Positions (P,) of the largest density within the ranges, and `Joint.beyond`."""
+    """Positions (P,) of the largest density within the ranges, and `JointPosterior.beyond`."""
     from scipy import optimize
 
     precision = gaussian.precision / np.outer(scale, scale)

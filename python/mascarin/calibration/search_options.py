@@ -27,7 +27,7 @@ _MIN_AGREEING_OTHERS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Rules:
+class SearchOptions:
     """Options of a search: number of starts, resolution, and when it ends.
 
     A *sequence* is one search of a method other than least squares: pattern search, swarm, hybrid, evolution
@@ -74,7 +74,7 @@ class Rules:
 
     Examples
     --------
-    >>> Rules(starts=2, slopes="exact").agreeing("hooke-jeeves")
+    >>> SearchOptions(starts=2, slopes="exact").agreeing("hooke-jeeves")
     10
     """
 

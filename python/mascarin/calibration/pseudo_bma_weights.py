@@ -28,7 +28,7 @@ _REPLICATES: Final = 4000
 _SEED: Final = 20
 
 
-def form_weights(by_day: Floats) -> Floats:
+def pseudo_bma_weights(by_day: Floats) -> Floats:
     """Weigh forms of a model.
 
     Parameters
@@ -45,7 +45,7 @@ def form_weights(by_day: Floats) -> Floats:
     --------
     Two forms that predict all days equally well count the same:
 
-    >>> form_weights(np.zeros((2, 5)))
+    >>> pseudo_bma_weights(np.zeros((2, 5)))
     array([0.5, 0.5])
     """
     rng = np.random.default_rng(_SEED)
@@ -58,7 +58,7 @@ def form_weights(by_day: Floats) -> Floats:
     return np.asarray(mean / mean.sum())
 
 
-def simplest(by_day: Floats, changes: list[int]) -> int:
+def most_parsimonious(by_day: Floats, changes: list[int]) -> int:
     """Choose the form to use: the simplest one that is not clearly worse than the best.
 
     A form is clearly worse if the best one predicts the days left out better by more than two standard errors
@@ -83,9 +83,9 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
 
     Examples
     --------
-    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
+    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
     2
-    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
+    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
     0
     """
     total = by_day.sum(axis=1)
