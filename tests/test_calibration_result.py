@@ -145,7 +145,7 @@ def test_convergence_ends_at_the_lowest_cost(fit: Calibration) -> None:
 
 def test_many_evaluations_are_drawn_as_pixels(fit: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
     assert not fit.plot("convergence", ax=Figure().subplots()).lines[0].get_rasterized()
-    monkeypatch.setattr(figures, "MOST_DOTS", 10)
+    monkeypatch.setattr(figures, "MAX_DOTS", 10)
     figure = Figure()
     assert fit.plot("convergence", ax=figure.subplots()).lines[0].get_rasterized()
     drawn = io.StringIO()

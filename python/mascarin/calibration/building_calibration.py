@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 CONSTANT: Final = ("stuck", "forward_filled")
 """Kinds of suspicious values of the quality check in which a sensor repeats one value."""
 
-MOST_CONSTANT: Final = 0.5
+MAX_CONSTANT_SHARE: Final = 0.5
 """Largest part of a period over which a sensor may repeat one value. [-]"""
 
 
@@ -288,7 +288,7 @@ def _require_varying(
     for name, sensor in sensors.items():
         for part in constant_parts:
             shared = (min(end, part.end) - max(start, part.start)).total_seconds()
-            if part.channel in sensor.columns and shared > MOST_CONSTANT * (end - start).total_seconds():
+            if part.channel in sensor.columns and shared > MAX_CONSTANT_SHARE * (end - start).total_seconds():
                 raise InputError(
                     f"{measurements.file}: sensor '{name}', column {part.channel}: "
                     f"{part.kind.replace('_', '-')} from {part.start:%Y-%m-%d %H:%M} to "

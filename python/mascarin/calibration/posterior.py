@@ -41,7 +41,7 @@ METHOD: Final = (
 
 _BURN_IN: Final = 0.2  # part of the moves that is discarded
 _LONG_ENOUGH: Final = 50.0  # autocorrelation times
-_FEWEST_WALKERS: Final = 32
+_MIN_WALKERS: Final = 32
 _MAX_START_SPREAD: Final = 0.2  # of the range, standard deviation of the first positions
 
 
@@ -69,7 +69,7 @@ def sampled(fit: Calibration, evaluator: Evaluator, options: SearchOptions) -> C
     emcee = _emcee()
     problem = fit.problem
     count = len(problem.parameters)
-    walkers = options.walkers if options.walkers is not None else max(2 * count, _FEWEST_WALKERS)
+    walkers = options.walkers if options.walkers is not None else max(2 * count, _MIN_WALKERS)
     if walkers < 2 * count:
         msg = f"walkers: found {walkers}, expected at least {2 * count} for {count} parameters"
         raise InputError(msg)

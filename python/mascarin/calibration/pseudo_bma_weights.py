@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-CLEARLY: Final = 4.0
+MIN_CLEAR_DIFFERENCE: Final = 4.0
 """Difference of the log density of all days below which no form is clearly better; odds of 55 to 1. [-]"""
 
 _REPLICATES: Final = 4000
@@ -62,7 +62,7 @@ def most_parsimonious(by_day: Floats, changes: list[int]) -> int:
     """Choose the form to use: the simplest one that is not clearly worse than the best.
 
     A form is clearly worse if the best one predicts the days left out better by more than two standard errors
-    of the difference, and by more than `CLEARLY`.
+    of the difference, and by more than `MIN_CLEAR_DIFFERENCE`.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def most_parsimonious(by_day: Floats, changes: list[int]) -> int:
     days = by_day.shape[1]
     less = by_day[best] - by_day
     doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
-    candidates = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
+    candidates = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, MIN_CLEAR_DIFFERENCE))
     return int(min(candidates, key=lambda k: (changes[k], -total[k])))
 
 

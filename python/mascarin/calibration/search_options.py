@@ -16,7 +16,7 @@ METHODS: Final[tuple[MethodName, ...]] = (
 WITH_SQUARES: Final = ("least-squares", "emcee")
 """Methods that minimize a sum of squares, and therefore support the cost ``nll`` only."""
 
-FINEST: Final = 24
+MAX_REDUCTIONS: Final = 24
 """Largest number of halvings with which the points of a pattern search are exact binary numbers."""
 
 SlopesName = Literal["differences", "exact"]
@@ -105,8 +105,8 @@ class SearchOptions:
         if self.slopes not in SLOPES:
             msg = f"slopes: found '{self.slopes}', expected {' or '.join(SLOPES)}"
             raise InputError(msg)
-        if self.reductions > FINEST:
-            msg = f"reductions: found {self.reductions}, expected at most {FINEST}"
+        if self.reductions > MAX_REDUCTIONS:
+            msg = f"reductions: found {self.reductions}, expected at most {MAX_REDUCTIONS}"
             raise InputError(msg)
         if self.walkers is not None and self.walkers % 2:
             msg = f"walkers: found {self.walkers}, expected an even number: they move in two halves"

@@ -26,7 +26,7 @@ LIMIT: Final = 0.1
 #: Correlation time of the errors of days. [d]
 PERSISTENCE: Final = 5.0
 #: Shortest period from which errors of days can be estimated. [h]
-SHORTEST: Final = 48.0
+MIN_HOURS: Final = 48.0
 
 
 class States(Protocol):
@@ -107,9 +107,9 @@ def require_supported(method: str, cost: str, hours: float) -> None:
             f"cost: found {cost} with errors of sensors, expected nll, the likelihood that weighs them; "
             "write cost nll, or leave offset, common, gain, clock and depth of the sensors out"
         )
-    if hours < SHORTEST:
+    if hours < MIN_HOURS:
         raise InputError(
-            f"period: found {hours:g} h with errors of sensors, expected at least {SHORTEST:g} h: errors "
+            f"period: found {hours:g} h with errors of sensors, expected at least {MIN_HOURS:g} h: errors "
             "that change from day to day are estimated; make it longer, or leave offset, common, gain, "
             "clock and depth of the sensors out"
         )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-MOST_DOTS: Final = 20_000
+MAX_DOTS: Final = 20_000
 """Evaluations from which their dots are drawn as pixels: vectors would make a file of 100 MB."""
 
 
@@ -122,7 +122,7 @@ def convergence(axes: Axes, cost: Floats, final: float) -> None:
     floor = max(float(np.nanmax(above, initial=0.0)), 1e-300) * 1e-9
     number = np.arange(1, cost.size + 1)
     dots = axes.plot(number, np.maximum(above, floor), ".", color=colors.FITTED, markersize=2, alpha=0.5)
-    dots[0].set_rasterized(cost.size > MOST_DOTS)
+    dots[0].set_rasterized(cost.size > MAX_DOTS)
     lowest = np.fmin.accumulate(np.where(np.isnan(above), np.inf, above))
     steps = np.append(np.flatnonzero(lowest < np.append(np.inf, lowest[:-1])), cost.size - 1)
     axes.plot(

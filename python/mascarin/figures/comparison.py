@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-_MOST_CIRCLES: Final = 200
+_MAX_CIRCLES: Final = 200
 """Of more observations every k-th is drawn, so that one can see the points."""
-_MOST_POINTS: Final = 3000
+_MAX_POINTS: Final = 3000
 """Observations from which all are drawn, as pixels: vectors would make a large file."""
 _BAND_OPACITY: Final = 0.2
 _MARKER_SIZE: Final = 3.2
@@ -255,8 +255,8 @@ def _line(model: str) -> dict[str, Any]:
 
 
 def _points(ax: Axes, x: Any, values: Floats, color: str, label: str) -> Line2D:
-    dense = values.size > _MOST_POINTS
-    stride = 1 if dense else max(1, -(-values.size // _MOST_CIRCLES))
+    dense = values.size > _MAX_POINTS
+    stride = 1 if dense else max(1, -(-values.size // _MAX_CIRCLES))
     (markers,) = ax.plot(
         x[::stride], values[::stride], "o", color=color, markerfacecolor=color if dense else "none",
         markersize=1.0 if dense else _MARKER_SIZE, markeredgewidth=0.0 if dense else 0.8, label=label,

@@ -18,7 +18,7 @@ STOPS = ((8, 64, 129), (91, 155, 203), (240, 239, 235), (232, 142, 88), (148, 30
 #: Color of instants without a value.
 EMPTY = (150, 150, 150)
 _LEVELS = 201
-_MOST_ROWS = 96
+_MAX_ROWS = 96
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def carpet(series: Series, values: Array, limit: float) -> Carpet:
     """
     first = series.time(0).replace(hour=0, minute=0, second=0, microsecond=0)
     offset = (series.time(0) - first).total_seconds()
-    rows = int(min(_MOST_ROWS, max(1.0, 86400.0 // series.step)))
+    rows = int(min(_MAX_ROWS, max(1.0, 86400.0 // series.step)))
     seconds = offset + series.step * np.arange(len(values))
     days = (seconds // 86400.0).astype(np.intp)
     slots = (seconds % 86400.0 / 86400.0 * rows).astype(np.intp)

@@ -24,7 +24,7 @@ from mascarin.errors import InputError
 Array = npt.NDArray[np.float64]
 
 #: Largest number of values over all columns in a report; longer series are thinned.
-MOST_VALUES = 600_000
+MAX_VALUES = 600_000
 _MISSING_CODE = -32768
 _LEVELS = 65_000
 
@@ -100,7 +100,7 @@ class Series:
         last = (moment(end) - moment(self.start)).total_seconds() / self.step
         return slice(max(0, math.ceil(first - 1e-6)), max(0, math.ceil(last - 1e-6)))
 
-    def thinned(self, most: int = MOST_VALUES) -> Series:
+    def thinned(self, most: int = MAX_VALUES) -> Series:
         """Keep every k-th instant, k as small as the number of values allows.
 
         Parameters

@@ -32,7 +32,7 @@ Flags = NDArray[np.bool_]
 
 PRIOR: Final = 0.25
 """Standard deviation of the prior of a change. [ranges]"""
-MOST: Final = 6
+MAX_NAMED: Final = 6
 """Largest number of parameters that are named."""
 #: A parameter is named when it reduces the cost by at least this part of what all of them do, and parameters
 #: are named at all when some reduce the squared error by this part on weeks that were not used to find them.
@@ -174,7 +174,7 @@ def find_error_sources(
     chosen: list[int] = []
     steps: list[Correction] = []
     gained = 0.0
-    while len(chosen) < min(MOST, len(everything)):
+    while len(chosen) < min(MAX_NAMED, len(everything)):
         gains = {k: equations.gain([*chosen, k]) for k in everything if k not in chosen}
         best = max(gains, key=lambda k: gains[k])
         if gains[best] - gained < _MIN_GAIN_SHARE * gain_of_all or gains[best] <= gained:

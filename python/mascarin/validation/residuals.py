@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 _MIN_SAMPLES: Final = 24  # samples that an analysis needs
-_LONGEST_LAG: Final = 48.0  # h, of the autocorrelation
+_MAX_LAG: Final = 48.0  # h, of the autocorrelation
 _DRIVER_LAG: Final = 6.0  # h, longest delay between a driver and the residual
 _KOLMOGOROV: Final = 1.358  # Kolmogorov-Smirnov statistic at 95 %
 _SEVERAL_LAGS: Final = 1.5  # widens the 95 % limit, because the strongest of several lags is taken
@@ -300,7 +300,7 @@ def analyze_residuals(
         raise InputError(msg)
     r = np.where(keep, s - m, np.nan)
     per_day = 86400.0 / step
-    lags = np.arange(min(int(_LONGEST_LAG * 3600.0 / step), r.size - 1) + 1)
+    lags = np.arange(min(int(_MAX_LAG * 3600.0 / step), r.size - 1) + 1)
     frequency, cumulative = _cumulative_periodogram(r, per_day)
     effective = fit_autoregression(r).effective_samples
     mean, spread, share, limit = _by_hour(r, hours, effective, r.size / per_day)

@@ -36,9 +36,9 @@ _PARTS: Final = 8
 #: Mean of the two lowest of eight normal variables, below their mean. [standard deviations]
 _QUIET_SCORE: Final = 1.14
 #: Smaller errors of a gain cannot be distinguished from the form of a model. [-]
-_LEAST_GAIN: Final = 0.03
+_MIN_GAIN_ERROR: Final = 0.03
 #: Largest number of pairs of columns that are tried, the most similar ones.
-_MOST_PAIRS: Final = 8
+_MAX_PAIRS: Final = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +205,7 @@ def _columns(
             # What the fit leaves to the offset within its stated uncertainty belongs to it as well.
             value += float(fit.values[list(active).index(offset)]) if offset in active else 0.0
             effect, limit = abs(value), NORMAL_95 * u
-        if what in ("gain", "scale") and abs(value) < _LEAST_GAIN:
+        if what in ("gain", "scale") and abs(value) < _MIN_GAIN_ERROR:
             continue
         if effect > limit:
             error = fit.standard_error(fit.values.size - 1)
@@ -311,7 +311,7 @@ def pairs_alike(regression: WhitenedRegression, series: Series) -> list[tuple[in
             straight = float(np.mean((y - m)[both][:, [i, j]] ** 2))
             crossed = float(np.mean((y[:, [j, i]] - m[:, [i, j]])[both] ** 2))
             pairs.append((crossed / max(straight, 1e-300), i, j))
-    return [(i, j) for _, i, j in sorted(pairs)[:_MOST_PAIRS]]
+    return [(i, j) for _, i, j in sorted(pairs)[:_MAX_PAIRS]]
 
 
 def _swaps(

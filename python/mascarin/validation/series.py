@@ -21,7 +21,7 @@ from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
 
-_LONGEST_ORDER = 60
+_MAX_ORDER = 60
 
 
 def autocovariance(x: ArrayLike, lags: int) -> Floats:
@@ -203,7 +203,7 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
     """
     count = np.isfinite(x).sum(axis=1)
     if longest is None:
-        tried = np.minimum(np.minimum(10.0 * np.log10(np.maximum(count, 2)), count / 10), _LONGEST_ORDER)
+        tried = np.minimum(np.minimum(10.0 * np.log10(np.maximum(count, 2)), count / 10), _MAX_ORDER)
         most = tried.astype(np.int64)
     else:
         most = np.full(len(x), longest)

@@ -29,8 +29,8 @@ from mascarin.validation.whitened_regression import Extra, Solution, WhitenedReg
 Floats = NDArray[np.float64]
 
 #: Neither part of the record is shorter than this, nor than this part of it. [s], [-]
-_MIN_PART: Final = 86400.0
-_LEAST_PART: Final = 0.04
+_MIN_PART_SECONDS: Final = 86400.0
+_MIN_PART_SHARE: Final = 0.04
 #: Jumps of a clock that are tried: daylight saving. [s]
 _JUMPS: Final = (-3600.0, 3600.0)
 #: Difference of the deviance that tells the side of a change.
@@ -70,7 +70,7 @@ def step_changes(
     ('offset', (120, 240), 1.0)
     """
     n = len(series.measured)
-    edge = max(math.ceil(_MIN_PART / series.interval), math.ceil(_LEAST_PART * n))
+    edge = max(math.ceil(_MIN_PART_SECONDS / series.interval), math.ceil(_MIN_PART_SHARE * n))
     if n < 3 * edge:
         return []
     search = _Search(regression, active, null, series, edge)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 TITLE = "Time series"
 #: Largest number of points of a curve in a figure of the page.
-_MOST_POINTS: Final = 420
+_MAX_POINTS: Final = 420
 
 
 def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
@@ -123,7 +123,7 @@ def _of_period(
     study: Mapping[str, Any], curves: Series, period: str
 ) -> tuple[list[datetime], dict[str, Compared]]:
     start, end = study["periods"][period]["spans"][0]
-    return compared_sensors(study, curves, curves.slice_of(start, end), _MOST_POINTS)
+    return compared_sensors(study, curves, curves.slice_of(start, end), _MAX_POINTS)
 
 
 def _single(
