@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
 
 Floats = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def cover(repetitions: int, hours: float, shared: float, gaps: bool) -> tuple[fl
             tuple(FitSensor(f"s{k}", measured[:, k], 0.3) for k in range(SENSORS)),
             lambda x: 20.0 + np.einsum("tsp,mp->mts", j, x),
         )
-        fit = solve(problem, rules=Rules(starts=1))
+        fit = solve(problem, options=SearchOptions(starts=1))
         inside += float(np.mean((fit.low <= TRUTH) & (fit.high >= TRUTH)))
         width += float(np.mean((fit.high - fit.low) / plain))
         effective += sum(fit.uncertainty.effective_samples)

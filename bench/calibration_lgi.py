@@ -26,9 +26,9 @@ from lgi_seven import SENSOR_SD, Seven, seven
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
 
-from mascarin.calibration import CalibrationProblem, Cost, Evaluator, Rules, solve
+from mascarin.calibration import CalibrationProblem, Cost, Evaluator, SearchOptions, solve
 from mascarin.calibration.least_squares import derivative, least_squares
-from mascarin.calibration.rules import SLOPES
+from mascarin.calibration.search_options import SLOPES
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ KEPT = Path("calibration_lgi_kept")
 def recover() -> None:
     """Print each parameter, its true value, its estimate and the error in percent."""
     case = seven()
-    fit = solve(case.measured(), rules=Rules(starts=5), seed=1)
+    fit = solve(case.measured(), options=SearchOptions(starts=5), seed=1)
     error = 100.0 * np.abs(fit.x / case.truth - 1.0)
     for path, truth, found, e in zip(case.problem.paths, case.truth, fit.x, error, strict=True):
         print_line(f"| {path} | {truth:.6g} | {found:.6g} | {e:.2g} % |")
@@ -100,7 +100,8 @@ def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[
         replace(p, start=float(value)) for p, value in zip(problem.parameters, case.truth, strict=True)
     )
     fit = solve(
-        replace(problem, sensors=drawn.sensors, parameters=starts, model=problem.model), rules=Rules(starts=1)
+        replace(problem, sensors=drawn.sensors, parameters=starts, model=problem.model),
+        options=SearchOptions(starts=1),
     )
     span = np.array([p.upper - p.lower for p in problem.parameters])
     return {
@@ -125,15 +126,15 @@ def speed(starts: int) -> None:
         clock, processor = timed(part, 10)
         print_line(f"| {name} | {1e3 * clock:.0f} ms | {1e3 * processor:.0f} ms of a processor |")
     for kind in SLOPES:
-        search = Search(problem, Rules(starts=starts, slopes=kind))
+        search = Search(problem, SearchOptions(starts=starts, slopes=kind))
         clock, processor = timed(search)
         print_line(
             f"| a start, {kind} | {clock / starts:.2f} s | {processor / starts:.2f} s of a processor | "
             f"{search.runs / starts:.0f} runs, {search.jacobians / starts:.0f} times exact slopes |"
         )
-    one = Rules(starts=1)
+    one = SearchOptions(starts=1)
     searched = timed(Search(problem, one))
-    whole = timed(lambda: solve(problem, rules=one))
+    whole = timed(lambda: solve(problem, options=one))
     print_line(
         f"| intervals, once a fit | {whole[0] - searched[0]:.2f} s | "
         f"{whole[1] - searched[1]:.2f} s of a processor |"
@@ -143,7 +144,7 @@ def speed(starts: int) -> None:
 class Search:
     """Least squares alone, without the intervals."""
 
-    def __init__(self, problem: CalibrationProblem, rules: Rules) -> None:
+    def __init__(self, problem: CalibrationProblem, rules: SearchOptions) -> None:
         self.jacobians, self.runs = 0, 0
         self._problem, self._rules = replace(problem, slopes=self._slopes), rules
         self._of_problem = problem.require_slopes()

@@ -24,7 +24,7 @@ import numpy as np
 from lgi_seven import VARIANT
 from matplotlib.figure import Figure
 
-from mascarin.calibration import Calibration, CalibrationProblem, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, SearchOptions, solve
 from mascarin.calibration.result import PlotKind
 from mascarin.examples import FOLDER
 from mascarin.figures.files import save
@@ -43,14 +43,14 @@ def searched(
     problem: CalibrationProblem, sequences: int, folder: Path, reductions: int = REDUCTIONS
 ) -> Calibration:
     """Run all sequences; evaluations in the folder are read, not run again."""
-    rules = Rules(agree=sequences + 1, sequences=sequences, reductions=reductions, together=TOGETHER)
+    rules = SearchOptions(agree=sequences + 1, sequences=sequences, reductions=reductions, together=TOGETHER)
     with Progress("sequences") as progress:
         return solve(
             problem,
             method="hooke-jeeves",
             cost="sd",
             seed=1,
-            rules=rules,
+            options=rules,
             record=folder / "evaluations.jsonl",
             batch=TOGETHER,
             on_batch=lambda count, lowest: progress.update(count, 0, f"{count}, lowest {lowest:.6g}"),
@@ -74,7 +74,7 @@ def polished(fit: Calibration, folder: Path) -> list[Calibration]:
                 method="cma-es",
                 cost="sd",
                 seed=k,
-                rules=Rules(agree=1, sequences=1, step=0.02),
+                options=SearchOptions(agree=1, sequences=1, step=0.02),
                 record=folder / f"polished-{name}.jsonl",
                 batch=TOGETHER,
             )

@@ -193,7 +193,7 @@ def _add_shortfall(study: dict[str, Any]) -> None:
                 "sd": {s: 0.8 * value for s, value in sd.items()},
             },
         ],
-        "every": {"parameters": 173, "sd": {s: 0.7 * value for s, value in sd.items()}},
+        "all_parameters": {"parameters": 173, "sd": {s: 0.7 * value for s, value in sd.items()}},
     }
 
 

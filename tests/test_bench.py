@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
 from mascarin.simulation.simulation import Simulation
 
 
@@ -215,7 +215,7 @@ def test_seven_parameters_of_the_cell_come_back_from_our_own_data() -> None:
     problem = case.measured()
     start = problem.positions(np.array([p.first for p in problem.parameters]))
     assert np.abs(start - problem.positions(case.truth)).mean() > 0.15
-    fit = solve(problem, rules=Rules(starts=1))
+    fit = solve(problem, options=SearchOptions(starts=1))
     assert len(fit.x) == 7
     np.testing.assert_allclose(fit.x, case.truth, rtol=1e-3)
 

@@ -17,7 +17,7 @@ from mascarin.calibration import (
     Calibration,
     CalibrationProblem,
     FitParameter,
-    Rules,
+    SearchOptions,
     calibrate,
     fit_parameter,
     solve,
@@ -73,7 +73,9 @@ def test_the_true_values_are_in_the_intervals(
     free = {path: FINE.get(path, (0.2, 12.0)) for path in TRUTH} | {
         "surfaces.wall.outside.absorptance": (0.2, 0.8)
     }
-    fit = calibrate(building, climate, measured, vary=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN)
+    fit = calibrate(
+        building, climate, measured, vary=free, sensors=SENSORS, options=SearchOptions(starts=1), **SPAN
+    )
     assert fit.reason == "1 start searched"
     for k, parameter in enumerate(fit.problem.parameters):
         half = (fit.high[k] - fit.low[k]) / 2.0
@@ -94,7 +96,7 @@ def test_a_record_is_continued_and_an_estimate_ends_on_its_bound(
         return calibrate(
             building, climate, measured,
             vary={"surfaces.wall.outside.absorptance": (0.3, 0.55)},
-            sensors=SENSORS, rules=Rules(starts=1), record=record,
+            sensors=SENSORS, options=SearchOptions(starts=1), record=record,
             progress=lambda done, total: told.append(done), **SPAN | {"step": "1h"},
         )  # fmt: skip
 
@@ -114,7 +116,7 @@ def test_output_and_column_are_enough_for_a_sensor(
     fit = calibrate(
         building, climate, measured,
         vary=["surfaces.wall.outside.absorptance"], sensors={"core.temperature": "core"},
-        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+        options=SearchOptions(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     assert [sensor.name for sensor in fit.problem.sensors] == ["core.temperature"]
     assert fit.problem.sensors[0].standard_uncertainty == pytest.approx(0.5 / 1.96)
@@ -141,7 +143,7 @@ def test_several_columns_are_averaged_where_they_have_values(
         building, climate, measured,
         vary=["surfaces.wall.outside.absorptance"],
         sensors={"core.temperature": Sensor(["core", "twin"])},
-        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+        options=SearchOptions(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     shown = fit.problem.sensors[0].measured
     want = table["core"].resample("1h").first()["2023-03-02":"2023-03-05"].to_numpy()
@@ -191,7 +193,7 @@ def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
         building, climate, measured,
         vary=[free],
         sensors={"core.temperature": Sensor("core", 0.06, relative_expanded_uncertainty=0.05)},
-        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+        options=SearchOptions(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     assert fit.minima[0].start[0] == pytest.approx(1.5)
     assert fit.problem.parameters[0].scale == "log"
@@ -272,14 +274,14 @@ def test_exact_slopes_of_the_cell_are_those_of_differences(seven: CalibrationPro
 def test_seven_parameters_of_the_cell_come_back_with_exact_slopes(
     seven: CalibrationProblem, tmp_path: Path
 ) -> None:
-    rules = Rules(starts=2, slopes="exact")
+    rules = SearchOptions(starts=2, slopes="exact")
     record = tmp_path / "record.jsonl"
-    fit = solve(seven, rules=rules, record=record)
+    fit = solve(seven, options=rules, record=record)
     assert len(fit.minima) == 2
     for minimum in fit.minima:
         np.testing.assert_allclose(minimum.x, seven.values(PLACES[None])[0], rtol=1e-6)
     kept = record.read_bytes()
-    again = solve(seven, rules=rules, record=record)
+    again = solve(seven, options=rules, record=record)
     np.testing.assert_array_equal(again.x, fit.x)
     np.testing.assert_array_equal(again.low, fit.low)
     assert record.read_bytes() == kept
@@ -295,7 +297,7 @@ def test_exact_slopes_hold_at_bounds(
                 "surfaces.wall.outside.absorptance": (0.3, 0.55),
                 "surfaces.wall.inside.convection.coefficient": (4.0, 12.0),
             },
-            sensors=SENSORS, rules=Rules(starts=2, slopes=slopes), **SPAN | {"step": "1h"},
+            sensors=SENSORS, options=SearchOptions(starts=2, slopes=slopes), **SPAN | {"step": "1h"},
         )
         for slopes in ("exact", "differences")
     )  # fmt: skip
@@ -305,8 +307,8 @@ def test_exact_slopes_hold_at_bounds(
 
 
 def test_what_has_no_slope_is_refused(building: Building, climate: Climate, measured: Measurements) -> None:
-    exact = Rules(slopes="exact")
-    given: dict[str, Any] = {"sensors": SENSORS, "rules": exact, **SPAN}
+    exact = SearchOptions(slopes="exact")
+    given: dict[str, Any] = {"sensors": SENSORS, "options": exact, **SPAN}
     by_hand = FitParameter("site.latitude", 40.0, 50.0)
     with pytest.raises(InputError, match=r"site\.latitude: is structural"):
         calibrate(building, climate, measured, vary=[by_hand], **given)
@@ -323,7 +325,8 @@ def calibration(building: Building, climate: Climate, measured: Measurements) ->
     return calibrate(
         building, climate, measured,
         vary=["surfaces.wall.outside.absorptance"], parameters={"materials.brick.conductivity": 0.6},
-        sensors={"core.temperature": "core"}, rules=Rules(starts=1), progress=False, **SPAN | {"step": "1h"},
+        sensors={"core.temperature": "core"}, options=SearchOptions(starts=1), progress=False,
+        **SPAN | {"step": "1h"},
     )  # fmt: skip
 
 
@@ -365,7 +368,7 @@ def test_a_heat_flux_needs_an_uncertainty(
     logger = Measurements.from_table(table.assign(flux=10.0 * table["core"]), timezone="UTC+1")
     given: dict[str, Any] = {
         "vary": ["surfaces.wall.outside.absorptance"],
-        "rules": Rules(starts=1),
+        "options": SearchOptions(starts=1),
         **SPAN,
         "step": "1h",
     }

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
+from mascarin.calibration.covariance_sampling import inverse_wishart
 from mascarin.calibration.day_blocks import DayGrid
 from mascarin.calibration.discrepancy import (
     CORRELATION_HOURS,
@@ -19,9 +20,8 @@ from mascarin.calibration.discrepancy import (
     hour_basis,
     root_of,
 )
-from mascarin.calibration.joint import ErrorStatement, Linear, joint
+from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
 from mascarin.calibration.sensor_errors import SensorError, error_columns
-from mascarin.calibration.size_sample import inverse_wishart
 
 Floats = NDArray[np.float64]
 
@@ -90,7 +90,9 @@ def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     )
     middle = np.full(PARAMETERS, 0.5)
     none = np.zeros((int(SEEN.sum()), SENSORS, 0))
-    found = joint(problem, Linear(middle, np.full((len(none), SENSORS), 20.0), slope[SEEN], none), stated)
+    found = joint_posterior(
+        problem, Linear(middle, np.full((len(none), SENSORS), 20.0), slope[SEEN], none), stated
+    )
     low, high = np.quantile(found.sample, [0.025, 0.975], axis=0)
     blind = ~SEEN
     # The sample itself: a study widens it, because it does not know that the errors are as assumed.
@@ -98,7 +100,7 @@ def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         [s.name for s in problem.sensors], stated.sensors, np.zeros((int(blind.sum()), SENSORS)), 3600.0
     )
     expected, variance = found.predicted(found.effects(slope[blind], known, HOURS[blind]), middle)
-    half = 1.96 * np.sqrt(variance + found.sizes.new_day)
+    half = 1.96 * np.sqrt(variance + found.error_covariances.new_day)
     return (low <= z) & (z <= high), np.abs(measured[blind] - 20.0 - expected) <= half
 
 

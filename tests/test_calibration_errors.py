@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
 from mascarin.calibration.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.discrepancy import (
     DayData,
@@ -17,11 +17,11 @@ from mascarin.calibration.discrepancy import (
     estimate_discrepancy,
     hour_basis,
 )
-from mascarin.calibration.form_weights import form_weights, simplest, weighted_quantiles
-from mascarin.calibration.joint import ErrorStatement, Linear, joint
-from mascarin.calibration.refining import refined
+from mascarin.calibration.joint_estimation import estimate_jointly
+from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.pseudo_bma_weights import most_parsimonious, pseudo_bma_weights, weighted_quantiles
 from mascarin.calibration.sensor_errors import SensorError, error_columns
-from mascarin.calibration.truncated import within_bounds
+from mascarin.calibration.truncated_normal import within_bounds
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -208,7 +208,7 @@ def test_an_offset_is_estimated_with_the_parameter_as_in_closed_form() -> None:
     linear = Linear(
         np.array([0.5]), np.full((96, 1), 20.0), (10.0 * slope)[:, None, None], np.zeros((96, 1, 0))
     )
-    found = joint(problem, linear, stated, sizes)
+    found = joint_posterior(problem, linear, stated, sizes)
     x = np.column_stack([slope, np.ones(96)])
     precision = x.T @ x / 0.04 + np.diag([1.0, 1.0 / 0.09])
     expected = np.linalg.solve(precision, x.T @ (measured - 20.0) / 0.04)
@@ -225,10 +225,10 @@ def test_a_stated_offset_no_longer_moves_the_parameter() -> None:
     slope = 1.0 + np.sin(2.0 * np.pi * hours / 24.0)
     measured = 20.0 + slope + 0.3 + 0.02 * np.random.default_rng(6).normal(size=120)
     problem = linear_problem(measured, slope)
-    plain = solve(problem, rules=Rules(starts=1))
+    plain = solve(problem, options=SearchOptions(starts=1))
     assert plain.x[0] > 1.15
     stated = ErrorStatement((SensorError(offset=0.3),), hours, 3600.0, np.array([1.0]))
-    found, errors = refined(plain, stated, Rules())
+    found, errors = estimate_jointly(plain, stated, SearchOptions())
     assert found.x[0] == pytest.approx(1.0, abs=0.03)
     assert found.low[0] < 1.0 < found.high[0]
     assert 0.3 * errors.mean[1] == pytest.approx(0.3, abs=0.06)
@@ -247,14 +247,14 @@ def test_an_estimate_on_the_end_of_its_range_says_how_far_it_wants_to_go() -> No
     linear = Linear(
         np.array([0.5]), np.full((96, 1), 20.0), (10.0 * slope)[:, None, None], np.zeros((96, 1, 0))
     )
-    found = joint(problem, linear, stated, sizes)
+    found = joint_posterior(problem, linear, stated, sizes)
     # The range is a prior as well: uniform, with the variance 10^2 / 12.
     precision = slope @ slope / 0.04 + 12.0 / 100.0
     best = slope @ (measured - 20.0) / 0.04 / precision
     assert found.z == [1.0]
     assert found.beyond[0] == pytest.approx(precision * (best - 5.0) ** 2, rel=1e-3)
     assert best > 5.0
-    inside = joint(linear_problem(measured - slope, slope), linear, stated, sizes)
+    inside = joint_posterior(linear_problem(measured - slope, slope), linear, stated, sizes)
     assert inside.beyond == [0.0]
 
 
@@ -264,7 +264,9 @@ def test_the_interval_contains_an_estimate_on_the_end_of_its_range(truth: float,
     slope = np.sin(2.0 * np.pi * hours / 24.0)
     measured = 20.0 + truth * slope + 0.05 * np.random.default_rng(6).normal(size=120)
     stated = ErrorStatement((SensorError(),), hours, 3600.0, np.array([0.05]))
-    found, _ = refined(solve(linear_problem(measured, slope), rules=Rules(starts=1)), stated, Rules())
+    found, _ = estimate_jointly(
+        solve(linear_problem(measured, slope), options=SearchOptions(starts=1)), stated, SearchOptions()
+    )
     assert found.x[0] == found.high[0] == 5.0
     assert 4.8 < found.low[0] < 5.0
     assert said in found.on_bound["p"]
@@ -286,25 +288,25 @@ def test_without_active_bounds_the_sample_is_that_of_the_normal_distribution() -
 
 
 def test_forms_of_equal_density_have_equal_weights() -> None:
-    np.testing.assert_allclose(form_weights(np.full((3, 5), -100.0)), 1.0 / 3.0)
+    np.testing.assert_allclose(pseudo_bma_weights(np.full((3, 5), -100.0)), 1.0 / 3.0)
 
 
 def test_with_one_day_the_weights_are_those_of_bayesian_model_averaging() -> None:
     """The bootstrap has nothing to vary: weights are in proportion to the densities."""
-    np.testing.assert_allclose(form_weights(np.log([[0.6], [0.3], [0.1]])), [0.6, 0.3, 0.1], rtol=1e-12)
+    np.testing.assert_allclose(pseudo_bma_weights(np.log([[0.6], [0.3], [0.1]])), [0.6, 0.3, 0.1], rtol=1e-12)
 
 
 def test_days_that_disagree_leave_the_choice_open() -> None:
-    clear = form_weights(np.array([[10.0, 10.0, 10.0], [0.0, 0.0, 0.0]]))
-    open_ = form_weights(np.array([[10.0, 0.0, 10.5], [0.0, 10.0, 0.0]]))
+    clear = pseudo_bma_weights(np.array([[10.0, 10.0, 10.0], [0.0, 0.0, 0.0]]))
+    open_ = pseudo_bma_weights(np.array([[10.0, 0.0, 10.5], [0.0, 10.0, 0.0]]))
     assert clear[0] > 0.999
     assert 0.5 < open_[0] < 0.95
 
 
 def test_a_more_complex_form_is_used_only_if_it_is_clearly_better() -> None:
-    assert simplest(np.array([[0.0, 0.0, 0.0], [5.0, -4.0, 5.0]]), [0, 1]) == 0
-    assert simplest(np.array([[0.0, 0.0, 0.0], [5.0, 4.0, 5.0]]), [0, 1]) == 1
-    assert simplest(np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]), [0, 1]) == 0
+    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [5.0, -4.0, 5.0]]), [0, 1]) == 0
+    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [5.0, 4.0, 5.0]]), [0, 1]) == 1
+    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]), [0, 1]) == 0
 
 
 def test_quantiles_of_a_mixture_are_those_of_its_distribution() -> None:

@@ -14,7 +14,15 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin._io import own_records
-from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import (
+    CalibrationProblem,
+    Cost,
+    Evaluator,
+    FitParameter,
+    FitSensor,
+    SearchOptions,
+    solve,
+)
 from mascarin.calibration.least_squares import Squares, derivative, exact, scale_of
 from mascarin.errors import InputError, SolverError
 
@@ -22,7 +30,7 @@ Floats = NDArray[np.float64]
 
 TIME = np.linspace(0.0, 4.0, 300)
 TRUTH = np.array([0.8, 2.0, 5.0])
-EXACT = Rules(starts=2, slopes="exact")
+EXACT = SearchOptions(starts=2, slopes="exact")
 
 
 def model(x: Floats) -> Floats:
@@ -62,7 +70,7 @@ def test_exact_slopes_go_through_scales_weights_priors_and_gaps() -> None:
     z = np.array([0.3, 0.6, 0.45])
     with Evaluator(Cost(problem, "nll"), keep_residuals=True) as evaluator:
         found = Squares(problem, evaluator, EXACT).jacobian(z)
-        near = Squares(problem, evaluator, Rules(difference=1e-6)).jacobian(z)
+        near = Squares(problem, evaluator, SearchOptions(difference=1e-6)).jacobian(z)
         by_position = exact(problem, evaluator, z)
     assert found.shape == (problem.mask.sum() + 2, 3)
     np.testing.assert_allclose(found, near, atol=1e-5 * np.abs(found).max())
@@ -92,8 +100,8 @@ def test_the_reduced_jacobian_has_the_same_normal_equations() -> None:
 
 @pytest.mark.parametrize("noise", [0.0, 0.1])
 def test_both_kinds_of_slopes_end_at_the_same_place(noise: float) -> None:
-    near = solve(posed(noise), rules=Rules(starts=2))
-    found = solve(posed(noise), rules=EXACT)
+    near = solve(posed(noise), options=SearchOptions(starts=2))
+    found = solve(posed(noise), options=EXACT)
     assert len(found.distinct_minima()) == 1
     np.testing.assert_allclose(found.x, near.x, rtol=1e-5)
     # One member a step in the place of one and its neighbours.
@@ -108,7 +116,7 @@ def test_an_estimate_on_its_bound_has_slopes_there() -> None:
     problem = posed(0.1)
     first = replace(problem.parameters[1], upper=1.5, start=1.0)
     narrow = replace(problem, parameters=(problem.parameters[0], first, problem.parameters[2]))
-    fits = [solve(narrow, rules=rules) for rules in (EXACT, Rules(starts=2))]
+    fits = [solve(narrow, options=rules) for rules in (EXACT, SearchOptions(starts=2))]
     assert fits[0].x[1] == 1.5
     assert "size" in fits[0].on_bound
     # Forward differences are off by the curvature over their step, which the large residuals here weigh.
@@ -118,7 +126,7 @@ def test_an_estimate_on_its_bound_has_slopes_there() -> None:
 def test_other_methods_take_exact_slopes_for_their_intervals() -> None:
     rules: dict[str, Any] = {"agree": 1, "sequences": 1, "reductions": 14}
     found, near = (
-        solve(posed(0.1), method="hooke-jeeves", rules=Rules(slopes=kind, **rules))
+        solve(posed(0.1), method="hooke-jeeves", options=SearchOptions(slopes=kind, **rules))
         for kind in ("exact", "differences")
     )
     np.testing.assert_array_equal(found.x, near.x)
@@ -130,7 +138,7 @@ class Killed(BaseException):
 
 
 def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Path) -> None:
-    whole = solve(posed(0.2), rules=EXACT)
+    whole = solve(posed(0.2), options=EXACT)
     path = tmp_path / "record.jsonl"
     taken: list[bytes] = []
 
@@ -144,25 +152,25 @@ def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Pat
         return counted(x)
 
     with pytest.raises(Killed):
-        solve(posed(0.2, mortal), rules=EXACT, record=path)
+        solve(posed(0.2, mortal), options=EXACT, record=path)
     path.write_bytes(path.read_bytes() + b'{"x": [1.0, 0.5, 2.0], "j": "AAA')  # what was being written
-    fit = solve(posed(0.2, counted), rules=EXACT, record=path)
+    fit = solve(posed(0.2, counted), options=EXACT, record=path)
     np.testing.assert_array_equal(fit.x, whole.x)
     np.testing.assert_array_equal(fit.high, whole.high)
     assert len(set(taken)) == len(taken)
     assert fit.trace.replayed > 0
     before = path.read_bytes()
-    again = solve(posed(0.2, mortal), rules=EXACT, record=path)
+    again = solve(posed(0.2, mortal), options=EXACT, record=path)
     assert path.read_bytes() == before
     np.testing.assert_array_equal(again.low, whole.low)
     # Evaluations are evaluations, whichever way the slopes are taken.
-    other = solve(posed(0.2), rules=Rules(starts=2), record=path)
+    other = solve(posed(0.2), options=SearchOptions(starts=2), record=path)
     assert other.trace.replayed == again.trace.cost.size
 
 
 def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
-    whole = solve(posed(0.2), rules=EXACT, record=path)
+    whole = solve(posed(0.2), options=EXACT, record=path)
     sound = path.read_bytes()
     lines = path.read_text().splitlines(keepends=True)
     at = next(k for k, line in enumerate(lines) if "j" in json.loads(line))
@@ -175,7 +183,7 @@ def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
     for changed in (edited, *sealed):
         path.write_text("".join([*lines[:at], changed, *lines[at + 1 :]]))
         with pytest.warns(UserWarning, match=rf"damaged lines: 1 \(line {at + 1}: .*computed again"):
-            fit = solve(posed(0.2), rules=EXACT, record=path)
+            fit = solve(posed(0.2), options=EXACT, record=path)
         np.testing.assert_array_equal(fit.x, whole.x)
         np.testing.assert_array_equal(fit.high, whole.high)
         assert sorted(path.read_bytes().splitlines()) == sorted(sound.splitlines())
@@ -183,14 +191,14 @@ def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
 
 def test_a_function_without_derivatives_has_none() -> None:
     with pytest.raises(InputError, match=r"a function without derivatives; give them .* or choose slopes"):
-        solve(posed(given=None), rules=EXACT)
+        solve(posed(given=None), options=EXACT)
     with pytest.raises(InputError, match=r"slopes of shape \(300, 2\), expected \(300, 2, 3\)"):
-        solve(posed(given=lambda x: slopes(x)[:, :, 0]), rules=EXACT)
+        solve(posed(given=lambda x: slopes(x)[:, :, 0]), options=EXACT)
     with pytest.raises(SolverError, match=r"no derivative at rate = .*: it is not a number"):
-        solve(posed(given=lambda x: np.nan * slopes(x)), rules=EXACT)
+        solve(posed(given=lambda x: np.nan * slopes(x)), options=EXACT)
 
     def unsettled(x: Floats) -> Floats:
         raise SolverError("step 3 did not converge")
 
     with pytest.raises(SolverError, match=r"no derivative at rate = .*: step 3 did not converge"):
-        solve(posed(given=unsettled), rules=EXACT)
+        solve(posed(given=unsettled), options=EXACT)

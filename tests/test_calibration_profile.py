@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, profiles, solve
+from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, profiles, solve
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -28,7 +28,7 @@ def linear(prior: tuple[float, float] | None = None) -> CalibrationProblem:
 
 @pytest.mark.parametrize("prior", [None, (1.0, 0.2)])
 def test_a_linear_model_has_parabolas_and_the_interval_of_the_fit(prior: tuple[float, float] | None) -> None:
-    fit = solve(linear(prior), rules=Rules(starts=1))
+    fit = solve(linear(prior), options=SearchOptions(starts=1))
     for i, profile in enumerate(profiles(fit)):
         sd = 40.0 * fit.uncertainty.sd[i]
         np.testing.assert_allclose(
@@ -38,7 +38,7 @@ def test_a_linear_model_has_parabolas_and_the_interval_of_the_fit(prior: tuple[f
         assert not profile.words
     # Where one is fixed, the one with the similar effect compensates.
     second = profiles(fit, ["b"])[0]
-    assert np.corrcoef(second.values, second.others[:, 2])[0, 1] < -0.99
+    assert np.corrcoef(second.values, second.parameter_values[:, 2])[0, 1] < -0.99
 
 
 def test_it_minimizes_over_the_others_in_a_curved_valley() -> None:
@@ -51,7 +51,7 @@ def test_it_minimizes_over_the_others_in_a_curved_valley() -> None:
     measured = model(np.array([[0.8, 2.0]]))[0, :, 0] + 0.15 * np.random.default_rng(2).normal(size=60)
     pair = (FitParameter("a", 0.0, 8.0), FitParameter("b", 0.1, 12.0))
     sensors = (FitSensor("s", measured, 0.15),)
-    fit = solve(CalibrationProblem(pair, sensors, model), rules=Rules(starts=1))
+    fit = solve(CalibrationProblem(pair, sensors, model), options=SearchOptions(starts=1))
     profile = profiles(fit, ["a"])[0]
     rises = []
     for value in profile.values:
@@ -60,7 +60,8 @@ def test_it_minimizes_over_the_others_in_a_curved_valley() -> None:
             return model(np.column_stack([np.full(len(p), value), p]))
 
         rises.append(
-            solve(CalibrationProblem(pair[1:], sensors, held), rules=Rules(starts=2)).cost - fit.cost
+            solve(CalibrationProblem(pair[1:], sensors, held), options=SearchOptions(starts=2)).cost
+            - fit.cost
         )
     away = np.abs(profile.values - fit.x[0]) > 1e-6
     ratio = profile.rise[away] / (2.0 * np.array(rises)[away])
@@ -76,7 +77,9 @@ def test_a_side_that_the_data_do_not_bound_is_reported() -> None:
 
     measured = model(np.array([[9.0]]))[0, :, 0] + 0.3 * np.random.default_rng(2).normal(size=HOUR.size)
     one = (FitParameter("film", 1.0, 15.0, unit="W/(m2 K)"),)
-    fit = solve(CalibrationProblem(one, (FitSensor("s", measured, 0.3),), model), rules=Rules(starts=3))
+    fit = solve(
+        CalibrationProblem(one, (FitSensor("s", measured, 0.3),), model), options=SearchOptions(starts=3)
+    )
     (profile,) = profiles(fit, points=11)
     assert profile.open_high
     assert not profile.open_low
@@ -92,18 +95,20 @@ def test_values_that_cannot_be_run_are_outside() -> None:
 
     measured = WAVES[:, :2] @ TRUTH[:2] + 0.3 * np.random.default_rng(5).normal(size=HOUR.size)
     pair = tuple(FitParameter(name, -20.0, 20.0, start=1.9) for name in "ab")
-    fit = solve(CalibrationProblem(pair, (FitSensor("s", measured, 0.3),), model), rules=Rules(starts=1))
+    fit = solve(
+        CalibrationProblem(pair, (FitSensor("s", measured, 0.3),), model), options=SearchOptions(starts=1)
+    )
     (profile,) = profiles(fit, ["a"])
     assert np.isinf(profile.rise[profile.values > 2.02]).all()
     assert fit.x[0] < profile.high <= 2.02 + 1e-9
 
 
 def test_refusals() -> None:
-    fit = solve(linear(), rules=Rules(starts=1))
+    fit = solve(linear(), options=SearchOptions(starts=1))
     with pytest.raises(InputError, match="'d' was not estimated"):
         profiles(fit, ["d"])
     with pytest.raises(InputError, match="points: found 3"):
         profiles(fit, points=3)
-    other = solve(linear(), method="hooke-jeeves", cost="rmse", rules=Rules(agree=1, sequences=1))
+    other = solve(linear(), method="hooke-jeeves", cost="rmse", options=SearchOptions(agree=1, sequences=1))
     with pytest.raises(InputError, match="a profile needs a likelihood: found the cost 'rmse'"):
         profiles(other)

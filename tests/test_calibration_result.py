@@ -16,7 +16,7 @@ from mascarin.calibration import (
     CalibrationProblem,
     FitParameter,
     FitSensor,
-    Rules,
+    SearchOptions,
     plot_profiles,
     profiles,
     solve,
@@ -39,7 +39,7 @@ def fit() -> Calibration:
         (FitSensor("s", measured, 0.02),),
         decay,
     )
-    return solve(problem, method="hooke-jeeves", rules=Rules(agree=3, sequences=6))
+    return solve(problem, method="hooke-jeeves", options=SearchOptions(agree=3, sequences=6))
 
 
 # --- text and tables ------------------------------------------------------------------------------------
@@ -85,7 +85,7 @@ def test_standard_errors_on_a_log_scale_are_in_the_unit() -> None:
             (FitSensor("s", 2.0 * np.exp(-0.8 * TIME) + noise, 0.02),),
             decay,
         )
-        found[scale] = solve(problem, rules=Rules(starts=1)).standard_error
+        found[scale] = solve(problem, options=SearchOptions(starts=1)).standard_error
     np.testing.assert_allclose(found["log"], found["linear"], rtol=1e-3)
 
 
@@ -115,7 +115,7 @@ def test_the_text_names_estimates_on_a_bound(fit: Calibration) -> None:
         (FitSensor("s", measured, 0.02),),
         decay,
     )
-    found = solve(problem, rules=Rules(starts=1))
+    found = solve(problem, options=SearchOptions(starts=1))
     assert list(found.on_bound) == ["rate"]
     assert "  on a bound  rate; see .on_bound" in repr(found).splitlines()
     assert "on a bound" in found._repr_html_()
@@ -145,7 +145,7 @@ def test_convergence_ends_at_the_lowest_cost(fit: Calibration) -> None:
 
 def test_many_evaluations_are_drawn_as_pixels(fit: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
     assert not fit.plot("convergence", ax=Figure().subplots()).lines[0].get_rasterized()
-    monkeypatch.setattr(figures, "MOST_DOTS", 10)
+    monkeypatch.setattr(figures, "MAX_DOTS", 10)
     figure = Figure()
     assert fit.plot("convergence", ax=figure.subplots()).lines[0].get_rasterized()
     drawn = io.StringIO()

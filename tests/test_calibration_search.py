@@ -14,7 +14,14 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin._io import own_records
-from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import (
+    Calibration,
+    CalibrationProblem,
+    FitParameter,
+    FitSensor,
+    SearchOptions,
+    solve,
+)
 from mascarin.errors import InputError, SolverError
 from mascarin.optimization import NelderMead
 
@@ -65,7 +72,7 @@ def _problem(model: Any = None, noise: float = 0.0, **keywords: Any) -> Calibrat
 
 def test_least_squares_recovers_the_truth_from_data_without_noise() -> None:
     cell = Cell()
-    fit = solve(_problem(cell), rules=Rules(starts=3))
+    fit = solve(_problem(cell), options=SearchOptions(starts=3))
     np.testing.assert_allclose(fit.x, TRUTH, rtol=1e-4)
     assert len(fit.minima) == 3
     assert len(fit.distinct_minima()) == 1
@@ -100,8 +107,8 @@ def test_intervals_contain_the_true_values_as_in_the_table() -> None:
 
 @pytest.mark.parametrize("cost", ["sd", "rmse", "rmse_over_range", "nll"])
 def test_pattern_search_finds_the_minimum_of_every_cost(cost: Any) -> None:
-    rules = Rules(agree=1, reductions=12, together=1)
-    fit = solve(_problem(noise=0.05), method="hooke-jeeves", cost=cost, rules=rules, seed=3)
+    rules = SearchOptions(agree=1, reductions=12, together=1)
+    fit = solve(_problem(noise=0.05), method="hooke-jeeves", cost=cost, options=rules, seed=3)
     if cost == "sd":
         # Without the bias only the amplitude of the room counts: it depends on the ratio of mass and inner.
         assert fit.x[2] / fit.x[3] == pytest.approx(TRUTH[2] / TRUTH[3], rel=0.01)
@@ -132,8 +139,8 @@ def _two_wells(depth: float) -> CalibrationProblem:
 
 
 def test_sequences_end_in_different_minima_and_the_lowest_wins() -> None:
-    rules = Rules(agree=5, sequences=60, reductions=14)
-    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", rules=rules)
+    rules = SearchOptions(agree=5, sequences=60, reductions=14)
+    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", options=rules)
     assert fit.x[0] == pytest.approx(0.2, abs=1e-3)
     groups = fit.distinct_minima()
     assert len(groups) == 2
@@ -146,8 +153,8 @@ def test_sequences_end_in_different_minima_and_the_lowest_wins() -> None:
 
 
 def test_agreement_waits_for_the_lowest_minimum() -> None:
-    rules = Rules(agree=10, sequences=4, reductions=14)
-    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", rules=rules)
+    rules = SearchOptions(agree=10, sequences=4, reductions=14)
+    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", options=rules)
     assert fit.reason == "all 4 sequences searched, without agreement of 10"
     assert len(fit.minima) == 4
 
@@ -158,7 +165,7 @@ def test_number_side_by_side_does_not_change_the_result() -> None:
             _problem(noise=0.3),
             method="hooke-jeeves",
             cost="rmse",
-            rules=Rules(agree=3, sequences=8, reductions=3, together=together),
+            options=SearchOptions(agree=3, sequences=8, reductions=3, together=together),
             seed=5,
         )
         for together in (1, 5)
@@ -170,15 +177,15 @@ def test_number_side_by_side_does_not_change_the_result() -> None:
 
 def test_lanes_are_filled_by_many_sequences() -> None:
     cell = Cell()
-    rules = Rules(agree=20, sequences=20, together=16, reductions=2)
-    solve(_problem(cell, noise=0.3), method="hooke-jeeves", cost="rmse", rules=rules)
+    rules = SearchOptions(agree=20, sequences=20, together=16, reductions=2)
+    solve(_problem(cell, noise=0.3), method="hooke-jeeves", cost="rmse", options=rules)
     assert np.median(cell.batches) >= 12
 
 
 def test_budget_of_evaluations_stops_every_sequence() -> None:
     cell = Cell()
-    rules = Rules(agree=10, evaluations=100, together=4)
-    fit = solve(_problem(cell), method="hooke-jeeves", cost="rmse", rules=rules)
+    rules = SearchOptions(agree=10, evaluations=100, together=4)
+    fit = solve(_problem(cell), method="hooke-jeeves", cost="rmse", options=rules)
     assert "budget of 100 evaluations" in fit.reason
     assert cell.members < 130
     assert fit.cost == fit.trace.cost.min()
@@ -190,7 +197,7 @@ def test_an_own_optimizer_is_used() -> None:
         method="hooke-jeeves",
         cost="rmse",
         optimizer=lambda space: NelderMead(space, accuracy=1e-6),
-        rules=Rules(agree=1, together=1),
+        options=SearchOptions(agree=1, together=1),
     )
     assert np.isfinite(fit.cost)
 
@@ -248,7 +255,7 @@ def test_a_prior_determines_what_the_data_do_not() -> None:
 
     sensors = (FitSensor("s", 5.0 + 0.1 * np.random.default_rng(3).normal(size=50), 0.1),)
     parameters = (FitParameter("a", 0.0, 10.0, prior=(2.0, 0.2)), FitParameter("b", 0.0, 10.0))
-    fit = solve(CalibrationProblem(parameters, sensors, model), rules=Rules(starts=1))
+    fit = solve(CalibrationProblem(parameters, sensors, model), options=SearchOptions(starts=1))
     assert fit.x[0] == pytest.approx(2.0, abs=1e-3)
     assert fit.x[1] == pytest.approx(3.0, abs=0.05)
     assert fit.high[0] - fit.low[0] == pytest.approx(2.0 * 1.96 * 0.2, rel=0.05)
@@ -256,7 +263,10 @@ def test_a_prior_determines_what_the_data_do_not() -> None:
 
 def test_bias_costs_without_intervals() -> None:
     fit = solve(
-        _problem(noise=0.1), method="hooke-jeeves", cost="bias_over_range", rules=Rules(agree=2, sequences=3)
+        _problem(noise=0.1),
+        method="hooke-jeeves",
+        cost="bias_over_range",
+        options=SearchOptions(agree=2, sequences=3),
     )
     assert np.isnan(fit.low).all()
     assert fit.to_dict()["film"]["low"] is None
@@ -275,7 +285,7 @@ def test_an_interrupted_calibration_continues_and_ends_the_same(method: Any, tmp
     keywords: dict[str, Any] = {
         "method": method,
         "cost": "nll" if method == "least-squares" else "rmse",
-        "rules": Rules(starts=2, agree=2, sequences=4, reductions=4),
+        "options": SearchOptions(starts=2, agree=2, sequences=4, reductions=4),
     }
     whole = solve(_problem(noise=0.2), **keywords)
     path = tmp_path / "deep" / "record.jsonl"
@@ -307,8 +317,8 @@ def test_an_interrupted_calibration_continues_and_ends_the_same(method: Any, tmp
 def test_a_larger_budget_continues_from_the_record(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
     keywords: dict[str, Any] = {"method": "hooke-jeeves", "cost": "rmse", "record": path}
-    solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=2, reductions=4), **keywords)
-    fit = solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=4, reductions=4), **keywords)
+    solve(_problem(noise=0.2), options=SearchOptions(agree=9, sequences=2, reductions=4), **keywords)
+    fit = solve(_problem(noise=0.2), options=SearchOptions(agree=9, sequences=4, reductions=4), **keywords)
     assert 0 < fit.trace.replayed < fit.trace.x.shape[0]
     assert len(fit.minima) == 4
 
@@ -329,7 +339,7 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
             problem,
             method=method,  # type: ignore[arg-type]
             cost=cost,  # type: ignore[arg-type]
-            rules=Rules(starts=4, agree=1, sequences=4, reductions=6),
+            options=SearchOptions(starts=4, agree=1, sequences=4, reductions=6),
             record=record,
         )
         assert fit.x[0] == pytest.approx(4.0, rel=0.1)
@@ -339,8 +349,8 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
 
 def test_records_of_another_problem_and_other_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
-    rules = Rules(agree=1, sequences=1, reductions=2)
-    keywords: dict[str, Any] = {"method": "hooke-jeeves", "rules": rules, "record": path}
+    rules = SearchOptions(agree=1, sequences=1, reductions=2)
+    keywords: dict[str, Any] = {"method": "hooke-jeeves", "options": rules, "record": path}
     solve(_problem(), cost="rmse", **keywords)
     with pytest.raises(InputError, match=r"another calibration \(differing: cost\)"):
         solve(_problem(), cost="sd", **keywords)
@@ -433,9 +443,9 @@ def test_unknown_method_and_costs_that_do_not_fit() -> None:
     with pytest.raises(InputError, match="between 0 and 1, such as"):
         solve(_problem(), confidence=95.0)
     with pytest.raises(InputError, match="agree: found 0"):
-        Rules(agree=0)
+        SearchOptions(agree=0)
     with pytest.raises(InputError, match="difference: found 2"):
-        Rules(difference=2.0)
+        SearchOptions(difference=2.0)
 
 
 def test_no_derivative_next_to_the_minimum_is_said() -> None:
@@ -446,7 +456,7 @@ def test_no_derivative_next_to_the_minimum_is_said() -> None:
 
     problem = CalibrationProblem((FitParameter("p", 0.0, 1.0),), (FitSensor("s", np.arange(4.0)),), model)
     with pytest.raises(SolverError, match=r"near p = 0\.5"):
-        solve(problem, rules=Rules(starts=1))
+        solve(problem, options=SearchOptions(starts=1))
 
 
 def test_progress_counts_evaluations_and_shows_the_lowest_cost() -> None:
@@ -455,7 +465,7 @@ def test_progress_counts_evaluations_and_shows_the_lowest_cost() -> None:
     def progress(count: int, lowest: float) -> None:
         seen.append((count, lowest))
 
-    fit: Calibration = solve(_problem(noise=0.2), rules=Rules(starts=1), on_batch=progress)
+    fit: Calibration = solve(_problem(noise=0.2), options=SearchOptions(starts=1), on_batch=progress)
     assert seen[-1][0] == fit.trace.x.shape[0]
     assert seen[-1][1] == fit.trace.cost.min()
     assert all(b[1] <= a[1] for a, b in itertools.pairwise(seen))

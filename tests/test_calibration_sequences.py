@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.calibration import METHODS, CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import METHODS, CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
 from mascarin.errors import InputError, SolverError
 from mascarin.optimization import Evaluation, Optimizer, Point, Space
 from mascarin.optimization.base import Steps
@@ -18,7 +18,9 @@ from mascarin.optimization.base import Steps
 Floats = NDArray[np.float64]
 
 TRUTH = np.array([0.3, 0.62])
-RULES = Rules(starts=2, agree=2, sequences=6, reductions=12, particles=9, generations=25, moves=60, walkers=8)
+RULES = SearchOptions(
+    starts=2, agree=2, sequences=6, reductions=12, particles=9, generations=25, moves=60, walkers=8
+)
 
 
 class Sheet:
@@ -51,8 +53,8 @@ def problem(model: Any = None, noise: float = 0.05) -> CalibrationProblem:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_finds_the_minimum_that_least_squares_finds(method: Any) -> None:
-    fit = solve(problem(), method=method, rules=RULES, seed=1)
-    best = solve(problem(), rules=RULES)
+    fit = solve(problem(), method=method, options=RULES, seed=1)
+    best = solve(problem(), options=RULES)
     np.testing.assert_allclose(fit.x, best.x, atol=2e-3)
     assert np.all((fit.low < TRUTH) & (fit.high > TRUTH))
     assert fit.method == method
@@ -65,11 +67,11 @@ def test_every_method_finds_the_minimum_that_least_squares_finds(method: Any) ->
 @pytest.mark.parametrize("method", METHODS)
 def test_an_interrupted_search_continues_and_gives_the_same_bytes(method: Any, tmp_path: Path) -> None:
     whole, broken = tmp_path / "whole.jsonl", tmp_path / "broken.jsonl"
-    fit = solve(problem(), method=method, rules=RULES, seed=5, record=whole)
+    fit = solve(problem(), method=method, options=RULES, seed=5, record=whole)
     for stops_after in (10, 20):
         with pytest.raises(KeyboardInterrupt):
-            solve(problem(Sheet(stops_after)), method=method, rules=RULES, seed=5, record=broken)
-    again = solve(problem(), method=method, rules=RULES, seed=5, record=broken)
+            solve(problem(Sheet(stops_after)), method=method, options=RULES, seed=5, record=broken)
+    again = solve(problem(), method=method, options=RULES, seed=5, record=broken)
     assert broken.read_bytes() == whole.read_bytes()
     for name in ("x", "low", "high", "correlation"):
         assert getattr(again, name).tobytes() == getattr(fit, name).tobytes()
@@ -79,7 +81,7 @@ def test_an_interrupted_search_continues_and_gives_the_same_bytes(method: Any, t
 
 def test_sequences_differ_by_their_seed_and_agree_in_the_end() -> None:
     for method in ("particle-swarm", "hybrid", "cma-es"):
-        fit = solve(problem(), method=method, rules=RULES, seed=2)
+        fit = solve(problem(), method=method, options=RULES, seed=2)
         assert "sequences reached the same minimum" in fit.reason
         first, second = fit.minima[:2]
         assert not np.array_equal(first.start, second.start)
@@ -103,7 +105,7 @@ class Bisecting(Optimizer):
 
 
 def test_an_own_optimizer_is_used() -> None:
-    fit = solve(problem(), cost="rmse", optimizer=Bisecting, rules=Rules(agree=2, sequences=4))
+    fit = solve(problem(), cost="rmse", optimizer=Bisecting, options=SearchOptions(agree=2, sequences=4))
     np.testing.assert_allclose(fit.x, TRUTH, atol=0.03)
     assert fit.method == "your optimizer"
     assert fit.minima[0].reason == "the box is small"
@@ -134,10 +136,10 @@ def test_impossible_rules_are_refused() -> None:
     )
     for keywords, text in wrong:
         with pytest.raises(InputError, match=text):
-            Rules(**keywords)
+            SearchOptions(**keywords)
     with pytest.raises(
         InputError, match=r"method: found 'particle swarm', expected .* Did you mean 'particle-swarm'"
     ):
         solve(problem(), method="particle swarm")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="walkers: found 2, expected at least 4"):
-        solve(problem(), method="emcee", rules=Rules(walkers=2))
+        solve(problem(), method="emcee", options=SearchOptions(walkers=2))

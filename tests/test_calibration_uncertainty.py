@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lfilter
 
-from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import (
+    Calibration,
+    CalibrationProblem,
+    FitParameter,
+    FitSensor,
+    SearchOptions,
+    solve,
+)
 
 Floats = NDArray[np.float64]
 
@@ -33,8 +40,9 @@ def _fit(noise: Floats, design: Floats, cost: str = "nll") -> Calibration:
     sensors = tuple(FitSensor(f"s{k}", measured[:, k], 0.3) for k in range(measured.shape[1]))
     problem = CalibrationProblem(parameters, sensors, lambda x: 20.0 + np.einsum("tsp,mp->mts", design, x))
     if cost == "nll":
-        return solve(problem, rules=Rules(starts=1))
-    return solve(problem, method="hooke-jeeves", cost=cost, rules=Rules(agree=1, reductions=14, together=1))  # type: ignore[arg-type]
+        return solve(problem, options=SearchOptions(starts=1))
+    options = SearchOptions(agree=1, reductions=14, together=1)
+    return solve(problem, method="hooke-jeeves", cost=cost, options=options)  # type: ignore[arg-type]
 
 
 def test_white_noise_gives_the_interval_of_linear_regression() -> None:
@@ -67,7 +75,7 @@ def test_mean_of_an_autoregressive_series_has_its_known_variance() -> None:
         (FitSensor("s", 20.0 + noise, 1.0),),
         lambda x: np.tile(x[:, :, None], (1, n, 1)),
     )
-    fit = solve(problem, rules=Rules(starts=1))
+    fit = solve(problem, options=SearchOptions(starts=1))
     half = 0.5 * (fit.high[0] - fit.low[0])
     assert half == pytest.approx(1.96 * math.sqrt((1.0 + phi) / (1.0 - phi) / n), rel=0.08)
     assert fit.uncertainty.effective_samples[0] == pytest.approx(n * (1.0 - phi) / (1.0 + phi), rel=0.15)
@@ -122,5 +130,5 @@ def test_few_independent_residuals_are_named() -> None:
         (FitSensor("s", 20.0 + 3.0 * np.sin(time / 60.0), 0.5),),
         lambda x: np.asarray(20.0 + x @ np.stack([np.cos(time / (k + 3.0)) for k in range(3)]))[:, :, None],
     )
-    fit = solve(problem, rules=Rules(starts=1))
+    fit = solve(problem, options=SearchOptions(starts=1))
     assert any("independent samples: estimate fewer" in text for text in fit.warnings)

@@ -17,7 +17,7 @@ import mascarin as mc
 from mascarin.convert import Conversion, convert
 from mascarin.convert import geometry as g
 from mascarin.convert.constructions import inner_part
-from mascarin.convert.films import combined as combined_film
+from mascarin.convert.convection import combined as combined_film
 from mascarin.convert.gains import sensible
 from mascarin.convert.year import combined, constant, plain, year_of
 from mascarin.errors import InputError

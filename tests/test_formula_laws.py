@@ -296,7 +296,9 @@ def test_derivatives_of_a_melting_curve_as_text(tmp_path: Path) -> None:
     slopes = run.jacobian_vector(paths)[1]
     for k, path in enumerate(paths):
         value = run.building.parameter(path).value
-        low, high = (run.jacobian_vector(paths, run.vector({path: value + sign * 1e-5}))[0] for sign in (-1, 1))
+        low, high = (
+            run.jacobian_vector(paths, run.vector({path: value + sign * 1e-5}))[0] for sign in (-1, 1)
+        )
         quotient = (high - low) / 2e-5
         assert np.abs(slopes[k]).max() > 0.01
         assert np.abs(quotient - slopes[k]).max() < 1e-4 * np.abs(slopes[k]).max()
@@ -330,8 +332,14 @@ def test_a_melting_curve_with_two_steps_and_hysteresis(tmp_path: Path) -> None:
     [
         ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1, range: [-2, 2]}', "an end of the range"),
         ('{formula: "1/(1 + exp((T - Tm)/w))", w: 1, range: [-8, 8]}', "an end of the range"),
-        ('{formula: "1/(1 + exp(-(T - Tm)/q))", w: 1, range: [-8, 8]}', "the name 'q' (column 23 of the text)"),
-        ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: {value: 1, range: [0.2, 6]}, range: [-8, 8]}', "with w = 6"),
+        (
+            '{formula: "1/(1 + exp(-(T - Tm)/q))", w: 1, range: [-8, 8]}',
+            "the name 'q' (column 23 of the text)",
+        ),
+        (
+            '{formula: "1/(1 + exp(-(T - Tm)/w))", w: {value: 1, range: [0.2, 6]}, range: [-8, 8]}',
+            "with w = 6",
+        ),
         ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1, range: [8, -8]}', "Swap them"),
         ('{formula: "1/(1 + exp(-(T - Tm)/w))", w: 1}', "Add 'range:'"),
     ],

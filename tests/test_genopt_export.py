@@ -13,7 +13,7 @@ import pytest
 
 from genopt_support import body
 from mascarin import cli
-from mascarin.calibration import Cost, Evaluator, Rules, solve
+from mascarin.calibration import Cost, Evaluator, SearchOptions, solve
 from mascarin.calibration.problem import FitParameter
 from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options as RunOptions
@@ -366,8 +366,8 @@ def test_the_project_is_searched_like_a_calibration(
         command.read_text(encoding="utf-8").replace("Step = 0.1;", "Step = 0.125;"), encoding="utf-8"
     )
     outcome = optimize(ini, RunOptions(workers=1))
-    rules = Rules(sequences=1, agree=1, step=0.125, reductions=3)
-    fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", rules=rules)
+    rules = SearchOptions(sequences=1, agree=1, step=0.125, reductions=3)
+    fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", options=rules)
     assert len(fit.trace.x) == len(without_processes) > 20
     assert [r.key[1] for r in outcome.records] == [tuple(x) for x in fit.trace.x]
     assert [r.costs[0] for r in outcome.records if r.costs] == list(fit.trace.cost)

@@ -158,7 +158,7 @@ def test_sources_of_remaining_error_are_listed(outline: Outline) -> None:
     # The last step's changes are those that belong together.
     assert "with changed roof · steel · thickness +33" in table
     assert "and site · cloud · c3 −12" in table
-    steel = study["shortfall"]["every"]["sd"]["steel_sheet"]
+    steel = study["shortfall"]["all_parameters"]["sd"]["steel_sheet"]
     assert f"{steel:.3f}" in table[rows[3] : rows[4]]
     met = sum(aim["passed"] for aim in study["aims"])
     assert f"{met} of 6 are met" in text

@@ -12,7 +12,7 @@ import report_example
 from mascarin.figures import colors
 from mascarin.figures.comparison import Compared
 from mascarin.report import render
-from mascarin.report.compared import compared_sensors
+from mascarin.report.comparison_data import compared_sensors
 from mascarin.report.page import context, coverage_facts
 from mascarin.report.series import Column, Series
 from test_report import Outline

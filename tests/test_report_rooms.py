@@ -75,7 +75,7 @@ def test_the_drawing_has_names_errors_windows_and_doors() -> None:
         },
         "periods": {"corroboration": {"label": "Free float"}},
     }
-    drawing, _, period = rooms.drawn(study) or pytest.fail("no plan")
+    drawing, _, period = rooms.plan_drawing(study) or pytest.fail("no plan")
     assert period == "Free float"
     assert re.findall(r">([^<>]+)</text>", drawing)[:6] == [
         "nw", "ne", "Living &lt;room&gt;", "0.21 K", "−17 W", "se",

@@ -297,7 +297,7 @@ def test_the_reason_of_a_missed_aim_is_the_parameter_left_out(
     assert more[first["path"]] * first["changes"][first["path"]] > 0.0
     blind = done.content["sensors"]["core"]["blind"]["fitted"]["sd"]
     assert found["sd"]["core"] == pytest.approx(blind, rel=1e-4)
-    assert found["every"]["sd"]["core"] < 0.5 * blind
+    assert found["all_parameters"]["sd"]["core"] < 0.5 * blind
     assert any(n["title"] == "Aims that are not met" and "the equations are sufficient" in n["text"]
                for n in done.content["notes"])  # fmt: skip
     reached = sum(a["passed"] for a in done.content["aims"])
@@ -334,7 +334,7 @@ def test_the_rest_is_asked_for_without_aims_or_criteria_and_of_one_sensor(
     shortfall = found.content["shortfall"]
     assert list(shortfall["sd"]) == ["core"]
     assert shortfall["steps"]
-    assert shortfall["every"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
+    assert shortfall["all_parameters"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
     assert re.search(r"Table \d+\s+adds the parameters one by one", _left(found))
 
 

@@ -15,7 +15,7 @@ from mascarin.calibration import (
     CalibrationProblem,
     FitParameter,
     FitSensor,
-    Rules,
+    SearchOptions,
     calibrate,
     profiles,
     solve,
@@ -190,7 +190,7 @@ def test_least_squares_ends_when_the_cost_no_longer_moves() -> None:
         (FitSensor("room", measured, 0.1),),
         model,
     )
-    fit = solve(problem, rules=Rules(starts=1, difference=1e-4))
+    fit = solve(problem, options=SearchOptions(starts=1, difference=1e-4))
     best = np.linalg.lstsq(np.column_stack([np.ones(50), time]), measured, rcond=None)[0]
     np.testing.assert_allclose(fit.x, best, atol=1e-3)
     assert fit.minima[0].evaluations <= 3 * 12

@@ -86,15 +86,15 @@ def test_random_effects_are_not_named() -> None:
         allowed=dict.fromkeys(random_effects, (-1.0, 1.0)),
         days=DAY,
     )
-    assert min(found.every.sd) > 0.98 * min(found.sd)
+    assert min(found.all_adjusted.sd) > 0.98 * min(found.sd)
     assert found.steps == ()
 
 
 def test_without_effects_nothing_is_named() -> None:
     found = find_error_sources({"air": NOISE[:, 0]}, {}, standard_uncertainty=[0.05], allowed={}, days=DAY)
     assert found.steps == ()
-    assert found.every.paths == ()
-    assert found.every.sd == pytest.approx(found.sd)
+    assert found.all_adjusted.paths == ()
+    assert found.all_adjusted.sd == pytest.approx(found.sd)
 
 
 def test_gaps_and_short_records() -> None:
@@ -115,7 +115,7 @@ def test_dictionary_is_json() -> None:
     found = json.loads(json.dumps(_found(0.3 * EFFECTS["sky"] + NOISE).to_dict(), allow_nan=False))
     assert found["steps"][0]["path"] == "sky"
     assert set(found["steps"][0]["sd"]) == {"air", "roof"}
-    assert found["every"]["parameters"] == 3
+    assert found["all_parameters"]["parameters"] == 3
 
 
 def test_shapes_that_do_not_fit_are_refused() -> None:

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from mascarin.tables.quality.filled_values import copied, interpolated
-from mascarin.validation.changes import changes
-from mascarin.validation.evidence import chance
-from mascarin.validation.joint import Extra, Joint, Whitening
+from mascarin.validation.likelihood_ratio import p_value
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, shifted, white_noise
+from mascarin.validation.step_changes import step_changes
+from mascarin.validation.whitened_regression import Extra, WhitenedRegression, Whitening
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def _noise(seed: int) -> Floats:
     return np.asarray(0.05 * drawn[0] + lfilter([0.03], [1.0, -0.9], drawn[1], axis=0))
 
 
-def _problem(measured: Floats, simulated: Floats = SIMULATED) -> tuple[Joint, Series]:
+def _problem(measured: Floats, simulated: Floats = SIMULATED) -> tuple[WhitenedRegression, Series]:
     offsets = np.zeros((3, N, 3))
     for s in range(3):
         offsets[s, :, s] = 1.0
@@ -41,20 +41,22 @@ def _problem(measured: Floats, simulated: Floats = SIMULATED) -> tuple[Joint, Se
     free = np.tile([-np.inf, np.inf], (5, 1))
     precision = np.concatenate([[16.0, 16.0], U**-2])
     residual = measured - simulated
-    plain = Joint(residual, columns, np.zeros(5), precision, free, Whitening(tuple(np.empty(0) for _ in U)))
+    plain = WhitenedRegression(
+        residual, columns, np.zeros(5), precision, free, Whitening(tuple(np.empty(0) for _ in U))
+    )
     left = residual - np.tensordot(plain.solve(range(5)).values, columns, 1)
-    joint = Joint(residual, columns, np.zeros(5), precision, free, Whitening.of(left))
+    joint = WhitenedRegression(residual, columns, np.zeros(5), precision, free, Whitening.of(left))
     return joint, Series(measured, simulated, U, STEP, 450.0, ("degC",) * 3, {})
 
 
-def _faults(measured: Floats, simulated: Floats = SIMULATED) -> tuple[list[Fault], Joint]:
+def _faults(measured: Floats, simulated: Floats = SIMULATED) -> tuple[list[Fault], WhitenedRegression]:
     joint, series = _problem(measured, simulated)
     return sensor_faults(joint, list(range(5)), joint.solve(range(5)), series), joint
 
 
-def _changes(measured: Floats) -> tuple[list[Fault], Joint]:
+def _changes(measured: Floats) -> tuple[list[Fault], WhitenedRegression]:
     joint, series = _problem(measured)
-    return changes(joint, list(range(5)), joint.solve(range(5)), series), joint
+    return step_changes(joint, list(range(5)), joint.solve(range(5)), series), joint
 
 
 @pytest.mark.parametrize("day", [3, 5, 8])
@@ -98,7 +100,7 @@ def test_a_fault_of_the_whole_record_is_not_taken_for_a_change() -> None:
     measured = SIMULATED + _noise(1)
     measured[:, 0] += 1.0
     whole, joint = _faults(measured)
-    partial = changes(joint, list(range(5)), joint.solve(range(5)), _problem(measured)[1])
+    partial = step_changes(joint, list(range(5)), joint.solve(range(5)), _problem(measured)[1])
     assert whole[0].what == "offset"
     assert max((one.deviance for one in partial), default=0.0) < whole[0].deviance
 
@@ -110,7 +112,7 @@ def test_in_clean_data_no_change_is_significant() -> None:
         for fault in found:
             assert fault.solution is not None
             after = joint if fault.residual is None else joint.with_residual(dict(fault.residual))
-            p = chance(
+            p = p_value(
                 (joint, null, range(5)), (after, fault.solution, range(5), fault.extra),
                 interval=STEP, tried=90, deviance=fault.deviance,
             )  # fmt: skip
@@ -153,7 +155,7 @@ def test_in_clean_data_no_fault_is_significant() -> None:
         null = joint.solve(range(5))
         for fault in found:
             assert fault.solution is not None
-            p = chance(
+            p = p_value(
                 (joint, null, range(5)), (joint, fault.solution, range(5), fault.extra),
                 interval=STEP, tried=90, deviance=fault.deviance,
             )  # fmt: skip
@@ -163,7 +165,7 @@ def test_in_clean_data_no_fault_is_significant() -> None:
 def test_least_squares_in_a_box_and_its_deviance_by_hand() -> None:
     # One series, one column of ones: the estimate is the mean, the deviance n log of the variance.
     residual = np.array([1.0, 2.0, 3.0, 6.0])[:, None]
-    joint = Joint(
+    joint = WhitenedRegression(
         residual, np.ones((1, 4, 1)), np.zeros(1), np.zeros(1), np.array([[-10.0, 10.0]]),
         Whitening((np.empty(0),)),
     )  # fmt: skip
@@ -191,7 +193,7 @@ def test_many_columns_that_act_alike_are_replaced_by_few_combinations() -> None:
     free = np.tile([-np.inf, np.inf], (many + sensors, 1))
     precision = np.concatenate([np.full(many, 16.0), np.full(sensors, 100.0)])
     plain = Whitening(tuple(np.empty(0) for _ in range(sensors)))
-    joint = Joint(residual, every, np.zeros(many + sensors), precision, free, plain)
+    joint = WhitenedRegression(residual, every, np.zeros(many + sensors), precision, free, plain)
 
     few = joint.in_directions([0])
 

@@ -12,10 +12,10 @@ from .profile import plot_profiles as plot_profiles
 from .profile import profiles as profiles
 from .result import Calibration as Calibration
 from .result import Minimum as Minimum
-from .rules import METHODS as METHODS
-from .rules import MethodName as MethodName
-from .rules import Rules as Rules
 from .search import solve as solve
+from .search_options import METHODS as METHODS
+from .search_options import MethodName as MethodName
+from .search_options import SearchOptions as SearchOptions
 from .uncertainty import Uncertainty as Uncertainty
 
 __all__: list[str]

@@ -16,8 +16,8 @@ from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
 from mascarin.calibration.result import Calibration
-from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
+from mascarin.calibration.search_options import MethodName, SearchOptions
 from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 CONSTANT: Final = ("stuck", "forward_filled")
 """Kinds of suspicious values of the quality check in which a sensor repeats one value."""
 
-MOST_CONSTANT: Final = 0.5
+MAX_CONSTANT_SHARE: Final = 0.5
 """Largest part of a period over which a sensor may repeat one value. [-]"""
 
 
@@ -61,7 +61,7 @@ def calibrate(
     warm_up: str | float = "3d",
     method: MethodName = "least-squares",
     cost: CostName = "nll",
-    rules: Rules | None = None,
+    options: SearchOptions | None = None,
     seed: int = 0,
     record: str | Path | None = None,
     progress: ProgressOption = None,
@@ -101,7 +101,7 @@ def calibrate(
         Length of the period that is repeated. [s]
     warm_up : str or float
         Length of the run before `start`, which is not compared. [s]
-    method, cost, rules, seed, record
+    method, cost, options, seed, record
         See `solve`.
     progress : bool or callable, optional
         Shows progress, see `solve`.
@@ -176,25 +176,25 @@ def calibrate(
     _require_varying(measurements, named, begin, simulation.end)
     errors = _states_errors(simulation, named, method, cost, begin)
     observation = observe(simulation, measurements, named, begin)
-    every = np.ones(len(observation.times), dtype=np.bool_)
-    found = solve(
-        problem_of(simulation, observation, every, free, _uncertainties(simulation, named)),
+    all_samples = np.ones(len(observation.times), dtype=np.bool_)
+    fit = solve(
+        problem_of(simulation, observation, all_samples, free, _uncertainties(simulation, named)),
         method=method,
         cost=cost,
         seed=seed,
-        rules=rules,
+        options=options,
         record=None if record is None else Path(record),
         progress=progress,
     )
     if errors:
-        found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
-    notes = (*found.warnings, *_said_of_the_run(simulation, found))
-    return replace(found, nominal_building=chosen, times=observation.times, warnings=notes)
+        fit = with_sensor_errors(fit, simulation, observation, named, options or SearchOptions())
+    notes = (*fit.warnings, *_said_of_the_run(simulation, fit))
+    return replace(fit, nominal_building=chosen, times=observation.times, warnings=notes)
 
 
-def _said_of_the_run(simulation: Simulation, found: Calibration) -> list[str]:
+def _said_of_the_run(simulation: Simulation, fit: Calibration) -> list[str]:
     """Warnings of the run at the estimates."""
-    estimates = dict(found.values)
+    estimates = dict(fit.values)
     vectors = simulation.varied(list(estimates), np.array([[*estimates.values()]]))
     said = of_nominal(simulation, vectors[0])
     return [f"the run at the estimates: {line}" for line in said]
@@ -233,16 +233,16 @@ def _require_types(measurements: object, sensors: object, vary: object, record: 
     )
     if record is not None:
         require_type("record", record, (str, Path), "the path of a file")
-    found = mapping_of("sensors", sensors, "columns by output: {'room.air_temperature': 'column'}")
-    if not found:
+    columns = mapping_of("sensors", sensors, "columns by output: {'room.air_temperature': 'column'}")
+    if not columns:
         raise InputError("sensors: found none, expected at least one: {'room.air_temperature': 'column'}")
-    for name, sensor in found.items():
+    for name, sensor in columns.items():
         require_type(f"sensors: {name}", sensor, (str, Sensor), "the name of a column, or a Sensor")
     paths = "a list of paths or a mapping to (low, high)"
     if isinstance(vary, str) or not isinstance(vary, Iterable):
         raise InputError(f"vary: found {kind_of(vary)}, expected {paths}")
-    for one in vary:
-        require_type("vary", one, (str, FitParameter), f"{paths}; an entry is a path or a FitParameter")
+    for entry in vary:
+        require_type("vary", entry, (str, FitParameter), f"{paths}; an entry is a path or a FitParameter")
 
 
 def _uncertainties(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, SensorUncertainty]:
@@ -259,8 +259,12 @@ def _written_out(
 ) -> Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter]:
     """The same with every path with ``*`` replaced by those that it matches, unless they are tied."""
     if isinstance(vary, Mapping):
-        return {one: bounds for path, bounds in vary.items() for one in expanded(building, [path])}
-    return [one for p in vary for one in (expanded(building, [p]) if isinstance(p, str) else [p])]
+        return {
+            expanded_path: bounds
+            for path, bounds in vary.items()
+            for expanded_path in expanded(building, [path])
+        }
+    return [entry for p in vary for entry in (expanded(building, [p]) if isinstance(p, str) else [p])]
 
 
 def _parameters(
@@ -280,11 +284,11 @@ def _require_varying(
     measurements: Measurements, sensors: Mapping[str, Sensor], start: pd.Timestamp, end: pd.Timestamp
 ) -> None:
     """Refuse a sensor that repeats one value over most of the period."""
-    found = [part for part in measurements.quality() if part.kind in CONSTANT]
+    constant_parts = [part for part in measurements.quality() if part.kind in CONSTANT]
     for name, sensor in sensors.items():
-        for part in found:
+        for part in constant_parts:
             shared = (min(end, part.end) - max(start, part.start)).total_seconds()
-            if part.channel in sensor.columns and shared > MOST_CONSTANT * (end - start).total_seconds():
+            if part.channel in sensor.columns and shared > MAX_CONSTANT_SHARE * (end - start).total_seconds():
                 raise InputError(
                     f"{measurements.file}: sensor '{name}', column {part.channel}: "
                     f"{part.kind.replace('_', '-')} from {part.start:%Y-%m-%d %H:%M} to "

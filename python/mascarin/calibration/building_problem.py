@@ -72,11 +72,15 @@ def fit_parameter(
         raise InputError(
             f"{path}: is structural ({parameter.reason}) and cannot be estimated; choose another parameter"
         )
-    given: Any = bounds  # of any type, where no type checker has looked
-    pair = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
-    own = (parameter.low, parameter.high)
-    if len(pair) == len(own):
-        pair = [value if end is None else end for end, value in zip(pair, own, strict=True)]
+    entered_bounds: Any = bounds  # of any type, where no type checker has looked
+    pair = (
+        list(entered_bounds)
+        if isinstance(entered_bounds, Iterable) and not isinstance(entered_bounds, str)
+        else [entered_bounds]
+    )
+    own_range = (parameter.low, parameter.high)
+    if len(pair) == len(own_range):
+        pair = [value if end is None else end for end, value in zip(pair, own_range, strict=True)]
     low, high = bounds_of(path, pair)
     return FitParameter(
         path=parameter.path,
@@ -125,17 +129,21 @@ class BuildingModel:
         """Differentiate the series at a parameter vector (P,), shape (T, S, P). [unit of each]"""
         vector = self.simulation.varied(self.paths, x[None, :])[0]
         following = self.simulation.followers(self.paths)
-        _, found = self.simulation.jacobian_vector([*self.paths, *following.values()], vector)
-        by_parameter = found[: len(self.paths)]
-        for path, further in zip(following, found[len(self.paths) :], strict=True):
+        _, derivatives = self.simulation.jacobian_vector([*self.paths, *following.values()], vector)
+        by_parameter = derivatives[: len(self.paths)]
+        for path, further in zip(following, derivatives[len(self.paths) :], strict=True):
             by_parameter[self._owner(path)] += further
         # Instants and means are linear in the records, and so are their derivatives.
         return np.moveaxis(self._compared(by_parameter), 0, -1)
 
     def _owner(self, path: str) -> int:
         """Position of the parameter that a number belongs to: its own, or one that ties it."""
-        known = [self.simulation.building.parameter(one) for one in self.paths]
-        return next(k for k, one in enumerate(known) if path in (one.path, *one.members))
+        parameters = [
+            self.simulation.building.parameter(path_of_parameter) for path_of_parameter in self.paths
+        ]
+        return next(
+            k for k, parameter in enumerate(parameters) if path in (parameter.path, *parameter.members)
+        )
 
     def _compared(self, records: Array) -> Array:
         series = self.observation.simulated(self.simulation.index, records)

@@ -42,7 +42,7 @@ CostName = Literal["nll", "sd", "rmse", "rmse_over_range", "bias_over_range", "c
 ONE_NUMBER: Final = ("bias_over_range", "nmbe")
 """Costs that compare one number of each sensor, so that estimates have no intervals."""
 
-_FORMER: Final[dict[str, CostName]] = {"cv_rmse": "rmse_over_range", "nmbe": "bias_over_range"}
+_FORMER_NAMES: Final[dict[str, CostName]] = {"cv_rmse": "rmse_over_range", "nmbe": "bias_over_range"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ class Cost:
         """Read a former name of a cost over the range, and refuse means that nothing can be divided by."""
         temperatures = [s.name for s in self.problem.sensors if s.unit == "degC"]
         if temperatures:
-            other = _FORMER[self.name]
+            other = _FORMER_NAMES[self.name]
             note = (
                 f"the cost '{self.name}' was read as '{other}' (over the measured range), because sensor "
                 f"'{temperatures[0]}' is in degC; write '{other}'"
@@ -111,7 +111,7 @@ class Cost:
             if reason:
                 raise InputError(
                     f"cost '{self.name}': sensor '{sensor.name}': {reason}; expected measurements with a "
-                    f"mean away from zero; use '{_FORMER[self.name]}'"
+                    f"mean away from zero; use '{_FORMER_NAMES[self.name]}'"
                 )
 
     def of_sensors(self, residuals: Floats) -> Floats:

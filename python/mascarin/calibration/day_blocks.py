@@ -34,9 +34,9 @@ _SLOTS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
 #: Largest size of a block, of one that is inverted at once, and number of products of one multiplication:
 #: with more the linear algebra libraries use several threads, which wait for each other on a busy machine.
 #: With more days blocks are smaller, so that the work stays the same.
-_LARGEST: Final = 144
+_MAX_DAY_SIZE: Final = 144
 _AT_ONCE: Final = 60
-_TOGETHER: Final = 200_000
+_MAX_PRODUCT_SIZE: Final = 200_000
 _WORK: Final = 4e7
 
 
@@ -86,7 +86,7 @@ class DayGrid:
         number = np.floor(hours / 24.0 + 1e-9).astype(np.int64)
         names, day = np.unique(number, return_inverse=True)
         long_enough = [length for length in _SLOTS if length >= interval - 1e-9] or [min(interval, 24.0)]
-        most = min(_LARGEST, (_WORK / names.size) ** (1.0 / 3.0))
+        most = min(_MAX_DAY_SIZE, (_WORK / names.size) ** (1.0 / 3.0))
         small = [length for length in long_enough if 24.0 / length * sensors <= most]
         length = (small or long_enough[-1:])[0]
         slots = math.ceil(24.0 / length - 1e-9)
@@ -126,8 +126,8 @@ class DayGrid:
         """Return the mean square of the distances of samples (T, S) from the means of their slots, (S,)."""
         mean, _ = self.means(values, mask)
         sensors = mask.shape[1]
-        left = values - mean.reshape(self.days, self.slots, sensors)[self.day, self.slot]
-        square = np.where(mask, left**2, 0.0).sum(axis=0)
+        deviation = values - mean.reshape(self.days, self.slots, sensors)[self.day, self.slot]
+        square = np.where(mask, deviation**2, 0.0).sum(axis=0)
         return np.asarray(square / np.maximum(mask.sum(axis=0), 1))
 
 
@@ -192,8 +192,8 @@ class DayGaussian:
     @cached_property
     def covariance(self) -> Floats:
         """Covariance of the coefficients after the data, shape (q, q). [-]"""
-        found = inverted(self._shared[1][None])[0]
-        return np.asarray(0.5 * (found + found.T))
+        inverse = inverted(self._shared[1][None])[0]
+        return np.asarray(0.5 * (inverse + inverse.T))
 
     @property
     def precision(self) -> Floats:
@@ -209,15 +209,15 @@ class DayGaussian:
         wide = values if values.ndim == 3 else values[:, :, None]
         weighted = self._shared[0]
         inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
-        found = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
-        return np.asarray(found if values.ndim == 3 else found[:, :, 0])
+        solution = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
+        return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
 
     @cached_property
     def inverse_blocks(self) -> Floats:
         """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
         weighted = self._shared[0]
-        known = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
-        return np.asarray(self._inverse - known)
+        explained = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
+        return np.asarray(self._inverse - explained)
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
@@ -228,14 +228,14 @@ class DayGaussian:
 
     def left_out(self, values: Floats) -> Floats:
         """Return the log density of each day given all other days, shape (D,), from values (D, n)."""
-        weighted, found = self.solve(values), np.zeros(len(values))
-        for d, here in enumerate(self.present):
-            kept = np.flatnonzero(here)
-            root = np.linalg.cholesky(self.inverse_blocks[d][np.ix_(kept, kept)])
-            whitened = np.linalg.solve(root, weighted[d, kept])
+        weighted, density = self.solve(values), np.zeros(len(values))
+        for d, present in enumerate(self.present):
+            rows = np.flatnonzero(present)
+            root = np.linalg.cholesky(self.inverse_blocks[d][np.ix_(rows, rows)])
+            whitened = np.linalg.solve(root, weighted[d, rows])
             logdet = 2.0 * float(np.log(np.diag(root)).sum())
-            found[d] = -0.5 * (whitened @ whitened - logdet + kept.size * math.log(2.0 * math.pi))
-        return found
+            density[d] = -0.5 * (whitened @ whitened - logdet + rows.size * math.log(2.0 * math.pi))
+        return density
 
 
 def product(first: Floats, second: Floats) -> Floats:
@@ -256,7 +256,7 @@ def product(first: Floats, second: Floats) -> Floats:
     (2, 3, 5)
     """
     days, rows, inner = first.shape
-    most = max(1, _TOGETHER // max(inner * second.shape[2], 1))
+    most = max(1, _MAX_PRODUCT_SIZE // max(inner * second.shape[2], 1))
     together = max(n for n in range(1, rows + 1) if rows % n == 0 and n <= most) if rows else 1
     parts = np.ascontiguousarray(first).reshape(days, -1, together, inner) @ second[:, None]
     return np.asarray(parts.reshape(days, rows, second.shape[2]))
@@ -287,10 +287,10 @@ def inverted(blocks: Floats) -> Floats:
     first, beside, last = blocks[:, :half, :half], blocks[:, :half, half:], blocks[:, half:, half:]
     inner = inverted(first)
     across = product(inner, beside)
-    rest = inverted(last - product(np.swapaxes(beside, 1, 2), across))
-    found = np.empty_like(blocks)
-    found[:, half:, half:] = rest
-    found[:, :half, half:] = -product(across, rest)
-    found[:, half:, :half] = np.swapaxes(found[:, :half, half:], 1, 2)
-    found[:, :half, :half] = inner - product(found[:, :half, half:], np.swapaxes(across, 1, 2))
-    return found
+    lower_block = inverted(last - product(np.swapaxes(beside, 1, 2), across))
+    inverse = np.empty_like(blocks)
+    inverse[:, half:, half:] = lower_block
+    inverse[:, :half, half:] = -product(across, lower_block)
+    inverse[:, half:, :half] = np.swapaxes(inverse[:, :half, half:], 1, 2)
+    inverse[:, :half, :half] = inner - product(inverse[:, :half, half:], np.swapaxes(across, 1, 2))
+    return inverse

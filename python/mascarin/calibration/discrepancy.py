@@ -42,9 +42,9 @@ CORRELATION_HOURS: Final = (1.5, 4.0, 10.0)
 _SPECTRUM: Final = (0.5, 0.3, 0.2)
 #: Degrees of freedom of the prior of each covariance: worth so many days.
 _PRIOR_WEIGHT: Final = 1.0
-_ITERATIONS: Final = 60
-_TRIAL: Final = 12
-_CONVERGED: Final = 1e-3
+_MAX_ITERATIONS: Final = 60
+_TRIAL_ITERATIONS: Final = 12
+_MAX_CHANGE: Final = 1e-3
 
 
 def hour_basis(hours: Floats) -> Floats:
@@ -178,7 +178,7 @@ class DayData:
         Days and slots.
     error : ndarray, shape (D, H * S)
         Measured minus simulated, with the parameters at the means of their priors. [unit]
-    known : ndarray, shape (D, H * S, q)
+    effects : ndarray, shape (D, H * S, q)
         Effects of parameters and sensors, for one standard deviation of their priors. [unit]
     basis : ndarray, shape (D, H * S, m)
         Functions of the error that repeats, at each value. [-]
@@ -190,7 +190,7 @@ class DayData:
 
     grid: DayGrid
     error: Floats
-    known: Floats
+    effects: Floats
     basis: Floats
     present: Flags
     within: Floats
@@ -207,14 +207,14 @@ class DayData:
         wide = self.basis[:, :, :, None] * rows[None, :, None, :]
         return np.asarray(wide.reshape(days, size, functions * self.sensors))
 
-    def gaussian(self, sizes: Discrepancy) -> DayGaussian:
+    def gaussian(self, covariances: Discrepancy) -> DayGaussian:
         """Return the distribution of the errors; shared effects: known, repeating, level of all days."""
-        shared = [self.known, self.repeating(root_of(sizes.hour))]
-        if sizes.alike:
-            rows = np.tile(root_of(sizes.alike * sizes.day), (self.grid.slots, 1))
+        shared = [self.effects, self.repeating(root_of(covariances.hour))]
+        if covariances.alike:
+            rows = np.tile(root_of(covariances.alike * covariances.day), (self.grid.slots, 1))
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
-        block = sizes.block(self.grid)
+        block = covariances.block(self.grid)
         return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
 
 
@@ -243,56 +243,58 @@ def estimate_discrepancy(
     best, density = None, -np.inf
     for hours in CORRELATION_HOURS:
         start = Discrepancy(prior, prior, prior, scale**2, data.within, hours, alike)
-        found = _maximized(data, start, scale, limit, _TRIAL)
-        reached = data.gaussian(found).log_density(data.error)
+        candidate = _maximized(data, start, scale, limit, _TRIAL_ITERATIONS)
+        reached = data.gaussian(candidate).log_density(data.error)
         if best is None or reached > density:
-            best, density = found, reached
+            best, density = candidate, reached
     assert best is not None  # noqa: S101 (there are correlation times)
-    return _maximized(data, best, scale, limit, _ITERATIONS)
+    return _maximized(data, best, scale, limit, _MAX_ITERATIONS)
 
 
 def _maximized(
-    data: DayData, sizes: Discrepancy, scale: Floats, limit: Floats, iterations: int
+    data: DayData, covariances: Discrepancy, scale: Floats, limit: Floats, iterations: int
 ) -> Discrepancy:
     """Improve all sizes together, step by step, until none changes."""
     grid, sensors = data.grid, data.sensors
     shape = (grid.days, grid.slots, sensors)
-    drift = drift_kernel(grid, sizes.correlation_hours)
+    drift = drift_kernel(grid, covariances.correlation_hours)
     kernels = {"day": np.ones_like(drift), "drift": drift}
     prior = _PRIOR_WEIGHT * np.diag(scale**2)
     functions = data.repeating(np.eye(sensors))
     for _ in range(iterations):
-        now = data.gaussian(sizes)
+        now = data.gaussian(covariances)
         weighted = now.solve(data.error).reshape(shape)
         inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
-        found: dict[str, Any] = {}
+        improved: dict[str, Any] = {}
         of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
         spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
         for name, kernel in kernels.items():
             square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
             trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
-            if name == "day" and sizes.alike:
+            if name == "day" and covariances.alike:
                 # The first function of the error by hour is a constant, that of the common level.
-                level = sizes.alike / _SPECTRUM[0]
+                level = covariances.alike / _SPECTRUM[0]
                 square = square + level * np.outer(of_hour[0], of_hour[0])
                 trace = trace + level * spread[:sensors, :sensors]
-            found[name] = _step(getattr(sizes, name), square, trace, prior, limit)
+            improved[name] = _step(getattr(covariances, name), square, trace, prior, limit)
         count = of_hour.shape[0]
         trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
-        found["hour"] = _step(sizes.hour, of_hour.T @ of_hour, trace, prior, limit)
-        own = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / sizes.white
-        squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / sizes.white**2
-        found["white"] = np.minimum(sizes.white * np.sqrt(squares / own), limit**2)
+        improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
+        curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
+        squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
+        improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
         moved = max(
             float(
-                np.max(np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(sizes, name)))) / scale)
+                np.max(
+                    np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(covariances, name)))) / scale
+                )
             )
-            for name, value in found.items()
+            for name, value in improved.items()
         )
-        sizes = replace(sizes, **found)
-        if moved < _CONVERGED:
+        covariances = replace(covariances, **improved)
+        if moved < _MAX_CHANGE:
             break
-    return sizes
+    return covariances
 
 
 def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limit: Floats) -> Floats:
@@ -304,10 +306,10 @@ def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limi
     value, vector = np.linalg.eigh(root.T @ first @ root)
     middle = (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T
     back = np.linalg.inv(root)
-    found = back.T @ middle @ back
-    found = 0.5 * (found + found.T)
-    shrink = np.minimum(1.0, limit / np.sqrt(np.diag(found)))
-    return np.asarray(found * np.outer(shrink, shrink))
+    improved = back.T @ middle @ back
+    improved = 0.5 * (improved + improved.T)
+    shrink = np.minimum(1.0, limit / np.sqrt(np.diag(improved)))
+    return np.asarray(improved * np.outer(shrink, shrink))
 
 
 def root_of(covariance: Floats) -> Floats:

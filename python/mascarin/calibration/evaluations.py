@@ -208,10 +208,10 @@ class Evaluator:
         of_sensors = self.cost.of_sensors(residuals)
         lines = []
         for k in range(x.shape[0]):
-            kept = residuals[k] if keep else None
-            self._remember(x[k], of_sensors[k], kept)
+            stored_residuals = residuals[k] if keep else None
+            self._remember(x[k], of_sensors[k], stored_residuals)
             if self._path is not None:
-                lines.append(self._line(x[k], of_sensors[k], kept))
+                lines.append(self._line(x[k], of_sensors[k], stored_residuals))
         if self._path is not None:
             # One write per batch; it is complete even if the program is killed right after it.
             self._file.write("".join(lines).encode())

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Minimum
-from mascarin.calibration.rules import Rules
+from mascarin.calibration.search_options import SearchOptions
 from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
 
-#: A search ends when so many steps lower the cost by less than a part `_MOVING` of it.
-_IDLE: Final = 6
-_MOVING: Final = 1e-7
+#: A search ends when so many steps lower the cost by less than a part `_MIN_COST_DECREASE` of it.
+_IDLE_STEPS: Final = 6
+_MIN_COST_DECREASE: Final = 1e-7
 #: Rows of one block of the QR decomposition.
-_BLOCK: Final = 256
+_BLOCK_ROWS: Final = 256
 
 
 class _Idle(Exception):
@@ -41,21 +41,21 @@ class _Watch:
         self.best: Floats = np.empty(0)
 
     def __call__(self, z: Floats) -> Floats:
-        found = self._size(z)
-        cost = float(found @ found)
+        residuals = self._size(z)
+        cost = float(residuals @ residuals)
         before = self._lowest[-1] if self._lowest else np.inf
         if cost < before or not self._lowest:
             self.best = np.array(z)
         self._lowest.append(float(np.fmin(cost, before)))
-        if len(self._lowest) > _IDLE:
-            fall = self._lowest[-1 - _IDLE] - self._lowest[-1]
-            if fall <= _MOVING * self._lowest[-1]:
+        if len(self._lowest) > _IDLE_STEPS:
+            fall = self._lowest[-1 - _IDLE_STEPS] - self._lowest[-1]
+            if fall <= _MIN_COST_DECREASE * self._lowest[-1]:
                 raise _Idle
-        return found
+        return residuals
 
 
 def least_squares(
-    problem: CalibrationProblem, evaluator: Evaluator, rules: Rules, seed: int
+    problem: CalibrationProblem, evaluator: Evaluator, options: SearchOptions, seed: int
 ) -> tuple[list[Minimum], str]:
     """Run one trust-region search from each start.
 
@@ -65,7 +65,7 @@ def least_squares(
         Parameters, measured series and model.
     evaluator : Evaluator
         Evaluates and keeps the record.
-    rules : Rules
+    options : SearchOptions
         Number of starts, kind of derivatives and tolerance.
     seed : int
         Of the Latin hypercube of starts.
@@ -81,15 +81,15 @@ def least_squares(
 
     minima = []
     skipped = 0
-    for k, z in enumerate(_hypercube(problem, rules.starts, seed)):
+    for k, z in enumerate(_hypercube(problem, options.starts, seed)):
         if k and not np.isfinite(evaluator.residuals(problem.values(z[None]))).all():
             skipped += 1
             continue
-        squares = Squares(problem, evaluator, rules)
-        tight = rules.tolerance
+        squares = Squares(problem, evaluator, options)
+        tight = options.tolerance
         watch = _Watch(squares.size)
         try:
-            found = optimize.least_squares(
+            solution = optimize.least_squares(
                 watch,
                 z,
                 jac=squares.condensed,
@@ -100,9 +100,9 @@ def least_squares(
                 gtol=tight,
                 max_nfev=100,
             )
-            ended, message = found.x, str(found.message)
+            ended, message = solution.x, str(solution.message)
         except _Idle:
-            ended, message = watch.best, f"the cost did not move in {_IDLE} steps"
+            ended, message = watch.best, f"the cost did not move in {_IDLE_STEPS} steps"
         # The method stays a little inside its bounds: an end that near to a bound is the bound.
         end = np.where(ended < 1e-6, 0.0, np.where(ended > 1.0 - 1e-6, 1.0, ended))
         x = problem.values(end[None])[0]
@@ -127,11 +127,11 @@ class Squares:
     libraries would use several threads, which wait for each other on a busy machine.
     """
 
-    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, rules: Rules) -> None:
+    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, options: SearchOptions) -> None:
         self._problem = problem
         self._evaluator = evaluator
-        self._exact = rules.slopes == "exact"
-        self._difference = rules.difference
+        self._exact = options.slopes == "exact"
+        self._difference = options.difference
         self._scale = scale_of(problem)
         self.evaluations = 0
 
@@ -142,13 +142,13 @@ class Squares:
     def condensed(self, z: Floats) -> Floats:
         """Return the Jacobian (P + 1, P) for `size`: of R in [r J] = Q R all but the first column."""
         long = np.column_stack([self.weighted(z[None])[0], self.jacobian(z)])
-        rows = max(_BLOCK, long.shape[1])
+        rows = max(_BLOCK_ROWS, long.shape[1])
         count = -(-len(long) // rows)
         blocks = np.zeros((count * rows, long.shape[1]))
         blocks[: len(long)] = long
         parts = _triangles(blocks.reshape(count, rows, -1))
-        found = _triangles(parts.reshape(-1, long.shape[1]))
-        return np.asarray(np.copysign(1.0, found[0, 0]) * found[:, 1:])
+        triangle = _triangles(parts.reshape(-1, long.shape[1]))
+        return np.asarray(np.copysign(1.0, triangle[0, 0]) * triangle[:, 1:])
 
     def residuals(self, z: Floats) -> Floats:
         """Return residuals over their uncertainty, then those of the priors."""
@@ -215,12 +215,12 @@ def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Float
 
 
 def residuals_and_derivatives(
-    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, rules: Rules
+    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, options: SearchOptions
 ) -> tuple[Floats, Floats]:
-    """Compute residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules say."""
-    if rules.slopes == "exact":
+    """Compute residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the options say."""
+    if options.slopes == "exact":
         return evaluator.residuals(problem.values(z[None]))[0], exact(problem, evaluator, z)
-    return derivative(problem, z, rules.difference)
+    return derivative(problem, z, options.difference)
 
 
 def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mascarin.calibration.evaluations import Evaluator
     from mascarin.calibration.problem import CalibrationProblem
     from mascarin.calibration.result import Calibration
-    from mascarin.calibration.rules import Rules
+    from mascarin.calibration.search_options import SearchOptions
 
 Floats = NDArray[np.float64]
 
@@ -41,11 +41,11 @@ METHOD: Final = (
 
 _BURN_IN: Final = 0.2  # part of the moves that is discarded
 _LONG_ENOUGH: Final = 50.0  # autocorrelation times
-_FEWEST_WALKERS: Final = 32
-_WIDEST: Final = 0.2  # of the range, standard deviation of the first positions
+_MIN_WALKERS: Final = 32
+_MAX_START_SPREAD: Final = 0.2  # of the range, standard deviation of the first positions
 
 
-def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration:
+def sampled(fit: Calibration, evaluator: Evaluator, options: SearchOptions) -> Calibration:
     """Replace the intervals and correlations of a calibration by those of a posterior sample.
 
     Parameters
@@ -54,7 +54,7 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
         By least squares, at the most probable values.
     evaluator : Evaluator
         Evaluates and keeps the record.
-    rules : Rules
+    options : SearchOptions
         Number of walkers and moves.
 
     Returns
@@ -69,7 +69,7 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
     emcee = _emcee()
     problem = fit.problem
     count = len(problem.parameters)
-    walkers = rules.walkers if rules.walkers is not None else max(2 * count, _FEWEST_WALKERS)
+    walkers = options.walkers if options.walkers is not None else max(2 * count, _MIN_WALKERS)
     if walkers < 2 * count:
         msg = f"walkers: found {walkers}, expected at least {2 * count} for {count} parameters"
         raise InputError(msg)
@@ -79,11 +79,11 @@ def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration
         target.first_positions(walkers, fit.seed),
         random_state=np.random.RandomState(fit.seed % 2**32).get_state(),
     )
-    sampler.run_mcmc(first, rules.moves)
-    discard = int(_BURN_IN * rules.moves)
+    sampler.run_mcmc(first, options.moves)
+    discard = int(_BURN_IN * options.moves)
     chain = np.asarray(sampler.get_chain(discard=discard, flat=True), dtype=np.float64)
     times = np.asarray(sampler.get_autocorr_time(discard=discard, quiet=True, tol=0.0), dtype=np.float64)
-    return _with_sample(fit, evaluator, problem, chain, times, rules.moves - discard)
+    return _with_sample(fit, evaluator, problem, chain, times, options.moves - discard)
 
 
 class _Posterior:
@@ -102,18 +102,18 @@ class _Posterior:
         density = np.full(len(z), -np.inf)
         inside = np.all((z >= 0.0) & (z <= 1.0), axis=1)
         if inside.any():
-            there = z[inside]
-            at = np.clip(self._center + (there - self._center) @ self._stretch, 0.0, 1.0)
-            data = self._evaluator.of_sensors(self._problem.values(at)).sum(axis=1) - self._highest
-            prior = self._evaluator.cost.prior_residuals(self._problem.values(there))
-            found = -data - 0.5 * np.sum(prior**2, axis=1)
-            density[inside] = np.where(np.isfinite(found), found, -np.inf)
+            valid = z[inside]
+            stretched = np.clip(self._center + (valid - self._center) @ self._stretch, 0.0, 1.0)
+            data = self._evaluator.of_sensors(self._problem.values(stretched)).sum(axis=1) - self._highest
+            prior = self._evaluator.cost.prior_residuals(self._problem.values(valid))
+            log_density = -data - 0.5 * np.sum(prior**2, axis=1)
+            density[inside] = np.where(np.isfinite(log_density), log_density, -np.inf)
         return density
 
     def first_positions(self, walkers: int, seed: int) -> Floats:
         """Draw the first positions of the walkers: about the maximum, within the range."""
         sd = np.sqrt(np.diag(self._covariance))
-        shrink = np.minimum(1.0, _WIDEST / np.maximum(sd, 1e-300))
+        shrink = np.minimum(1.0, _MAX_START_SPREAD / np.maximum(sd, 1e-300))
         root = symmetric_power(self._covariance * np.outer(shrink, shrink), 0.5)
         normal = np.random.default_rng([seed, walkers]).standard_normal((walkers, self._center.size))
         z = self._center + normal @ root

@@ -179,14 +179,14 @@ class FitSensor:
         if self.use is not None and np.shape(self.use) != measured.shape:
             msg = f"sensor '{self.name}': {measured.size} samples but a mask of shape {np.shape(self.use)}"
             raise InputError(msg)
-        kept = measured[self.mask]
-        if kept.size == 0:
+        compared = measured[self.mask]
+        if compared.size == 0:
             msg = f"sensor '{self.name}' has no value in the period (missing or masked): leave it out"
             raise InputError(msg)
-        if kept.size > 1 and np.ptp(kept) == 0.0:
+        if compared.size > 1 and np.ptp(compared) == 0.0:
             msg = (
-                f"sensor '{self.name}' shows {kept[0]:g} {self.unit} in all {kept.size} samples and does not "
-                f"measure: mask it or leave it out"
+                f"sensor '{self.name}' shows {compared[0]:g} {self.unit} in all {compared.size} samples and "
+                f"does not measure: mask it or leave it out"
             )
             raise InputError(msg)
         uncertainty = SensorUncertainty.stated(
@@ -208,8 +208,8 @@ class FitSensor:
     @property
     def mask(self) -> NDArray[np.bool_]:
         """Samples that are compared, shape (T,)."""
-        there = np.isfinite(self.measured)
-        return there if self.use is None else there & np.asarray(self.use, dtype=np.bool_)
+        finite = np.isfinite(self.measured)
+        return finite if self.use is None else finite & np.asarray(self.use, dtype=np.bool_)
 
     @property
     def sigma(self) -> Floats:
@@ -370,10 +370,10 @@ class CalibrationProblem:
         SolverError
             When it has none at this parameter vector.
         """
-        given = self.require_slopes()
+        derivative = self.require_slopes()
         where = ", ".join(f"{p} = {v:g}" for p, v in zip(self.paths, x.tolist(), strict=True))
         try:
-            slopes = np.asarray(given(x), dtype=np.float64)
+            slopes = np.asarray(derivative(x), dtype=np.float64)
         except SolverError as error:
             msg = f"the model has no derivative at {where}: {error}"
             raise SolverError(msg) from error
@@ -406,14 +406,14 @@ class CalibrationProblem:
         return digest.hexdigest()
 
 
-def require_known(paths: Iterable[str], known: Sequence[str]) -> None:
+def require_known(paths: Iterable[str], names: Sequence[str]) -> None:
     """Refuse paths that do not exist.
 
     Parameters
     ----------
     paths : iterable of str
         Paths of parameters to estimate.
-    known : sequence of str
+    names : sequence of str
         Paths of the building.
 
     Raises
@@ -425,11 +425,11 @@ def require_known(paths: Iterable[str], known: Sequence[str]) -> None:
     --------
     >>> require_known(["zones.room.volume"], ["zones.room.volume", "site.altitude"])
     """
-    there = set(known)
+    distinct_names = set(names)
     lines = [
-        f"parameter '{path}' is not in the building. {did_you_mean(path, known)}".rstrip()
+        f"parameter '{path}' is not in the building. {did_you_mean(path, names)}".rstrip()
         for path in paths
-        if path not in there
+        if path not in distinct_names
     ]
     if lines:
         raise InputError("\n".join(lines))

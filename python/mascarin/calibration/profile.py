@@ -25,8 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
+from mascarin.calibration.joint_estimation import METHOD
 from mascarin.calibration.least_squares import derivative, scale_of
-from mascarin.calibration.refining import METHOD
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-_REACH: Final = 1.6  # intervals to each side
-_EXTENSIONS: Final = 8  # of a grid whose profile stays below the limit
-_STEPS: Final = 25
-_CONVERGED: Final = 1e-3  # change of the deviance below which a point ends, in squared quantiles
+_GRID_REACH: Final = 1.6  # intervals to each side
+_MAX_EXTENSIONS: Final = 8  # of a grid whose profile stays below the limit
+_MAX_STEPS: Final = 25
+_MIN_GAIN: Final = 1e-3  # change of the deviance below which a point ends, in squared quantiles
 _DIFFERENCE: Final = 1e-4
 
 
@@ -59,7 +59,7 @@ class Profile:
         Where it was fixed, ascending. [unit]
     rise : ndarray, shape (K,)
         Twice the decrease of the log-likelihood there, scaled for the autocorrelation. [-]
-    others : ndarray, shape (K, P)
+    parameter_values : ndarray, shape (K, P)
         All parameters there. [unit of each]
     limit : float
         Of the rise within the interval. [-]
@@ -87,7 +87,7 @@ class Profile:
     estimate: float
     values: Floats
     rise: Floats
-    others: Floats
+    parameter_values: Floats
     limit: float
     low: float
     high: float
@@ -133,12 +133,12 @@ class Profile:
         return ax
 
 
-def plot_profiles(found: Sequence[Profile], *, columns: int = 3) -> Figure:
+def plot_profiles(profiles: Sequence[Profile], *, columns: int = 3) -> Figure:
     """Draw several profiles in one figure.
 
     Parameters
     ----------
-    found : sequence of Profile
+    profiles : sequence of Profile
         From `profiles`.
     columns : int
         Panels side by side. [-]
@@ -164,17 +164,17 @@ def plot_profiles(found: Sequence[Profile], *, columns: int = 3) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    if not found:
+    if not profiles:
         raise InputError("found no profile to draw, expected at least one")
-    columns = min(columns, len(found))
-    rows = math.ceil(len(found) / columns)
+    columns = min(columns, len(profiles))
+    rows = math.ceil(len(profiles) / columns)
     figure = Figure(figsize=(3.2 * columns, 2.4 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axes, one in zip(panels, found, strict=False):
-        one.plot(ax=axes)
-    for axes in panels[len(found) :]:
+    for axes, profile in zip(panels, profiles, strict=False):
+        profile.plot(ax=axes)
+    for axes in panels[len(profiles) :]:
         axes.set_visible(False)
-    for k in range(0, len(found), columns):
+    for k in range(0, len(profiles), columns):
         panels[k].set_ylabel("increase of the deviance", fontsize=8)
     return figure
 
@@ -230,24 +230,24 @@ def profiles(
     if points < 5:
         msg = f"points: found {points}, expected at least 5"
         raise InputError(msg)
-    known = fit.problem.paths
-    wanted = known if paths is None else tuple(paths)
-    for path in wanted:
-        if path not in known:
-            raise InputError(f"profile: '{path}' was not estimated. {did_you_mean(path, known)}")
+    fitted_paths = fit.problem.paths
+    profiled = fitted_paths if paths is None else tuple(paths)
+    for path in profiled:
+        if path not in fitted_paths:
+            raise InputError(f"profile: '{path}' was not estimated. {did_you_mean(path, fitted_paths)}")
     search = _Search(fit, batch)
-    fixed = [known.index(path) for path in wanted]
+    fixed = [fitted_paths.index(path) for path in profiled]
     grids = [_grid(fit, i, points) for i in fixed]
-    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(fixed)
-    for _ in range(_EXTENSIONS):
+    pieces = [(np.empty(0), np.empty((0, len(fitted_paths))), np.empty(0))] * len(fixed)
+    for _ in range(_MAX_EXTENSIONS):
         z, rise = search.minima(np.repeat(fixed, [grid.size for grid in grids]), np.concatenate(grids))
         ends = np.cumsum([grid.size for grid in grids])[:-1]
         parts = zip(grids, np.split(z, ends), np.split(rise, ends), strict=True)
-        found = [_joined(old, new) for old, new in zip(found, parts, strict=True)]
-        grids = [_further(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
+        pieces = [_joined(old, new) for old, new in zip(pieces, parts, strict=True)]
+        grids = [_further(fit, i, *piece) for i, piece in zip(fixed, pieces, strict=True)]
         if not any(grid.size for grid in grids):
             break
-    return [_profile(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
+    return [_profile(fit, i, *piece) for i, piece in zip(fixed, pieces, strict=True)]
 
 
 _Piece = tuple[Floats, Floats, Floats]
@@ -277,8 +277,8 @@ def _further(fit: Calibration, i: int, grid: Floats, _: Floats, rise: Floats) ->
 def _grid(fit: Calibration, i: int, points: int) -> Floats:
     """Fixed positions of a parameter: about the estimate, to beyond its interval."""
     center = float(fit.problem.positions(fit.x)[i])
-    found = fit.uncertainty
-    reach = _REACH * float(found.quantile[i]) * math.sqrt(max(found.covariance[i, i], 0.0))
+    uncertainty = fit.uncertainty
+    reach = _GRID_REACH * float(uncertainty.quantile[i]) * math.sqrt(max(uncertainty.covariance[i, i], 0.0))
     reach = min(max(reach, 1e-9), 1.0)
     side = np.linspace(0.0, 1.0, points // 2 + 1)[1:]
     grid = np.concatenate([center - reach * side[::-1], [center], center + reach * side])
@@ -306,42 +306,42 @@ class _Search:
         self._weight = variance / np.maximum(np.diag(fit.uncertainty.covariance), 1e-300)
         self._lowest = float(self._r @ self._r)
 
-    def minima(self, fixed: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
+    def minima(self, fixed: NDArray[np.int64], fixed_values: Floats) -> tuple[Floats, Floats]:
         """Return positions (N, P) of the lowest cost with one parameter fixed, and the scaled rise (N,)."""
         count = len(fixed)
         z = np.tile(self._center, (count, 1))
         jacobians = np.tile(self._j, (count, 1, 1))
         rows = np.arange(count)
         moved = np.zeros_like(z)
-        moved[rows, fixed] = at - self._center[fixed]
+        moved[rows, fixed] = fixed_values - self._center[fixed]
         for k in range(count):
             free = self._others(int(fixed[k]))
             follow = -np.linalg.lstsq(self._j[:, free], self._j[:, fixed[k]])[0] * moved[k, fixed[k]]
             moved[k, free] = np.clip(z[k, free] + follow, 0.0, 1.0) - z[k, free]
         z = z + moved
-        z[rows, fixed] = at
+        z[rows, fixed] = fixed_values
         r = self._weighted(z)
         for k in range(count):
             _update(jacobians[k], r[k] - self._r, moved[k])
         damping = np.zeros(count)
         active = np.ones(count, dtype=np.bool_)
-        for _ in range(_STEPS):
+        for _ in range(_MAX_STEPS):
             todo = np.flatnonzero(active)
             if not todo.size:
                 break
             trial = np.array([self._step(z[k], r[k], jacobians[k], int(fixed[k]), damping[k]) for k in todo])
-            found = self._weighted(trial)
+            trial_residuals = self._weighted(trial)
             for n, k in enumerate(todo.tolist()):
                 step = trial[n] - z[k]
-                if np.any(step != 0.0) and np.isfinite(found[n]).all():
-                    _update(jacobians[k], found[n] - r[k], step)
-                gain = float(r[k] @ r[k] - found[n] @ found[n]) * self._weight[fixed[k]]
+                if np.any(step != 0.0) and np.isfinite(trial_residuals[n]).all():
+                    _update(jacobians[k], trial_residuals[n] - r[k], step)
+                gain = float(r[k] @ r[k] - trial_residuals[n] @ trial_residuals[n]) * self._weight[fixed[k]]
                 if gain > 0.0:
-                    z[k], r[k] = trial[n], found[n]
+                    z[k], r[k] = trial[n], trial_residuals[n]
                     damping[k] /= 10.0
                 else:
                     damping[k] = max(10.0 * damping[k], 1e-3)
-                improved = gain > _CONVERGED * self._limit[fixed[k]]
+                improved = gain > _MIN_GAIN * self._limit[fixed[k]]
                 active[k] = improved or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
         risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[fixed]
         # A value at which the model cannot be run is outside.
@@ -364,12 +364,12 @@ class _Search:
 
     def _weighted(self, z: Floats) -> Floats:
         """Return residuals over their uncertainty, then those of the priors, for positions (N, P)."""
-        found = []
+        batches = []
         for first in range(0, len(z), self._batch):
             x = self._problem.values(z[first : first + self._batch])
             data = self._problem.residuals(x)[:, self._problem.mask] * self._scale
-            found.append(np.concatenate([data, self._cost.prior_residuals(x)], axis=1))
-        return np.concatenate(found)
+            batches.append(np.concatenate([data, self._cost.prior_residuals(x)], axis=1))
+        return np.concatenate(batches)
 
 
 def _update(jacobian: Floats, change: Floats, step: Floats) -> None:
@@ -391,7 +391,7 @@ def _profile(fit: Calibration, i: int, grid: Floats, z: Floats, rise: Floats) ->
         estimate=float(fit.x[i]),
         values=np.array([parameter.value(float(v)) for v in grid]),
         rise=rise,
-        others=fit.problem.values(z),
+        parameter_values=fit.problem.values(z),
         limit=limit,
         low=parameter.value(low),
         high=parameter.value(high),

@@ -206,8 +206,8 @@ class Calibration:
         import pandas as pd
 
         parameters = self.problem.parameters
-        others = np.abs(self.correlation) - 2.0 * np.eye(self.x.size)
-        most = others.argmax(axis=1)
+        off_diagonal = np.abs(self.correlation) - 2.0 * np.eye(self.x.size)
+        most = off_diagonal.argmax(axis=1)
         alone = self.x.size == 1
         return pd.DataFrame(
             {

@@ -16,7 +16,7 @@ from mascarin.calibration.least_squares import least_squares, residuals_and_deri
 from mascarin.calibration.posterior import sampled
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Calibration, Minimum
-from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
+from mascarin.calibration.search_options import METHODS, WITH_SQUARES, MethodName, SearchOptions
 from mascarin.calibration.sequences import Make, maker, multi_start
 from mascarin.calibration.uncertainty import estimate
 from mascarin.calibration.warnings import on_bounds, warnings
@@ -33,7 +33,7 @@ def solve(
     method: MethodName = "least-squares",
     cost: CostName = "nll",
     seed: int = 0,
-    rules: Rules | None = None,
+    options: SearchOptions | None = None,
     optimizer: Callable[[Space], Optimizer] | None = None,
     record: Path | None = None,
     batch: int = 64,
@@ -50,7 +50,7 @@ def solve(
     method : str
         ``least-squares``: the sum of squared residuals over the uncertainty of the sensors (and priors), by a
         trust-region method within the bounds from several starts, with derivatives by differences (one batch
-        of runs) or exact ones (`Rules.slopes`).
+        of runs) or exact ones (`SearchOptions.slopes`).
         ``hooke-jeeves``: any cost, by pattern search from random starts until several sequences have reached
         the same minimum.
         ``particle-swarm``, ``hybrid`` (a swarm, then a pattern search from its best point), ``cma-es`` (an
@@ -59,8 +59,8 @@ def solve(
     cost : str
         What is minimized, see `mascarin.calibration.cost`; least squares and emcee support ``nll`` only.
     seed : int
-        Of all random numbers. The same problem, seed and rules give the same result.
-    rules : Rules, optional
+        Of all random numbers. The same problem, seed and options give the same result.
+    options : SearchOptions, optional
         Options of the search.
     optimizer : callable, optional
         Makes the optimizer of one sequence from its space (positions between 0 and 1, with the start);
@@ -112,7 +112,9 @@ def solve(
             if on_batch is not None:
                 on_batch(count, lowest)
 
-        return _solved(problem, method, cost, seed, rules, optimizer, record, batch, confidence, report_batch)
+        return _solved(
+            problem, method, cost, seed, options, optimizer, record, batch, confidence, report_batch
+        )
 
 
 def _solved(
@@ -120,7 +122,7 @@ def _solved(
     method: MethodName,
     cost: CostName,
     seed: int,
-    rules: Rules | None,
+    options: SearchOptions | None,
     optimizer: Callable[[Space], Optimizer] | None,
     record: Path | None,
     batch: int,
@@ -129,9 +131,9 @@ def _solved(
 ) -> Calibration:
     _require(method, cost, confidence, optimizer is not None)
     whole_number("seed", seed)
-    if rules is not None:
-        require_type("rules", rules, Rules, "mascarin.calibration.Rules")
-    chosen = rules or Rules()
+    if options is not None:
+        require_type("options", options, SearchOptions, "mascarin.calibration.SearchOptions")
+    chosen = options or SearchOptions()
     if chosen.slopes == "exact":
         problem.require_slopes()
     function = Cost(problem, cost)
@@ -157,13 +159,13 @@ def _solved(
         return fit
 
 
-def _require(method: str, cost: str, confidence: float, own: bool) -> None:
+def _require(method: str, cost: str, confidence: float, own_cost: bool) -> None:
     if method not in METHODS:
         msg = (
             f"method: found '{method}', expected one of {', '.join(METHODS)}. {did_you_mean(method, METHODS)}"
         )
         raise InputError(msg)
-    if method in WITH_SQUARES and cost != "nll" and not own:
+    if method in WITH_SQUARES and cost != "nll" and not own_cost:
         msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)
     if not 0.0 < confidence < 1.0:
@@ -187,15 +189,18 @@ def _require_start(problem: CalibrationProblem, evaluator: Evaluator) -> None:
         for s, sensor in enumerate(problem.sensors)
         if not np.isfinite(simulated[sensor.mask, s]).all()
     ]
-    at = ", ".join(f"{p.path} = {p.first:g} {p.unit}".rstrip() for p in problem.parameters)
-    msg = f"the cost is not a number at the start ({at}): the model gives no number for {', '.join(bad)}"
+    start_text = ", ".join(f"{p.path} = {p.first:g} {p.unit}".rstrip() for p in problem.parameters)
+    msg = (
+        f"the cost is not a number at the start ({start_text}): the model gives no number for "
+        f"{', '.join(bad)}"
+    )
     raise InputError(msg)
 
 
 def _report(
     problem: CalibrationProblem,
     evaluator: Evaluator,
-    rules: Rules,
+    options: SearchOptions,
     minima: list[Minimum],
     reason: str,
     method: str,
@@ -206,9 +211,9 @@ def _report(
     """The result at the best minimum, with its uncertainty."""
     cost = evaluator.cost
     z = problem.positions(best.x)
-    residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
+    residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, options)
     weights = cost.weights(residuals)
-    found = estimate(
+    uncertainty = estimate(
         problem,
         z,
         residuals,
@@ -222,8 +227,8 @@ def _report(
     if cost.ignores_bias:
         centered = np.where(problem.mask, residuals - residuals.sum(axis=0) / problem.mask.sum(axis=0), 0.0)
     slope = np.einsum("ts,tsp->p", weights * centered, jacobian)
-    notes = warnings(problem, z, found, residuals, jacobian)
-    low, high = problem.values(found.low[None])[0], problem.values(found.high[None])[0]
+    notes = warnings(problem, z, uncertainty, residuals, jacobian)
+    low, high = problem.values(uncertainty.low[None])[0], problem.values(uncertainty.high[None])[0]
     if cost.name in ONE_NUMBER:
         low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
         text = f"the cost '{cost.name}' compares means only: there are no intervals; use it as a criterion"
@@ -238,13 +243,13 @@ def _report(
         x=best.x,
         low=low,
         high=high,
-        correlation=found.correlation,
+        correlation=uncertainty.correlation,
         confidence=confidence,
         cost=best.cost,
         of_sensors=of_sensors,
         residuals=np.where(problem.mask, residuals, np.nan),
-        uncertainty=found,
-        on_bound=on_bounds(problem, z, slope, found),
+        uncertainty=uncertainty,
+        on_bound=on_bounds(problem, z, slope, uncertainty),
         warnings=tuple(notes),
         minima=tuple(minima),
         reason=reason,

@@ -110,13 +110,13 @@ def error_columns(
         [unit]
     tuple of str, length k
     """
-    columns, found = [], []
+    columns, column_names = [], []
 
     def add(name: str, s: int, values: Floats | float) -> None:
         column = np.zeros(simulated.shape)
         column[:, s] = values
         columns.append(column)
-        found.append(name)
+        column_names.append(name)
 
     slope = np.gradient(simulated, step, axis=0) if len(simulated) > 1 else np.zeros_like(simulated)
     for s, (name, error) in enumerate(zip(names, sensors, strict=True)):
@@ -130,6 +130,6 @@ def error_columns(
     common = np.array([error.common for error in sensors])
     if common.any():
         columns.append(np.broadcast_to(common, simulated.shape).copy())
-        found.append("common offset")
+        column_names.append("common offset")
     stacked = np.stack(columns, axis=2) if columns else np.zeros((*simulated.shape, 0))
-    return stacked, tuple(found)
+    return stacked, tuple(column_names)

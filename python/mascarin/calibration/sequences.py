@@ -14,7 +14,7 @@ from mascarin.calibration.cost import Cost
 from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Minimum
-from mascarin.calibration.rules import Rules
+from mascarin.calibration.search_options import SearchOptions
 from mascarin.errors import SolverError
 from mascarin.optimization import (
     CovarianceSearch,
@@ -35,18 +35,18 @@ Make = Callable[[Space, int], Optimizer]
 """Makes the optimizer of one sequence from its space and its seed."""
 
 _GRID: Final = 2.0**26
-_LONGEST: Final = 5000  # evaluations of one evolution strategy
-_FINE: Final = 1e-6  # of the range, where an evolution strategy ends
+_MAX_EVALUATIONS: Final = 5000  # evaluations of one evolution strategy
+_MIN_STEP: Final = 1e-6  # of the range, where an evolution strategy ends
 
 
-def maker(method: str, rules: Rules) -> Make:
+def maker(method: str, options: SearchOptions) -> Make:
     """Return the function that makes the optimizers of a method.
 
     Parameters
     ----------
     method : str
         ``hooke-jeeves``, ``particle-swarm``, ``hybrid`` or ``cma-es``.
-    rules : Rules
+    options : SearchOptions
         Options of the search.
 
     Returns
@@ -55,13 +55,13 @@ def maker(method: str, rules: Rules) -> Make:
         See `Make`.
     """
     return {
-        "hooke-jeeves": lambda space, _: HookeJeeves(space, reductions=rules.reductions, rounding=_exact),
-        "particle-swarm": lambda space, seed: ParticleSwarm(space, _swarm(rules, seed)),
+        "hooke-jeeves": lambda space, _: HookeJeeves(space, reductions=options.reductions, rounding=_exact),
+        "particle-swarm": lambda space, seed: ParticleSwarm(space, _swarm(options, seed)),
         "hybrid": lambda space, seed: SwarmThenPattern(
-            space, _swarm(rules, seed), reductions=rules.reductions, rounding=_exact
+            space, _swarm(options, seed), reductions=options.reductions, rounding=_exact
         ),
         "cma-es": lambda space, seed: CovarianceSearch(
-            space, sigma=rules.step, max_evaluations=_LONGEST, seed=seed, finest=_FINE
+            space, sigma=options.step, max_evaluations=_MAX_EVALUATIONS, seed=seed, finest=_MIN_STEP
         ),
     }[method]
 
@@ -71,8 +71,8 @@ def _exact(value: float, _: int) -> float:
     return value
 
 
-def _swarm(rules: Rules, seed: int) -> SwarmRules:
-    return SwarmRules(particles=rules.particles, generations=rules.generations, seed=seed)
+def _swarm(options: SearchOptions, seed: int) -> SwarmRules:
+    return SwarmRules(particles=options.particles, generations=options.generations, seed=seed)
 
 
 @dataclass(eq=False)
@@ -100,7 +100,7 @@ class _Sequence:
 def multi_start(
     problem: CalibrationProblem,
     evaluator: Evaluator,
-    rules: Rules,
+    options: SearchOptions,
     seed: int,
     make: Make,
     agree: int,
@@ -116,7 +116,7 @@ def multi_start(
         Parameters, measured series and model.
     evaluator : Evaluator
         Evaluates and keeps the record.
-    rules : Rules
+    options : SearchOptions
         Options of the search.
     seed : int
         Of all random numbers.
@@ -134,11 +134,11 @@ def multi_start(
     """
     running: list[_Sequence] = []
     ended: dict[int, Minimum] = {}
-    agreement = _Agreement(agree, rules.within, evaluator.cost)
+    agreement = _Agreement(agree, options.within, evaluator.cost)
     started = evaluations = 0
     while True:
-        while started < rules.sequences and len(running) < rules.together:
-            running.append(_start(problem, rules, started, seed, make))
+        while started < options.sequences and len(running) < options.together:
+            running.append(_start(problem, options, started, seed, make))
             started += 1
         batch = [(s, s.optimizer.ask()) for s in running]
         _require_points(batch)
@@ -155,12 +155,12 @@ def multi_start(
         if counted is not None:
             return counted, f"{agree} of {len(counted)} sequences reached the same minimum"
         first = _leading(ended)
-        if len(first) == rules.sequences:
-            return first, f"all {rules.sequences} sequences searched, without agreement of {agree}"
-        if rules.evaluations is not None and evaluations >= rules.evaluations:
+        if len(first) == options.sequences:
+            return first, f"all {options.sequences} sequences searched, without agreement of {agree}"
+        if options.evaluations is not None and evaluations >= options.evaluations:
             unfinished = [s.minimum(problem) for s in running if s.evaluations]
             minima = sorted([*ended.values(), *unfinished], key=lambda m: m.sequence)
-            return minima, f"budget of {rules.evaluations} evaluations used"
+            return minima, f"budget of {options.evaluations} evaluations used"
 
 
 def _require_points(batch: list[tuple[_Sequence, list[Point]]]) -> None:
@@ -202,17 +202,19 @@ def _leading(ended: dict[int, Minimum]) -> list[Minimum]:
     return minima
 
 
-def _start(problem: CalibrationProblem, rules: Rules, number: int, seed: int, make: Make) -> _Sequence:
+def _start(
+    problem: CalibrationProblem, options: SearchOptions, number: int, seed: int, make: Make
+) -> _Sequence:
     """Start a sequence: at the given start for the first one, at one drawn from its number for the others."""
-    drawn = np.random.default_rng([seed, number])
+    rng = np.random.default_rng([seed, number])
     if number == 0:
         start = problem.positions(np.array([p.first for p in problem.parameters]))
     else:
-        start = drawn.random(len(problem.parameters))
+        start = rng.random(len(problem.parameters))
     # Start and step on a binary grid: every point of every refined mesh is then an exact number, and a mesh
     # point reached twice is the same point.
     start = np.round(start * _GRID) / _GRID
-    step = max(round(rules.step * _GRID), 1) / _GRID
+    step = max(round(options.step * _GRID), 1) / _GRID
     n = len(problem.parameters)
     space = box(problem.paths, start.tolist(), [0.0] * n, [1.0] * n, [step] * n)
-    return _Sequence(number, start, make(space, int(drawn.integers(1, 2**31))))
+    return _Sequence(number, start, make(space, int(rng.integers(1, 2**31))))

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Final, Protocol
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration.joint import ErrorStatement
-from mascarin.calibration.refining import refined
+from mascarin.calibration.joint_estimation import estimate_jointly
+from mascarin.calibration.joint_posterior import ErrorStatement
 from mascarin.calibration.sensor_errors import SensorError
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.calibration.result import Calibration
-    from mascarin.calibration.rules import Rules
+    from mascarin.calibration.search_options import SearchOptions
     from mascarin.simulation.simulation import Simulation
     from mascarin.validation.observation import Observation
     from mascarin.validation.sensors import Sensor, SensorUncertainty
@@ -26,7 +26,7 @@ LIMIT: Final = 0.1
 #: Correlation time of the errors of days. [d]
 PERSISTENCE: Final = 5.0
 #: Shortest period from which errors of days can be estimated. [h]
-SHORTEST: Final = 48.0
+MIN_HOURS: Final = 48.0
 
 
 class States(Protocol):
@@ -76,11 +76,11 @@ def shared_errors(sensor: States, stated: SensorUncertainty) -> SensorError:
     stated : SensorUncertainty
         Standard uncertainty of a reading.
     """
-    rest = stated.absolute if sensor.repeatability is None else 0.0
+    offset = stated.absolute if sensor.repeatability is None else 0.0
     if sensor.repeatability is not None and stated.absolute > sensor.repeatability:
-        rest = math.sqrt(stated.absolute**2 - sensor.repeatability**2)
+        offset = math.sqrt(stated.absolute**2 - sensor.repeatability**2)
     return SensorError(
-        offset=rest if sensor.offset is None else sensor.offset,
+        offset=offset if sensor.offset is None else sensor.offset,
         common=sensor.common,
         gain=sensor.gain if sensor.gain else stated.relative,
         reference=sensor.reference,
@@ -107,9 +107,9 @@ def require_supported(method: str, cost: str, hours: float) -> None:
             f"cost: found {cost} with errors of sensors, expected nll, the likelihood that weighs them; "
             "write cost nll, or leave offset, common, gain, clock and depth of the sensors out"
         )
-    if hours < SHORTEST:
+    if hours < MIN_HOURS:
         raise InputError(
-            f"period: found {hours:g} h with errors of sensors, expected at least {SHORTEST:g} h: errors "
+            f"period: found {hours:g} h with errors of sensors, expected at least {MIN_HOURS:g} h: errors "
             "that change from day to day are estimated; make it longer, or leave offset, common, gain, "
             "clock and depth of the sensors out"
         )
@@ -120,7 +120,7 @@ def with_sensor_errors(
     simulation: Simulation,
     observation: Observation,
     sensors: Mapping[str, Sensor],
-    rules: Rules,
+    options: SearchOptions,
 ) -> Calibration:
     """Estimate parameters again, together with the errors of the sensors and of the model.
 
@@ -134,7 +134,7 @@ def with_sensor_errors(
         The measured series.
     sensors : mapping of str to Sensor
         What each states.
-    rules : Rules
+    options : SearchOptions
         Kind of derivatives.
 
     Raises
@@ -158,7 +158,7 @@ def with_sensor_errors(
         _, slopes = simulation.jacobian_vector(list(depths), simulation.vector(fit.values))
         for k, uncertainty in enumerate(depths.values()):
             further[..., k] = uncertainty * observation.simulated(simulation.index, slopes[k])
-    return refined(fit, stated, rules, further)[0]
+    return estimate_jointly(fit, stated, options, further)[0]
 
 
 def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, float]:
@@ -169,7 +169,7 @@ def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[s
     InputError
         The sensor is not one of the building, inside a wall.
     """
-    found = {}
+    uncertainty_of_depth = {}
     for (name, sensor), output in zip(sensors.items(), simulation.outputs, strict=True):
         if sensor.depth is None:
             continue
@@ -179,5 +179,5 @@ def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[s
                 f"sensors: {name}: found a depth for {output.name}, which is not inside a wall; expected a "
                 "sensor of the building (sensors), such as probe.temperature. Leave depth out"
             )
-        found[f"sensors.{probe}.depth"] = sensor.depth
-    return found
+        uncertainty_of_depth[f"sensors.{probe}.depth"] = sensor.depth
+    return uncertainty_of_depth

@@ -49,7 +49,7 @@ FREE: Final = 1e3
 AT_BOUND: Final = 1e-4
 """An estimate nearer to an end of its range than this is on the bound. [ranges]"""
 
-_DRAWN: Final = 40  # simulated fits
+_SIMULATED_FITS: Final = 40  # simulated fits
 _SEED: Final = 20
 
 
@@ -172,8 +172,8 @@ def estimate(
     free = np.flatnonzero(inside) if inside.any() else np.arange(z.size)
     block = np.ix_(free, free)
     sd[free] = np.sqrt(np.diag(_sandwich(information[block], middle[block])))
-    drawn = _drawn_quantile(noise, j[..., free], wj[..., free], priors[free], mask, confidence)
-    quantile[free] = np.maximum(quantile[free], drawn)
+    simulated_quantile = _drawn_quantile(noise, j[..., free], wj[..., free], priors[free], mask, confidence)
+    quantile[free] = np.maximum(quantile[free], simulated_quantile)
     reach = quantile * sd
     return Uncertainty(
         low=np.clip(z - reach, 0.0, 1.0),
@@ -259,20 +259,20 @@ def _drawn_quantile(
     information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
     inverse, _ = _inverted(information)
     true = _diagonal(inverse, noise.middle(wj) + np.diag(priors))
-    errors = noise.draw(j.shape[0], _DRAWN)
-    of_priors = np.random.default_rng(_SEED + 1).standard_normal((priors.size, _DRAWN))
+    errors = noise.draw(j.shape[0], _SIMULATED_FITS)
+    of_priors = np.random.default_rng(_SEED + 1).standard_normal((priors.size, _SIMULATED_FITS))
     change = -inverse @ (np.einsum("tsp,tsk->pk", wj, errors) + np.sqrt(priors)[:, None] * of_priors)
-    left = errors + np.einsum("tsp,pk->tsk", j, change)
+    fit_residuals = errors + np.einsum("tsp,pk->tsk", j, change)
     ratio = np.ones_like(change)
-    remaining = np.where(mask[:, :, None], left, np.nan)
+    remaining = np.where(mask[:, :, None], fit_residuals, np.nan)
     sensors = mask.shape[1]
     fitted = fit_autoregressions(remaining.reshape(len(remaining), -1).T)
-    for k in range(_DRAWN):
+    for k in range(_SIMULATED_FITS):
         r = remaining[:, :, k]
-        models = tuple(fitted[s * _DRAWN + k] for s in range(sensors))
+        models = tuple(fitted[s * _SIMULATED_FITS + k] for s in range(sensors))
         effective = max(sum(m.effective_samples for m in models), 1.0)
-        found = _Noise.of(r, models, effective / max(effective - priors.size, 1.0))
-        variance = _diagonal(inverse, found.middle(wj) + np.diag(priors))
+        noise_of_fit = _Noise.of(r, models, effective / max(effective - priors.size, 1.0))
+        variance = _diagonal(inverse, noise_of_fit.middle(wj) + np.diag(priors))
         ratio[:, k] = np.sqrt(np.divide(variance, true, out=np.ones_like(true), where=true > 0.0))
     return _widened(ratio, confidence)
 
@@ -297,14 +297,14 @@ def _widened(ratio: Floats, confidence: float) -> Floats:
 def _innovations(r: Floats, models: tuple[Autoregression, ...], responses: Floats) -> Floats:
     """Covariance of the innovations of all sensors, from that of the residuals; shape (S, S). [unit^2]"""
     size = np.sqrt([max(m.innovation, 0.0) for m in models])
-    there = np.isfinite(r)
-    pairs = there.T.astype(np.float64) @ there
-    mean = np.where(there, r, 0.0).sum(axis=0) / np.maximum(np.diag(pairs), 1.0)
-    centered = np.where(there, r - mean, 0.0)
+    finite = np.isfinite(r)
+    pairs = finite.T.astype(np.float64) @ finite
+    mean = np.where(finite, r, 0.0).sum(axis=0) / np.maximum(np.diag(pairs), 1.0)
+    centered = np.where(finite, r - mean, 0.0)
     together = centered.T @ centered / np.maximum(pairs, 1.0)
     scale = np.outer(size, size) * (responses.T @ responses)
-    known = (scale > 0.0) & (pairs >= 3.0)
-    correlation = np.clip(np.divide(together, scale, out=np.zeros_like(scale), where=known), -1.0, 1.0)
+    estimable = (scale > 0.0) & (pairs >= 3.0)
+    correlation = np.clip(np.divide(together, scale, out=np.zeros_like(scale), where=estimable), -1.0, 1.0)
     np.fill_diagonal(correlation, 1.0)
     # Estimated pair by pair, so not always a covariance: take the nearest one.
     value, vector = np.linalg.eigh(correlation)
@@ -316,9 +316,9 @@ def _inverted(information: Floats) -> tuple[Floats, Floats]:
     """Inverse of the information where the data determine it, and the directions that they do not."""
     value, vector = np.linalg.eigh(information)
     largest = float(value.max(initial=0.0))
-    seen = value > max(1e-13 * largest, np.finfo(float).tiny)
-    inverse = np.where(seen, 1.0 / np.where(seen, value, 1.0), 0.0)
-    return np.asarray((vector * inverse) @ vector.T), np.asarray(vector[:, ~seen])
+    determined = value > max(1e-13 * largest, np.finfo(float).tiny)
+    inverse = np.where(determined, 1.0 / np.where(determined, value, 1.0), 0.0)
+    return np.asarray((vector * inverse) @ vector.T), np.asarray(vector[:, ~determined])
 
 
 def _sandwich(information: Floats, middle: Floats) -> Floats:
@@ -355,11 +355,11 @@ def symmetric_power(matrix: Floats, exponent: float) -> Floats:
 
 def _stretch(information: Floats, middle: Floats) -> Floats:
     """Symmetric C with ``C information C`` the inverse of the sandwich: a geometric mean of matrices."""
-    wanted = symmetric_power(_sandwich(information, middle), -1.0)
+    target = symmetric_power(_sandwich(information, middle), -1.0)
     # Where the data determine nothing the likelihood is flat, and any finite matrix serves.
     root = symmetric_power(information + np.eye(len(information)), 0.5)
     back = symmetric_power(information + np.eye(len(information)), -0.5)
-    return np.asarray(back @ symmetric_power(root @ wanted @ root, 0.5) @ back)
+    return np.asarray(back @ symmetric_power(root @ target @ root, 0.5) @ back)
 
 
 def _correlation(covariance: Floats) -> Floats:

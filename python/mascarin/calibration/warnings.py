@@ -20,7 +20,7 @@ _NARROW: Final = 0.05  # part of the range below which an interval is narrow, wh
 
 
 def warnings(
-    problem: CalibrationProblem, z: Floats, found: Uncertainty, residuals: Floats, jacobian: Floats
+    problem: CalibrationProblem, z: Floats, uncertainty: Uncertainty, residuals: Floats, jacobian: Floats
 ) -> list[str]:
     """Describe what limits the use of the estimates.
 
@@ -37,8 +37,8 @@ def warnings(
     names = problem.paths
     inactive = _inactive(problem, jacobian)
     texts = [f"{names[i]} has no effect on the compared sensors: fix it" for i in np.flatnonzero(inactive)]
-    covered = found.high - found.low
-    correlated = _correlated(names, found.correlation, inactive | (covered < _NARROW))
+    covered = uncertainty.high - uncertainty.low
+    correlated = _correlated(names, uncertainty.correlation, inactive | (covered < _NARROW))
     texts += correlated.values()
     named = {i for pair in correlated for i in pair}
     texts += [
@@ -47,17 +47,19 @@ def warnings(
         for k, name in enumerate(names)
         if covered[k] > _UNDETERMINED and not inactive[k] and k not in named
     ]
-    total = sum(found.effective_samples)
+    total = sum(uncertainty.effective_samples)
     if total < 3.0 * len(names):
         texts.append(
             f"{len(names)} parameters were estimated from residuals worth only {total:.0f} independent "
             f"samples: estimate fewer, or compare a longer period"
         )
-    texts += _biased(problem, residuals, found)
+    texts += _biased(problem, residuals, uncertainty)
     return texts
 
 
-def on_bounds(problem: CalibrationProblem, z: Floats, slope: Floats, found: Uncertainty) -> dict[str, str]:
+def on_bounds(
+    problem: CalibrationProblem, z: Floats, slope: Floats, uncertainty: Uncertainty
+) -> dict[str, str]:
     """Give a reason for every estimate on a bound.
 
     Parameters
@@ -68,7 +70,7 @@ def on_bounds(problem: CalibrationProblem, z: Floats, slope: Floats, found: Unce
         The estimates, as positions between 0 and 1. [-]
     slope : ndarray, shape (P,)
         Derivative of the cost by z.
-    found : Uncertainty
+    uncertainty : Uncertainty
         Result of `estimate`.
 
     Returns
@@ -84,7 +86,7 @@ def on_bounds(problem: CalibrationProblem, z: Floats, slope: Floats, found: Unce
         side, bound = ("lower", p.lower) if low else ("upper", p.upper)
         where = f"on its {side} bound {bound:g} {p.unit}".rstrip()
         outward = slope[i] > 0.0 if low else slope[i] < 0.0
-        if found.high[i] - found.low[i] > _UNDETERMINED:
+        if uncertainty.high[i] - uncertainty.low[i] > _UNDETERMINED:
             reason = "the data do not determine it, and the search ended there"
         elif outward:
             more = "less" if low else "more"
@@ -122,13 +124,16 @@ def _correlated(
     return texts
 
 
-def _biased(problem: CalibrationProblem, residuals: Floats, found: Uncertainty) -> list[str]:
+def _biased(problem: CalibrationProblem, residuals: Floats, uncertainty: Uncertainty) -> list[str]:
     """Sensors whose residuals have a mean that their scatter does not explain."""
     texts = []
     for s, sensor in enumerate(problem.sensors):
         r = residuals[sensor.mask, s]
         bias, spread = float(r.mean()), float(r.std())
-        if abs(bias) > 3.0 * spread / math.sqrt(max(found.effective_samples[s], 1.0)) and abs(bias) > 1e-9:
+        if (
+            abs(bias) > 3.0 * spread / math.sqrt(max(uncertainty.effective_samples[s], 1.0))
+            and abs(bias) > 1e-9
+        ):
             unit = sensor.unit.replace("degC", "K")
             texts.append(
                 f"'{sensor.name}' has a bias of {bias:+.2g} {unit} at the estimates; the intervals do not "

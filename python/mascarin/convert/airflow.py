@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Final
 
+from mascarin.convert.context import Context
 from mascarin.convert.gains import people_in
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.schedules import fraction, year
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
 from mascarin.convert.year import Year, combined
 from mascarin.convert.zones import Zone
 from mascarin.physics import GRAVITY
@@ -23,7 +23,7 @@ SIMPLE: Final = (
     "ZoneVentilation:DesignFlowRate", "ZoneVentilation:WindandStackOpenArea", "ZoneMixing", "ZoneCrossMixing",
 )  # fmt: skip
 #: Wind speed about which a quadratic effect of the wind is made linear [m/s].
-_WIND: Final = 4.0
+_LINEARIZATION_WIND: Final = 4.0
 #: Density of outdoor air over that of the site (15 degC), for a zone at 21 degC: a line in the difference of
 #: temperatures from 0 to 30 K through 288.15/(294.15 - dT); a usual value for other terms [-, 1/K].
 _DENSE, _DENSER, _USUAL_DENSITY = 288.15 / 294.15, (288.15 / 264.15 - 288.15 / 294.15) / 30.0, 1.035
@@ -49,7 +49,7 @@ class Flow:
 
     Attributes
     ----------
-    item : Item
+    item : IdfObject
         The object.
     flow : float
         At a factor of 1. [m3/s]
@@ -59,13 +59,13 @@ class Flow:
         Its schedule.
     """
 
-    item: Item
+    item: IdfObject
     flow: float
     terms: tuple[float, float, float, float]
     values: Year
 
 
-def describe_air(work: Work, zones: dict[str, Zone]) -> None:
+def describe_air(context: Context, zones: dict[str, Zone]) -> None:
     """Enter infiltration, ventilation and mixing.
 
     Raises
@@ -73,52 +73,52 @@ def describe_air(work: Work, zones: dict[str, Zone]) -> None:
     InputError
         A zone or schedule that does not exist.
     """
-    if _network(work):
+    if _network(context):
         return
-    for item in work.model.of("ZoneInfiltration:DesignFlowRate"):
-        for zone in zones_of(work, item, zones):
-            _add(work, zone, _flow(work, item, zone, zones, "design_flow_rate_calculation_method"))
-    for item in work.model.of("ZoneInfiltration:EffectiveLeakageArea"):
-        for zone in zones_of(work, item, zones):
-            _leakage(work, item, zone)
-    for item in work.model.of("ZoneVentilation:DesignFlowRate"):
-        _conditions(work, item, "schedule_name")
-        for zone in zones_of(work, item, zones):
-            flow = _flow(work, item, zone, zones, "design_flow_rate_calculation_method")
-            _add(work, zone, flow)
-            _fan(work, item, zone, flow)
-    for item in work.model.of("ZoneVentilation:WindandStackOpenArea"):
-        _conditions(work, item, "opening_area_fraction_schedule_name")
-        for zone in zones_of(work, item, zones):
-            _opening(work, item, zone)
-    _mixing(work, zones)
+    for item in context.model.of("ZoneInfiltration:DesignFlowRate"):
+        for zone in zones_of(context, item, zones):
+            _add(context, zone, _flow(context, item, zone, zones, "design_flow_rate_calculation_method"))
+    for item in context.model.of("ZoneInfiltration:EffectiveLeakageArea"):
+        for zone in zones_of(context, item, zones):
+            _leakage(context, item, zone)
+    for item in context.model.of("ZoneVentilation:DesignFlowRate"):
+        _conditions(context, item, "schedule_name")
+        for zone in zones_of(context, item, zones):
+            flow = _flow(context, item, zone, zones, "design_flow_rate_calculation_method")
+            _add(context, zone, flow)
+            _fan(context, item, zone, flow)
+    for item in context.model.of("ZoneVentilation:WindandStackOpenArea"):
+        _conditions(context, item, "opening_area_fraction_schedule_name")
+        for zone in zones_of(context, item, zones):
+            _opening(context, item, zone)
+    _mixing(context, zones)
 
 
-def zones_of(work: Work, item: Item, zones: dict[str, Zone]) -> list[Zone]:
+def zones_of(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zone]:
     """Zones of an object that are in the description."""
-    named = (zones.get(zone.name.casefold()) for zone in work.zones_of(item, *_ZONE_KEYS))
+    named = (zones.get(zone.name.casefold()) for zone in context.zones_of(item, *_ZONE_KEYS))
     return [zone for zone in named if zone is not None]
 
 
-def _network(work: Work) -> bool:
+def _network(context: Context) -> bool:
     """Whether an air flow network replaces infiltration, ventilation and mixing."""
-    item = work.model.one("AirflowNetwork:SimulationControl")
+    item = context.model.one("AirflowNetwork:SimulationControl")
     if item is None:
         return False
     control = item.word("airflownetwork_control")
     if control in ("nomultizoneordistribution", ""):
         return False
-    work.findings.left_out(
+    context.findings.left_out(
         item,
         "an air flow network",
         "no outdoor air enters and none passes between zones: zones are warmer, or colder at night",
     )
-    replaced = work.model.of(*SIMPLE)
-    work.findings.no_effect(replaced, "simple air flow", "EnergyPlus replaces it by the air flow network")
+    replaced = context.model.of(*SIMPLE)
+    context.findings.no_effect(replaced, "simple air flow", "EnergyPlus replaces it by the air flow network")
     return True
 
 
-def _flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone], method: str) -> Flow:
+def _flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone], method: str) -> Flow:
     word = item.word(method)
     if word in ("flow/area", "flow/floorarea"):
         areas = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
@@ -127,17 +127,17 @@ def _flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone], method: st
         area = zone.walls if word == "flow/exteriorwallarea" else zone.outdoors
         flow = item.needed("flow_rate_per_exterior_surface_area", "flow_per_exterior_surface_area") * area
     elif word == "flow/person":
-        flow = item.needed("flow_rate_per_person") * people_in(work, zone, zones)
+        flow = item.needed("flow_rate_per_person") * people_in(context, zone, zones)
     elif word == "airchanges/hour":
         flow = item.needed("air_changes_per_hour") * zone.volume / 3600.0
     else:
         flow = item.needed("design_flow_rate")
     keys = ("constant", "temperature", "velocity", "velocity_squared")
     terms = [item.number(f"{key}_term_coefficient") or 0.0 for key in keys]
-    return Flow(item, flow, (terms[0], terms[1], terms[2], terms[3]), year(work, item, "schedule_name"))
+    return Flow(item, flow, (terms[0], terms[1], terms[2], terms[3]), year(context, item, "schedule_name"))
 
 
-def _add(work: Work, zone: Zone, air: Flow) -> None:
+def _add(context: Context, zone: Zone, air: Flow) -> None:
     """Enter a flow: as infiltration, its constant part as ventilation where it has a schedule.
 
     EnergyPlus takes flows as volumes of outdoor air, Mascarin as volumes at the density of the site. Cold air
@@ -145,27 +145,29 @@ def _add(work: Work, zone: Zone, air: Flow) -> None:
     """
     constant, stack, wind, squared = air.terms
     if squared:
-        work.findings.approximated(
-            air.item, "a flow with the square of the wind", f"a line through its value at {_WIND:g} m/s"
+        context.findings.approximated(
+            air.item,
+            "a flow with the square of the wind",
+            f"a line through its value at {_LINEARIZATION_WIND:g} m/s",
         )
-        wind += squared * _WIND
-    held, given = work.section("zones")[zone.name], air.values.constant
+        wind += squared * _LINEARIZATION_WIND
+    held, constant_share = context.section("zones")[zone.name], air.values.constant
     changes = air.flow * 3600.0 / zone.volume
-    if given is not None:
+    if constant_share is not None:
         dense, denser, usual = _densities(air.item)
         parts = {
             "constant": constant * dense,
             "temperature": stack * usual + constant * denser,
             "wind": wind * zone.wind * usual,
         }
-        _infiltrate(held, {key: changes * given * value for key, value in parts.items()})
+        _infiltrate(held, {key: changes * constant_share * value for key, value in parts.items()})
         return
     if constant:
-        schedule, most = fraction(work, f"{air.item.name} flow", air.values)
-        _ventilate(work, zone, air.item.name, air.flow * constant * most, schedule)
+        schedule, most = fraction(context, f"{air.item.name} flow", air.values)
+        _ventilate(context, zone, air.item.name, air.flow * constant * most, schedule)
     if stack or wind:
         mean = air.values.mean()
-        work.findings.approximated(
+        context.findings.approximated(
             air.item,
             "a scheduled flow that depends on temperature or wind",
             f"that part has the mean of its schedule, {mean:.2f}, all year",
@@ -174,7 +176,7 @@ def _add(work: Work, zone: Zone, air: Flow) -> None:
         _infiltrate(held, {key: changes * mean * value for key, value in parts.items()})
 
 
-def _densities(item: Item) -> tuple[float, float, float]:
+def _densities(item: IdfObject) -> tuple[float, float, float]:
     """Density of the air of a flow over that of the site: at equal temperatures, its rise, a usual one."""
     if item.word("density_basis") in ("standard", "indoor"):
         return 1.0, 0.0, 1.0
@@ -190,20 +192,20 @@ def _infiltrate(zone: dict[str, Any], parts: dict[str, float]) -> None:
         del zone["infiltration"]
 
 
-def _ventilate(work: Work, zone: Zone, name: str, flow: float, schedule: str | None) -> None:
+def _ventilate(context: Context, zone: Zone, name: str, flow: float, schedule: str | None) -> None:
     if flow <= 0.0:
         return
-    held = work.section("zones")[zone.name].setdefault("ventilation", {})
-    key = work.names.of(f"ventilation of {zone.name}", name)
+    held = context.section("zones")[zone.name].setdefault("ventilation", {})
+    key = context.names.of(f"ventilation of {zone.name}", name)
     held[key] = {"flow": round(flow, 8)} | ({} if schedule is None else {"schedule": schedule})
 
 
-def ventilate(work: Work, zone: Zone, name: str, flow: float, values: Year) -> None:
+def ventilate(context: Context, zone: Zone, name: str, flow: float, values: Year) -> None:
     """Enter ventilation with outdoor air.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     zone : Zone
         The zone.
@@ -214,28 +216,28 @@ def ventilate(work: Work, zone: Zone, name: str, flow: float, values: Year) -> N
     values : Year
         Its schedule.
     """
-    schedule, most = fraction(work, f"{name} flow", values)
-    _ventilate(work, zone, name, flow * most, schedule)
+    schedule, most = fraction(context, f"{name} flow", values)
+    _ventilate(context, zone, name, flow * most, schedule)
 
 
-def _conditions(work: Work, item: Item, schedule: str) -> None:
+def _conditions(context: Context, item: IdfObject, schedule: str) -> None:
     """Conditions under which EnergyPlus ventilates; there are none here."""
-    if year(work, item, schedule).constant == 0.0:
+    if year(context, item, schedule).constant == 0.0:
         return
     active = []
     for key, idle in _IDLE.items():
-        given = item.number(key)
-        if item.text(f"{key}_schedule_name") or (given is not None and abs(given) < abs(idle)):
-            active.append(f"{key.replace('_', ' ')} {'' if given is None else f'{given:g}'}".strip())
+        limit = item.number(key)
+        if item.text(f"{key}_schedule_name") or (limit is not None and abs(limit) < abs(idle)):
+            active.append(f"{key.replace('_', ' ')} {'' if limit is None else f'{limit:g}'}".strip())
     if active:
-        work.findings.left_out(
+        context.findings.left_out(
             item,
             f"ventilation only at {', '.join(active)}",
             "outdoor air enters at all times: zones are colder when EnergyPlus would not ventilate",
         )
 
 
-def _fan(work: Work, item: Item, zone: Zone, air: Flow) -> None:
+def _fan(context: Context, item: IdfObject, zone: Zone, air: Flow) -> None:
     """Heat of the fan of supplied air."""
     if item.word("ventilation_type") not in ("intake", "balanced"):
         return
@@ -243,32 +245,32 @@ def _fan(work: Work, item: Item, zone: Zone, air: Flow) -> None:
     if rise <= 0.0:
         return
     if any(air.terms[1:]):
-        work.findings.approximated(item, "heat of the fan", "that of the constant part of the flow")
-    schedule, most = fraction(work, f"{item.name} flow", air.values)
+        context.findings.approximated(item, "heat of the fan", "that of the constant part of the flow")
+    schedule, most = fraction(context, f"{item.name} flow", air.values)
     power = air.flow * air.terms[0] * most * rise / efficiency
     if power > 0.0:
-        gains = work.section("zones")[zone.name].setdefault("gains", {})
-        key = work.names.of(f"gains of {zone.name}", f"{item.name} fan")
+        gains = context.section("zones")[zone.name].setdefault("gains", {})
+        key = context.names.of(f"gains of {zone.name}", f"{item.name} fan")
         gains[key] = {"power": round(power, 6)} | ({} if schedule is None else {"schedule": schedule})
 
 
-def _opening(work: Work, item: Item, zone: Zone) -> None:
-    given = item.number("opening_effectiveness")
-    if given is None:
-        work.findings.approximated(
+def _opening(context: Context, item: IdfObject, zone: Zone) -> None:
+    effectiveness = item.number("opening_effectiveness")
+    if effectiveness is None:
+        context.findings.approximated(
             item, "an effectiveness by wind direction", f"{_EFFECTIVENESS:g} for all directions"
         )
     discharge = item.number("discharge_coefficient_for_opening")
     if discharge is None:
-        work.findings.approximated(item, "a discharge coefficient by temperature", "0.65 at all times")
-    effective = (_EFFECTIVENESS if given is None else given) * zone.wind
-    values = year(work, item, "opening_area_fraction_schedule_name")
-    schedule, most = fraction(work, f"{item.name} open", values)
+        context.findings.approximated(item, "a discharge coefficient by temperature", "0.65 at all times")
+    effective = (_EFFECTIVENESS if effectiveness is None else effectiveness) * zone.wind
+    values = year(context, item, "opening_area_fraction_schedule_name")
+    schedule, most = fraction(context, f"{item.name} open", values)
     area = item.needed("opening_area") * most
     if area <= 0.0:
         return
-    name = work.names.of("openings", item.name)
-    work.section("openings")[name] = {
+    name = context.names.of("openings", item.name)
+    context.section("openings")[name] = {
         "zone": zone.name,
         "area": round(area, 8),
         "height": item.number("height_difference") or 0.0,
@@ -277,21 +279,21 @@ def _opening(work: Work, item: Item, zone: Zone) -> None:
     } | ({} if schedule is None else {"schedule": schedule})
 
 
-def _leakage(work: Work, item: Item, zone: Zone) -> None:
+def _leakage(context: Context, item: IdfObject, zone: Zone) -> None:
     """``A sqrt(Cs |dT| + Cw V^2)`` as an opening whose flows by wind and buoyancy are those."""
     area = item.needed("effective_air_leakage_area") * 1e-3
     stack, wind = item.needed("stack_coefficient"), item.needed("wind_coefficient")
-    values = year(work, item, "schedule_name")
-    schedule, most = fraction(work, f"{item.name} flow", values)
+    values = year(context, item, "schedule_name")
+    schedule, most = fraction(context, f"{item.name} flow", values)
     area *= most
     free = area * math.sqrt(wind) * zone.wind / _CW
     if area <= 0.0 or free <= 0.0:
         return
     height = stack * area**2 * _ROOM / (free**2 * _DISCHARGE**2 * 2.0 * GRAVITY)
-    work.findings.approximated(
+    context.findings.approximated(
         item, "a leakage area", "an opening with the same flow by wind, and by buoyancy at 20 degC"
     )
-    work.section("openings")[work.names.of("openings", item.name)] = {
+    context.section("openings")[context.names.of("openings", item.name)] = {
         "zone": zone.name,
         "area": round(free, 8),
         "height": round(height, 6),
@@ -300,18 +302,20 @@ def _leakage(work: Work, item: Item, zone: Zone) -> None:
     } | ({} if schedule is None else {"schedule": schedule})
 
 
-def _mixing(work: Work, zones: dict[str, Zone]) -> None:
+def _mixing(context: Context, zones: dict[str, Zone]) -> None:
     """Air between zones: in both directions, where EnergyPlus may have one alone."""
-    one_way: dict[tuple[str, str], list[tuple[Item, float, Year]]] = {}
-    for item in work.model.of("ZoneMixing", "ZoneCrossMixing"):
-        sources = work.zones_of(item, "source_zone_or_space_name", "source_zone_name")
+    one_way: dict[tuple[str, str], list[tuple[IdfObject, float, Year]]] = {}
+    for item in context.model.of("ZoneMixing", "ZoneCrossMixing"):
+        sources = context.zones_of(item, "source_zone_or_space_name", "source_zone_name")
         source = zones.get(sources[0].name.casefold())
         if item.number("delta_temperature") or item.text("delta_temperature_schedule_name"):
-            work.findings.left_out(item, "mixing only at a temperature difference", "it mixes at all times")
-        for zone in zones_of(work, item, zones):
+            context.findings.left_out(
+                item, "mixing only at a temperature difference", "it mixes at all times"
+            )
+        for zone in zones_of(context, item, zones):
             if source is None or source is zone:
                 continue
-            air = _flow(work, item, zone, zones, "design_flow_rate_calculation_method")
+            air = _flow(context, item, zone, zones, "design_flow_rate_calculation_method")
             pair = (zone.name, source.name)
             if item.kind == "ZoneCrossMixing":
                 # A pair of objects describes one exchange; each adds to the same flow.
@@ -325,20 +329,26 @@ def _mixing(work: Work, zones: dict[str, Zone]) -> None:
         back = one_way.get((origin, to), [])
         crossed = flows[0][0].kind == "ZoneCrossMixing"
         if not crossed and not _equal(flows, back):
-            work.findings.approximated(
+            context.findings.approximated(
                 flows[0][0], "air in one direction", "the same flow returns: the source zone feels it, too"
             )
         _path(
-            work, to, origin, max((flows, back), key=lambda some: sum(flow for _, flow, _ in some)), crossed
+            context,
+            to,
+            origin,
+            max((flows, back), key=lambda some: sum(flow for _, flow, _ in some)),
+            crossed,
         )
 
 
-def _equal(flows: list[tuple[Item, float, Year]], back: list[tuple[Item, float, Year]]) -> bool:
-    there, here = (sum(flow for _, flow, _ in some) for some in (flows, back))
-    return abs(there - here) <= 1e-6 * max(there, here, 1e-12)
+def _equal(flows: list[tuple[IdfObject, float, Year]], back: list[tuple[IdfObject, float, Year]]) -> bool:
+    forward_flow, backward_flow = (sum(flow for _, flow, _ in some) for some in (flows, back))
+    return abs(forward_flow - backward_flow) <= 1e-6 * max(forward_flow, backward_flow, 1e-12)
 
 
-def _path(work: Work, to: str, source: str, flows: list[tuple[Item, float, Year]], crossed: bool) -> None:
+def _path(
+    context: Context, to: str, source: str, flows: list[tuple[IdfObject, float, Year]], crossed: bool
+) -> None:
     rates = [flow for _, flow, _ in flows]
     total = combined(
         lambda *shares: (max if crossed else sum)(f * s for f, s in zip(rates, shares, strict=True)),
@@ -347,7 +357,7 @@ def _path(work: Work, to: str, source: str, flows: list[tuple[Item, float, Year]
     peak = max(total.values)
     if peak <= 0.0:
         return
-    schedule, most = fraction(work, f"{flows[0][0].name} flow", combined(lambda v: v / peak, total))
-    made: dict[str, Any] = {"between": [to, source], "flow": round(peak * most, 8)}
-    name = work.names.of("air_paths", flows[0][0].name)
-    work.section("air_paths")[name] = made | ({} if schedule is None else {"schedule": schedule})
+    schedule, most = fraction(context, f"{flows[0][0].name} flow", combined(lambda v: v / peak, total))
+    path: dict[str, Any] = {"between": [to, source], "flow": round(peak * most, 8)}
+    name = context.names.of("air_paths", flows[0][0].name)
+    context.section("air_paths")[name] = path | ({} if schedule is None else {"schedule": schedule})

@@ -10,43 +10,43 @@ from __future__ import annotations
 
 from typing import Any
 
+from mascarin.convert.context import Context, Section
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.materials import plain_layers
-from mascarin.convert.source import Item
-from mascarin.convert.work import Section, Work
 
 #: Layers below this are left out where a construction is cut [m].
-_THIN = 1e-5
+_MIN_THICKNESS = 1e-5
 
 
-def construction(work: Work, item: Item, *, cut: bool, finite_differences: bool) -> str:
+def construction(context: Context, item: IdfObject, *, cut: bool, finite_differences: bool) -> str:
     """Enter a construction, if it is not there, and return its name.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
-    item : Item
+    item : IdfObject
         The construction of EnergyPlus.
     cut : bool
         Whether only the part inside of the plane without heat flow is wanted.
     finite_differences : bool
         Whether EnergyPlus solves the surface by finite differences.
     """
-    melting = finite_differences and _can_melt(work, item)
-    wanted = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
-    name = work.names.of("constructions", wanted)
-    held = work.section("constructions")
+    melting = finite_differences and _can_melt(context, item)
+    original = item.name + (" melting" if melting else "") + (" inner part" if cut else "")
+    name = context.names.of("constructions", original)
+    held = context.section("constructions")
     if name not in held:
-        layers = plain_layers(work, item, finite_differences)
+        layers = plain_layers(context, item, finite_differences)
         if cut:
-            layers = inner_part(layers, work.section("materials"))
+            layers = inner_part(layers, context.section("materials"))
         held[name] = {"layers": _named_apart(layers)}
     return name
 
 
-def _can_melt(work: Work, item: Item) -> bool:
-    given = work.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
-    names = {one.name.casefold() for one in given}
+def _can_melt(context: Context, item: IdfObject) -> bool:
+    properties = context.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+    names = {material_property.name.casefold() for material_property in properties}
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     return any(item.word(key) in names for key in keys if item.word(key))
 
@@ -68,28 +68,28 @@ def inner_part(layers: list[Section], materials: Section) -> list[Section]:
         Their materials.
     """
     held = [_held(layer, materials[layer["material"]]) for layer in layers]
-    whole, capacity = sum(r for r, _ in held), sum(c for _, c in held)
-    if capacity <= 0.0 or whole <= 0.0:
+    total_resistance, capacity = sum(r for r, _ in held), sum(c for _, c in held)
+    if capacity <= 0.0 or total_resistance <= 0.0:
         return layers
     passed = moment = 0.0
     for resistance, heat in held:
         moment += heat * (passed + 0.5 * resistance)
         passed += resistance
-    left = capacity * (1.0 - moment / (capacity * whole))
-    kept: list[Section] = []
+    outer_capacity = capacity * (1.0 - moment / (capacity * total_resistance))
+    inner_layers: list[Section] = []
     for layer, (_, heat) in zip(layers, held, strict=True):
-        if heat <= left:
-            left -= heat
-            if heat == 0.0 and left > 0.0:
+        if heat <= outer_capacity:
+            outer_capacity -= heat
+            if heat == 0.0 and outer_capacity > 0.0:
                 continue
             if heat == 0.0:
-                kept.append(layer)
+                inner_layers.append(layer)
             continue
-        thickness = float(layer["thickness"]) * (1.0 - left / heat)
-        left = 0.0
-        if thickness > _THIN:
-            kept.append(layer | {"thickness": round(thickness, 7)})
-    return kept or layers[-1:]
+        thickness = float(layer["thickness"]) * (1.0 - outer_capacity / heat)
+        outer_capacity = 0.0
+        if thickness > _MIN_THICKNESS:
+            inner_layers.append(layer | {"thickness": round(thickness, 7)})
+    return inner_layers or layers[-1:]
 
 
 def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:
@@ -106,12 +106,12 @@ def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:
 
 def _named_apart(layers: list[Section]) -> list[Section]:
     """Layers with names of their own where a material occurs twice, or is called outside or inside."""
-    seen: dict[str, int] = {}
+    uses: dict[str, int] = {}
     named = []
     for layer in layers:
         material = layer["material"]
-        seen[material] = seen.get(material, 0) + 1
-        if seen[material] > 1 or material in ("outside", "inside"):
-            layer = {"name": f"{material}_layer_{seen[material]}", **layer}
+        uses[material] = uses.get(material, 0) + 1
+        if uses[material] > 1 or material in ("outside", "inside"):
+            layer = {"name": f"{material}_layer_{uses[material]}", **layer}
         named.append(layer)
     return named

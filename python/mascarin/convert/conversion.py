@@ -11,19 +11,19 @@ from typing import Any, Final
 from mascarin.building import Building
 from mascarin.convert.airflow import describe_air
 from mascarin.convert.conditioning import describe_conditioning, usual_temperatures
+from mascarin.convert.context import Context, Section
+from mascarin.convert.convection import ConvectionCoefficients
 from mascarin.convert.enclosures import describe_enclosures
-from mascarin.convert.faces import faces, openings
-from mascarin.convert.films import Films
 from mascarin.convert.findings import Finding
 from mascarin.convert.gains import describe_gains
+from mascarin.convert.idf import read
+from mascarin.convert.idf_surfaces import read_openings, read_surfaces
 from mascarin.convert.schedules import calendar_year, day_of
 from mascarin.convert.shades import describe_shades
 from mascarin.convert.site import describe_site
-from mascarin.convert.source import read
 from mascarin.convert.surfaces import describe_surfaces
-from mascarin.convert.unread import note_unread
+from mascarin.convert.unsupported import note_unsupported
 from mascarin.convert.windows import describe_openings
-from mascarin.convert.work import Section, Work
 from mascarin.convert.zones import describe_zones
 from mascarin.errors import InputError
 
@@ -70,7 +70,7 @@ class Conversion:
     @property
     def complete(self) -> bool:
         """Whether nothing that changes the results was left out."""
-        return not any(one.level == "left out" for one in self.findings)
+        return not any(finding.level == "left out" for finding in self.findings)
 
 
 def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversion:
@@ -98,46 +98,46 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     >>> from mascarin.convert import convert
     >>> convert("office.idf")  # doctest: +SKIP
     """
-    work = Work(read(Path(file)))
-    every = faces(work)
-    if not every and not work.model.of("InternalMass"):
+    context = Context(read(Path(file)))
+    all_surfaces = read_surfaces(context)
+    if not all_surfaces and not context.model.of("InternalMass"):
         raise InputError(f"{file}: found no surfaces; expected walls, floors and roofs of the zones")
-    inside = openings(work, every)
-    describe_site(work, None if weather is None else Path(weather))
-    zones = describe_zones(work, every)
-    films = Films(work)
-    surfaces = describe_surfaces(work, every, films)
-    describe_openings(work, inside, films, surfaces)
-    describe_shades(work, every, inside)
-    describe_gains(work, zones, usual_temperatures(work, zones))
-    describe_air(work, zones)
-    describe_conditioning(work, zones)
-    describe_enclosures(work, _built(work), zones)
-    note_unread(work)
-    building = _built(work)
-    start, end = _period(work)
-    step = work.model.one("Timestep")
+    inside = read_openings(context, all_surfaces)
+    describe_site(context, None if weather is None else Path(weather))
+    zones = describe_zones(context, all_surfaces)
+    coefficients = ConvectionCoefficients(context)
+    surfaces = describe_surfaces(context, all_surfaces, coefficients)
+    describe_openings(context, inside, coefficients, surfaces)
+    describe_shades(context, all_surfaces, inside)
+    describe_gains(context, zones, usual_temperatures(context, zones))
+    describe_air(context, zones)
+    describe_conditioning(context, zones)
+    describe_enclosures(context, _built(context), zones)
+    note_unsupported(context)
+    building = _built(context)
+    start, end = _period(context)
+    step = context.model.one("Timestep")
     return Conversion(
         file=Path(file),
-        version=".".join(str(part) for part in work.model.version[:2]),
+        version=".".join(str(part) for part in context.model.version[:2]),
         building=building,
-        description=_ordered(work),
-        findings=tuple(work.findings.every),
-        names=work.names.original,
+        description=_ordered(context),
+        findings=tuple(context.findings.unique),
+        names=context.names.original,
         start=start,
         end=end,
         steps_per_hour=int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6),
     )
 
 
-def _ordered(work: Work) -> Section:
-    main = work.model.one("Building")
-    title = (main.name if main is not None else "") or work.model.file.stem
-    title = work.model.file.stem if title.casefold() == "none" else title
-    return {"name": title} | {key: work.sections[key] for key in _ORDER if work.sections.get(key)}
+def _ordered(context: Context) -> Section:
+    main = context.model.one("Building")
+    title = (main.name if main is not None else "") or context.model.file.stem
+    title = context.model.file.stem if title.casefold() == "none" else title
+    return {"name": title} | {key: context.sections[key] for key in _ORDER if context.sections.get(key)}
 
 
-def _built(work: Work) -> Building:
+def _built(context: Context) -> Building:
     """The building as far as it is described.
 
     Raises
@@ -146,27 +146,29 @@ def _built(work: Work) -> Building:
         What the file describes is refused; the text names its objects.
     """
     try:
-        return Building.from_dict(_ordered(work))
+        return Building.from_dict(_ordered(context))
     except InputError as error:
         text = str(error)
-        raise InputError(f"{work.model.file}: {text}{_origins(work, text)}") from None
+        raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
 
 
-def _origins(work: Work, text: str) -> str:
+def _origins(context: Context, text: str) -> str:
     """Lines on the objects behind the names of an error."""
-    lines = {item.name.casefold(): item for item in reversed(work.model.items)}
-    told = []
-    for section, names in work.names.original.items():
-        for name, made in names.items():
+    lines = {item.name.casefold(): item for item in reversed(context.model.items)}
+    lines_of_objects = []
+    for section, names in context.names.original.items():
+        for name, entered_name in names.items():
             item = lines.get(name.casefold())
-            if item is not None and re.search(rf"\b{section}\.{re.escape(made)}\b|'{re.escape(made)}'", text):
-                told.append(f"\n  {section}.{made} is {item.where}")
-    return "".join(told)
+            if item is not None and re.search(
+                rf"\b{section}\.{re.escape(entered_name)}\b|'{re.escape(entered_name)}'", text
+            ):
+                lines_of_objects.append(f"\n  {section}.{entered_name} is {item.where}")
+    return "".join(lines_of_objects)
 
 
-def _period(work: Work) -> tuple[str, str]:
+def _period(context: Context) -> tuple[str, str]:
     """First day, and day after the last one, of the first run period."""
-    year, item = calendar_year(work), work.model.one("RunPeriod")
+    year, item = calendar_year(context), context.model.one("RunPeriod")
     values: dict[str, Any] = {}
     for key, default in (("begin", (1, 1)), ("end", (12, 31))):
         month = item.number(f"{key}_month") if item is not None else None

@@ -11,7 +11,7 @@ AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
 
 
 #: No number of a model is larger; products of such numbers are finite.
-_LARGEST: Final = 1e30
+_MAX_NUMBER: Final = 1e30
 
 
 def finite(text: str) -> float:
@@ -22,10 +22,10 @@ def finite(text: str) -> float:
     ValueError
         It is none, not finite, or above 1e30.
     """
-    found = float(text)
-    if not _is_finite(found):
-        raise ValueError(f"found {text}, expected a finite number up to {_LARGEST:g}")
-    return found
+    number = float(text)
+    if not _is_finite(number):
+        raise ValueError(f"found {text}, expected a finite number up to {_MAX_NUMBER:g}")
+    return number
 
 
 def wrong_number(schema: Any, kind: str, data: Mapping[str, Any]) -> str | None:
@@ -46,62 +46,62 @@ def wrong_number(schema: Any, kind: str, data: Mapping[str, Any]) -> str | None:
         Field, what was found and what is expected; None where all are right.
     """
     inner = schema.get_inner_schema(kind) or {}
-    for key, value, told in _fields(inner.get("properties", {}), data):
-        fault = _fault(value, told)
+    for key, value, definition in _fields(inner.get("properties", {}), data):
+        fault = _fault(value, definition)
         if fault is not None:
             return f"{key}: found {_short(value)}; expected {fault}"
     return None
 
 
 def _fields(
-    told: Mapping[str, Any], data: Mapping[str, Any], place: str = ""
+    definitions: Mapping[str, Any], data: Mapping[str, Any], path: str = ""
 ) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
     """Fields with a value, and what the schema says of each."""
     for key, value in data.items():
-        own = told.get(key, {})
+        definition = definitions.get(key, {})
         if isinstance(value, list):
-            repeated = own.get("items", {}).get("properties", {})
-            for k, one in enumerate(value, 1):
-                if isinstance(one, Mapping):
-                    yield from _fields(repeated, one, f"{place}{key} {k}: ")
+            repeated = definition.get("items", {}).get("properties", {})
+            for k, row in enumerate(value, 1):
+                if isinstance(row, Mapping):
+                    yield from _fields(repeated, row, f"{path}{key} {k}: ")
         elif value is not None and value != "":
-            yield f"{place}{key}", value, own
+            yield f"{path}{key}", value, definition
 
 
-def _fault(value: Any, told: Mapping[str, Any]) -> str | None:
+def _fault(value: Any, definition: Mapping[str, Any]) -> str | None:
     """What is expected in place of a value; None where it is right."""
-    kinds = told.get("anyOf", [told])
-    numeric = [one for one in kinds if one.get("type") in ("number", "integer")]
+    kinds = definition.get("anyOf", [definition])
+    numeric = [option for option in kinds if option.get("type") in ("number", "integer")]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        words = [one.get("enum") for one in kinds if one.get("type") not in ("number", "integer")]
+        words = [option.get("enum") for option in kinds if option.get("type") not in ("number", "integer")]
         return None if not numeric or _is_word(value, words) else "a number"
     if not _is_finite(value):
-        return f"a finite number up to {_LARGEST:g}"
+        return f"a finite number up to {_MAX_NUMBER:g}"
     return _outside(float(value), numeric[0]) if numeric else None
 
 
 def _is_word(value: Any, words: list[list[str] | None]) -> bool:
     """Whether a field of numbers takes a text: any, or words such as Autosize."""
     text = str(value).strip().casefold()
-    return any(one is None or text in AUTO or text in map(str.casefold, one) for one in words)
+    return any(options is None or text in AUTO or text in map(str.casefold, options) for options in words)
 
 
 def _is_finite(value: float) -> bool:
-    return abs(value) <= _LARGEST  # false for nan, and exact for whole numbers of any length
+    return abs(value) <= _MAX_NUMBER  # false for nan, and exact for whole numbers of any length
 
 
-def _outside(value: float, told: Mapping[str, Any]) -> str | None:
+def _outside(value: float, definition: Mapping[str, Any]) -> str | None:
     """The limit of the schema that a number misses."""
-    if value < told.get("minimum", -math.inf):
-        return f"at least {told['minimum']:g}"
-    if value > told.get("maximum", math.inf):
-        return f"at most {told['maximum']:g}"
+    if value < definition.get("minimum", -math.inf):
+        return f"at least {definition['minimum']:g}"
+    if value > definition.get("maximum", math.inf):
+        return f"at most {definition['maximum']:g}"
     for key, words, missed in (
-        ("exclusiveMinimum", "above", value <= told.get("exclusiveMinimum", -math.inf)),
-        ("exclusiveMaximum", "below", value >= told.get("exclusiveMaximum", math.inf)),
+        ("exclusiveMinimum", "above", value <= definition.get("exclusiveMinimum", -math.inf)),
+        ("exclusiveMaximum", "below", value >= definition.get("exclusiveMaximum", math.inf)),
     ):
         if missed:
-            return f"a number {words} {told[key]:g}"
+            return f"a number {words} {definition[key]:g}"
     return None
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from mascarin.convert.source import Item
+from mascarin.convert.idf import IdfObject
 
 Level = Literal["left out", "approximated", "no effect"]
 
@@ -42,37 +42,40 @@ class Finding:
 
     def text(self) -> str:
         """The finding on one line."""
-        place = "" if self.line is None else f"line {self.line}: "
+        position = "" if self.line is None else f"line {self.line}: "
         name = f" '{self.name}'" if self.name else ""
-        return f"{place}{self.kind}{name}: {self.what}: {self.effect}"
+        return f"{position}{self.kind}{name}: {self.what}: {self.effect}"
 
 
 @dataclass
 class Findings:
     """Findings in the order in which they were made, each once."""
 
-    every: dict[Finding, None] = field(default_factory=dict)
+    unique: dict[Finding, None] = field(default_factory=dict)
 
-    def left_out(self, item: Item, what: str, effect: str) -> None:
+    def left_out(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is not carried over and changes the results."""
         self._add("left out", item, what, effect)
 
-    def approximated(self, item: Item, what: str, effect: str) -> None:
+    def approximated(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is carried over in another form."""
         self._add("approximated", item, what, effect)
 
-    def no_effect(self, items: Iterable[Item], what: str, effect: str) -> None:
+    def no_effect(self, items: Iterable[IdfObject], what: str, effect: str) -> None:
         """Note objects of one class that are not needed."""
-        several = list(items)
-        if len(several) == 1:
-            self._add("no effect", several[0], what, effect)
-        elif several:
-            count = f"{len(several)} objects"
-            self.every[Finding("no effect", several[0].kind, count, several[0].line, what, effect)] = None
+        objects = list(items)
+        if len(objects) == 1:
+            self._add("no effect", objects[0], what, effect)
+        elif objects:
+            count = f"{len(objects)} objects"
+            self.unique[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
 
-    def _add(self, level: Level, item: Item, what: str, effect: str) -> None:
-        self.every[Finding(level, item.kind, item.name, item.line, what, effect)] = None
+    def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
+        self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
 
     def of(self, level: Level) -> list[Finding]:
         """Findings of one level, by line."""
-        return sorted((one for one in self.every if one.level == level), key=lambda one: one.line or 0)
+        return sorted(
+            (finding for finding in self.unique if finding.level == level),
+            key=lambda finding: finding.line or 0,
+        )

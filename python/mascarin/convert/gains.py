@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.schedules import fraction, year
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
 from mascarin.convert.year import Year, combined, constant
 from mascarin.convert.zones import Zone
 
@@ -32,7 +32,7 @@ class Heat:
 
     Attributes
     ----------
-    item : Item
+    item : IdfObject
         The object.
     name : str
         Its name in the zone.
@@ -42,18 +42,18 @@ class Heat:
         Radiative fraction. [-]
     """
 
-    item: Item
+    item: IdfObject
     name: str
     power: Year
     radiative: float
 
 
-def describe_gains(work: Work, zones: dict[str, Zone], air: dict[str, float]) -> None:
+def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, float]) -> None:
     """Enter all internal gains.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     zones : dict of str to Zone
         Zones by the name in the file, in small letters.
@@ -66,37 +66,39 @@ def describe_gains(work: Work, zones: dict[str, Zone], air: dict[str, float]) ->
         A zone or schedule that does not exist.
     """
     by_zone: dict[str, list[Heat]] = {key: [] for key in zones}
-    for item in work.model.of("People"):
-        for zone in _zones(work, item, zones):
+    for item in context.model.of("People"):
+        for zone in _zones(context, item, zones):
             by_zone[zone.item.name.casefold()].append(
-                _people(work, item, zone, air[zone.item.name.casefold()])
+                _people(context, item, zone, air[zone.item.name.casefold()])
             )
-    for item in work.model.of("Lights"):
-        for zone in _zones(work, item, zones):
-            by_zone[zone.item.name.casefold()].append(_lights(work, item, zone, zones))
-    for item in work.model.of(*_EQUIPMENT):
+    for item in context.model.of("Lights"):
+        for zone in _zones(context, item, zones):
+            by_zone[zone.item.name.casefold()].append(_lights(context, item, zone, zones))
+    for item in context.model.of(*_EQUIPMENT):
         if not any(item.text(key) for key in _ZONE_KEYS):
-            work.findings.no_effect([item], "equipment without a zone", "its heat is outside of the zones")
+            context.findings.no_effect([item], "equipment without a zone", "its heat is outside of the zones")
             continue
-        for zone in _zones(work, item, zones):
-            by_zone[zone.item.name.casefold()].append(_equipment(work, item, zone, zones))
+        for zone in _zones(context, item, zones):
+            by_zone[zone.item.name.casefold()].append(_equipment(context, item, zone, zones))
     for key, heats in by_zone.items():
-        _enter(work, zones[key], heats)
+        _enter(context, zones[key], heats)
 
 
-def _zones(work: Work, item: Item, zones: dict[str, Zone]) -> list[Zone]:
-    named = (zones.get(zone.name.casefold()) for zone in work.zones_of(item, *_ZONE_KEYS))
+def _zones(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zone]:
+    named = (zones.get(zone.name.casefold()) for zone in context.zones_of(item, *_ZONE_KEYS))
     return [zone for zone in named if zone is not None]
 
 
-def people_in(work: Work, zone: Zone, zones: dict[str, Zone]) -> float:
+def people_in(context: Context, zone: Zone, zones: dict[str, Zone]) -> float:
     """Number of people in a zone at a schedule of 1."""
     return sum(
-        _number_of_people(item, zone) for item in work.model.of("People") if zone in _zones(work, item, zones)
+        _number_of_people(item, zone)
+        for item in context.model.of("People")
+        if zone in _zones(context, item, zones)
     )
 
 
-def _number_of_people(item: Item, zone: Zone) -> float:
+def _number_of_people(item: IdfObject, zone: Zone) -> float:
     method = item.word("number_of_people_calculation_method")
     if method.startswith("people/"):
         return item.needed("people_per_floor_area", "people_per_zone_floor_area") * zone.floor
@@ -119,81 +121,81 @@ def sensible(activity: float, air: float) -> float:
     return min(max(heat, 0.0), activity)
 
 
-def _people(work: Work, item: Item, zone: Zone, air: float) -> Heat:
+def _people(context: Context, item: IdfObject, zone: Zone, air: float) -> Heat:
     count = _number_of_people(item, zone)
-    present = year(work, item, "number_of_people_schedule_name")
-    activity = year(work, item, "activity_level_schedule_name", default=120.0)
+    present = year(context, item, "number_of_people_schedule_name")
+    activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
     if share is None:
-        power = combined(lambda here, heat: count * here * sensible(heat, air), present, activity)
-        work.findings.approximated(
+        power = combined(lambda presence, heat: count * presence * sensible(heat, air), present, activity)
+        context.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
             f"that at {air:.1f} degC is used, about 4 % less for each kelvin above it; moisture is left out",
         )
     else:
-        given = share
-        power = combined(lambda here, heat: count * here * heat * given, present, activity)
+        sensible_share = share
+        power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
     return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
 
 
-def _design_level(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> float:
+def _design_level(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
     method = item.word("design_level_calculation_method")
     if method in ("watts/area", "power/area"):
         keys = ("watts_per_floor_area", "watts_per_zone_floor_area", "power_per_floor_area")
         return item.needed(*keys, "power_per_zone_floor_area") * zone.floor
     if method in ("watts/person", "power/person"):
-        return item.needed("watts_per_person", "power_per_person") * people_in(work, zone, zones)
+        return item.needed("watts_per_person", "power_per_person") * people_in(context, zone, zones)
     return item.needed("design_level", "lighting_level")
 
 
-def _lights(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> Heat:
-    level, on = _design_level(work, item, zone, zones), year(work, item, "schedule_name")
+def _lights(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
+    level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
     taken = item.number("return_air_fraction") or 0.0
-    radiant, visible = (item.number(f"fraction_{one}") or 0.0 for one in ("radiant", "visible"))
+    radiant, visible = (item.number(f"fraction_{part}") or 0.0 for part in ("radiant", "visible"))
     if taken > 0.0:
-        work.findings.approximated(
+        context.findings.approximated(
             item, f"{taken:.0%} of its heat in the return air", "this part does not enter the zone"
         )
     if visible > 0.0:
-        work.findings.approximated(
+        context.findings.approximated(
             item, "visible radiation", "it is absorbed as long-wave radiation is: none leaves by the windows"
         )
-    left = max(1.0 - taken, 1e-9)
-    power = combined(lambda share: level * share * left, on)
-    return Heat(item, item.name, power, min((radiant + visible) / left, 1.0))
+    remaining_share = max(1.0 - taken, 1e-9)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min((radiant + visible) / remaining_share, 1.0))
 
 
-def _equipment(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> Heat:
-    level, on = _design_level(work, item, zone, zones), year(work, item, "schedule_name")
-    latent, radiant, lost = (item.number(f"fraction_{one}") or 0.0 for one in ("latent", "radiant", "lost"))
+def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
+    level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
+    latent, radiant, lost = (item.number(f"fraction_{part}") or 0.0 for part in ("latent", "radiant", "lost"))
     if latent > 0.0:
-        work.findings.approximated(
+        context.findings.approximated(
             item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
         )
-    left = max(1.0 - latent - lost, 0.0)
-    power = combined(lambda share: level * share * left, on)
-    return Heat(item, item.name, power, min(radiant / left, 1.0) if left > 0.0 else 0.0)
+    remaining_share = max(1.0 - latent - lost, 0.0)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min(radiant / remaining_share, 1.0) if remaining_share > 0.0 else 0.0)
 
 
-def _enter(work: Work, zone: Zone, heats: list[Heat]) -> None:
+def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
     """Gains of a zone; heat that is taken away is subtracted from the others."""
     if any(min(heat.power.values) < 0.0 for heat in heats):
-        heats = _netted(work, zone, heats)
+        heats = _netted(context, zone, heats)
     gains: dict[str, dict[str, object]] = {}
     for heat in heats:
-        schedule, most = fraction(work, f"{heat.name} power", _relative(heat.power))
+        schedule, most = fraction(context, f"{heat.name} power", _relative(heat.power))
         power = most * _peak(heat.power)
         if power == 0.0:
             continue
-        name = work.names.of(f"gains of {zone.name}", heat.name)
+        name = context.names.of(f"gains of {zone.name}", heat.name)
         gains[name] = {"power": round(power, 6)}
         if heat.radiative > 0.0:
             gains[name]["radiative"] = round(heat.radiative, 6)
         if schedule is not None:
             gains[name]["schedule"] = schedule
     if gains:
-        work.section("zones")[zone.name]["gains"] = gains
+        context.section("zones")[zone.name]["gains"] = gains
 
 
 def _peak(power: Year) -> float:
@@ -208,7 +210,7 @@ def _relative(power: Year) -> Year:
     return combined(lambda value: value / peak, power)
 
 
-def _netted(work: Work, zone: Zone, heats: list[Heat]) -> list[Heat]:
+def _netted(context: Context, zone: Zone, heats: list[Heat]) -> list[Heat]:
     """Sums of the convective and of the radiative heat of a zone, where both stay above zero."""
     first = heats[0]
     sums = []
@@ -220,12 +222,12 @@ def _netted(work: Work, zone: Zone, heats: list[Heat]) -> list[Heat]:
         )
         total = combined(lambda value: 0.0 if abs(value) < 1e-9 else value, total)
         sums.append(Heat(first.item, f"net {word}", total, radiative))
-    if all(min(one.power.values) >= 0.0 for one in sums):
+    if all(min(net_heat.power.values) >= 0.0 for net_heat in sums):
         return sums
-    kept = [heat for heat in heats if min(heat.power.values) >= 0.0]
+    positive_heats = [heat for heat in heats if min(heat.power.values) >= 0.0]
     for heat in heats:
-        if heat not in kept:
-            work.findings.left_out(
+        if heat not in positive_heats:
+            context.findings.left_out(
                 heat.item, f"heat taken from zone '{zone.item.name}'", "the zone is warmer by this heat"
             )
-    return kept
+    return positive_heats

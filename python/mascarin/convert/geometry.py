@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.convert.source import Item, Model
+from mascarin.convert.idf import IdfModel, IdfObject
 
 Array = npt.NDArray[np.float64]
 
@@ -37,12 +37,12 @@ class Rules:
     north: float
 
 
-def rules_of(model: Model) -> Rules:
+def rules_of(model: IdfModel) -> Rules:
     """Read ``GlobalGeometryRules`` and ``Building``."""
-    given, building = model.one("GlobalGeometryRules"), model.one("Building")
+    geometry_rules, building = model.one("GlobalGeometryRules"), model.one("Building")
 
     def word(key: str) -> str:
-        return "" if given is None else given.word(key)
+        return "" if geometry_rules is None else geometry_rules.word(key)
 
     return Rules(
         clockwise=word("vertex_entry_direction") == "clockwise",
@@ -81,7 +81,7 @@ class Frame:
 TRUE = Frame(np.zeros(3), 0.0, 0.0)
 
 
-def frame_of(zone: Item | None, rules: Rules, relative: bool) -> Frame:
+def frame_of(zone: IdfObject | None, rules: Rules, relative: bool) -> Frame:
     """Coordinates in which the corners of a zone's surfaces are given; of the building without a zone."""
     if not relative:
         return TRUE
@@ -99,7 +99,7 @@ def _turned(points: Array, degrees: float) -> Array:
     return np.column_stack([x * c + y * s, -x * s + y * c, z])
 
 
-def corners_of(item: Item) -> Array:
+def corners_of(item: IdfObject) -> Array:
     """Corners of a detailed object as they are given, shape (n, 3). [m]
 
     Raises
@@ -109,28 +109,28 @@ def corners_of(item: Item) -> Array:
     """
     rows = item.rows("vertices")
     keys = ("x", "y", "z")
-    found: list[list[float]] = []
+    corners: list[list[float]] = []
     for number, row in enumerate(rows, start=1):
         values = [row.get(f"vertex_{axis}_coordinate", 0.0) for axis in keys]
-        found.append([_coordinate(item, number, value) for value in values])
+        corners.append([_coordinate(item, number, value) for value in values])
     number = 1
     while not rows and any(f"vertex_{number}_{axis}_coordinate" in item.fields for axis in keys):
         values = [item.fields.get(f"vertex_{number}_{axis}_coordinate", 0.0) for axis in keys]
-        found.append([_coordinate(item, number, value) for value in values])
+        corners.append([_coordinate(item, number, value) for value in values])
         number += 1
-    if len(found) < 3:
-        raise item.error(f"found {len(found)} vertices", "at least 3", "Give the corners of the surface")
-    return np.array(found)
+    if len(corners) < 3:
+        raise item.error(f"found {len(corners)} vertices", "at least 3", "Give the corners of the surface")
+    return np.array(corners)
 
 
-def _coordinate(item: Item, number: int, value: object) -> float:
+def _coordinate(item: IdfObject, number: int, value: object) -> float:
     try:
-        found = float(value)  # type: ignore[arg-type]
+        coordinate = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        found = math.nan
-    if not math.isfinite(found):
+        coordinate = math.nan
+    if not math.isfinite(coordinate):
         raise item.error(f"vertex {number}: found {value!r}", "a coordinate [m]", "Correct the vertex")
-    return found
+    return coordinate
 
 
 @dataclass(frozen=True)
@@ -206,13 +206,13 @@ def lower_left(points: Array) -> Array:
 
 def without_repeats(points: Array) -> Array:
     """A polygon without corners that coincide with the one before or lie on the line of their neighbours."""
-    kept = [p for k, p in enumerate(points) if np.linalg.norm(p - points[k - 1]) >= SAME]
-    found = []
-    for k, p in enumerate(kept):
-        before, after = p - kept[k - 1], kept[(k + 1) % len(kept)] - p
+    distinct = [p for k, p in enumerate(points) if np.linalg.norm(p - points[k - 1]) >= SAME]
+    corners = []
+    for k, p in enumerate(distinct):
+        before, after = p - distinct[k - 1], distinct[(k + 1) % len(distinct)] - p
         if float(np.linalg.norm(np.cross(before, after))) > 1e-9:
-            found.append(p)
-    return np.array(found).reshape(-1, 3)
+            corners.append(p)
+    return np.array(corners).reshape(-1, 3)
 
 
 def signed_volume(polygons: Sequence[Array]) -> float:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
+from mascarin.convert.context import Context, Section
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.materials import layers_of
-from mascarin.convert.source import Item
 from mascarin.convert.window_data import DataFile, read_data_file
-from mascarin.convert.work import Section, Work
 
 _SHADES: Final = ("shade", "blind", "screen", "drape", "complexshade")
 _GASES: Final = ("air", "argon", "krypton", "xenon")
@@ -34,51 +34,51 @@ class Glazed:
     frame: tuple[float, float, float, float] | None = None
 
 
-def glazing(work: Work, user: Item, construction: Item) -> Glazed | None:
+def glazing(context: Context, user: IdfObject, construction: IdfObject) -> Glazed | None:
     """Enter a glazing, if it is not there; None where it cannot be carried over.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
-    user : Item
+    user : IdfObject
         The window.
-    construction : Item
+    construction : IdfObject
         Its construction.
     """
-    name = work.names.of("glazings", construction.name)
-    held = work.section("glazings")
+    name = context.names.of("glazings", construction.name)
+    held = context.section("glazings")
     if construction.kind == "Construction:WindowDataFile":
-        return _from_data_file(work, construction, name)
+        return _from_data_file(context, construction, name)
     if construction.kind != "Construction":
-        _no_glazing(work, user, f"a {construction.kind}")
+        _no_glazing(context, user, f"a {construction.kind}")
         return None
     if name not in held:
-        layers = layers_of(work, construction)
-        made = _glazing(work, construction, layers)
-        if made is None:
-            _no_glazing(work, user, f"the construction '{construction.name}'")
+        layers = layers_of(context, construction)
+        section = _glazing(context, construction, layers)
+        if section is None:
+            _no_glazing(context, user, f"the construction '{construction.name}'")
             return None
-        held[name] = made | {"source": f"EnergyPlus {construction.label}"}
+        held[name] = section | {"source": f"EnergyPlus {construction.label}"}
     return Glazed(name)
 
 
-def _no_glazing(work: Work, user: Item, what: str) -> None:
-    work.findings.left_out(
+def _no_glazing(context: Context, user: IdfObject, what: str) -> None:
+    context.findings.left_out(
         user, f"{what}, which has no counterpart here", "its wall is opaque there: no sun enters, less heat"
     )
 
 
-def _from_data_file(work: Work, item: Item, name: str) -> Glazed | None:
-    held = work.section("glazings")
-    data = read_data_file(item, work.model.file.parent)
+def _from_data_file(context: Context, item: IdfObject, name: str) -> Glazed | None:
+    held = context.section("glazings")
+    data = read_data_file(item, context.model.file.parent)
     held[name] = _of_data(data) | {"source": f"WINDOW report {data.file}, '{item.name}'"}
     if data.dividers:
-        work.findings.left_out(
+        context.findings.left_out(
             item, "dividers", "more sun enters, by their fraction of the glass, and less heat is conducted"
         )
     if data.systems > 1:
-        work.findings.left_out(
+        context.findings.left_out(
             item, "a second glazing system of a window with a mullion", "the first one is used for both parts"
         )
     return Glazed(name, data.frame)
@@ -89,25 +89,25 @@ def _of_data(data: DataFile) -> Section:
     return {"kind": "panes", "panes": data.panes, "gaps": gaps, "angular": data.angular}
 
 
-def _glazing(work: Work, construction: Item, layers: list[Item]) -> Section | None:
+def _glazing(context: Context, construction: IdfObject, layers: list[IdfObject]) -> Section | None:
     """A glazing by its layers; None where a layer has no counterpart."""
     simple = [item for item in layers if item.kind == "WindowMaterial:SimpleGlazingSystem"]
     if simple:
-        return _rated(work, simple[0])
-    kept = _without_shades(work, construction, layers)
+        return _rated(context, simple[0])
+    unshaded_layers = _without_shades(context, construction, layers)
     panes: list[Section] = []
     gaps: list[Section] = []
-    for item in kept:
+    for item in unshaded_layers:
         kind = item.kind.partition(":")[2].casefold()
         if kind == "glazing":
-            pane = _pane(work, item)
+            pane = _pane(context, item)
         elif kind == "glazing:refractionextinctionmethod":
             pane = _pane_by_index(item)
         elif kind in ("gas", "gasmixture"):
-            gaps.append(_gap(work, item))
+            gaps.append(_gap(context, item))
             continue
         else:
-            work.findings.left_out(
+            context.findings.left_out(
                 item, "a layer that has no counterpart here", "see the windows that use it"
             )
             return None
@@ -121,45 +121,45 @@ def _glazing(work: Work, construction: Item, layers: list[Item]) -> Section | No
     return {"kind": "panes", "panes": panes} | ({"gaps": gaps} if gaps else {})
 
 
-def _without_shades(work: Work, construction: Item, layers: list[Item]) -> list[Item]:
+def _without_shades(context: Context, construction: IdfObject, layers: list[IdfObject]) -> list[IdfObject]:
     """Layers without shading devices; of the two gaps around one between panes, one with both widths."""
     shaded = [item for item in layers if any(word in item.kind.casefold() for word in _SHADES)]
     for item in shaded:
-        work.findings.left_out(
+        context.findings.left_out(
             construction,
             f"the shading device '{item.name}' in it",
             "the glazing is unshaded: more sun enters, more heat is lost at night",
         )
-    kept: list[Item] = []
+    unshaded_layers: list[IdfObject] = []
     for item in layers:
         gas = item.kind in ("WindowMaterial:Gas", "WindowMaterial:GasMixture")
-        if item in shaded or (gas and kept and kept[-1].kind == item.kind):
+        if item in shaded or (gas and unshaded_layers and unshaded_layers[-1].kind == item.kind):
             continue
-        kept.append(item)
-    return kept
+        unshaded_layers.append(item)
+    return unshaded_layers
 
 
-def _pane(work: Work, item: Item) -> Section | None:
+def _pane(context: Context, item: IdfObject) -> Section | None:
     if item.word("optical_data_type") in ("spectral", "spectralandangle", "bsdf"):
-        return _spectral(work, item)
+        return _spectral(context, item)
     through = item.needed("solar_transmittance_at_normal_incidence")
     through *= item.number("dirt_correction_factor_for_solar_and_visible_transmittance") or 1.0
     front = item.number("front_side_solar_reflectance_at_normal_incidence") or 0.0
     back = item.number("back_side_solar_reflectance_at_normal_incidence") or 0.0
     if item.word("solar_diffusing") == "yes":
-        work.findings.approximated(item, "diffusing glass", "beams pass it without being scattered")
-    return _body(work, item) | {
+        context.findings.approximated(item, "diffusing glass", "beams pass it without being scattered")
+    return _body(context, item) | {
         "transmittance": max(through, 1e-3),
         "reflectance": front if front == back else [front, back],
     }
 
 
-def _body(work: Work, item: Item) -> Section:
+def _body(context: Context, item: IdfObject) -> Section:
     emissivity = [
         item.number(f"{s}_side_infrared_hemispherical_emissivity") or 0.84 for s in ("front", "back")
     ]
     if item.number("infrared_transmittance_at_normal_incidence"):
-        work.findings.approximated(
+        context.findings.approximated(
             item, "transmittance of infrared", "long-wave radiation does not pass the pane"
         )
     return {
@@ -169,13 +169,13 @@ def _body(work: Work, item: Item) -> Section:
     }
 
 
-def _spectral(work: Work, item: Item) -> Section | None:
+def _spectral(context: Context, item: IdfObject) -> Section | None:
     """Solar means of a table over the wavelength, weighted by the intervals; no solar spectrum is at hand."""
-    data = work.model.named(
+    data = context.model.named(
         item.text("window_glass_spectral_data_set_name"), "MaterialProperty:GlazingSpectralData"
     )
     if data is None:
-        work.findings.left_out(
+        context.findings.left_out(
             item, "optics by angle or of an unknown data set", "see the windows that use it"
         )
         return None
@@ -183,7 +183,7 @@ def _spectral(work: Work, item: Item) -> Section | None:
     solar = [(float(row["wavelength"]), row) for row in rows if 0.3 <= float(row.get("wavelength", 0)) <= 2.5]
     if len(solar) < 2:
         raise data.error(f"{len(solar)} wavelengths from 0.3 to 2.5 um", "at least 2", "Complete the table")
-    work.findings.approximated(
+    context.findings.approximated(
         item,
         "optics by wavelength",
         "their means are used, weighted by the black body at 5800 K: a few hundredths of transmittance",
@@ -198,7 +198,7 @@ def _spectral(work: Work, item: Item) -> Section | None:
         return round(total / weight, 5)
 
     front, back = mean("front_reflectance"), mean("back_reflectance")
-    return _body(work, item) | {
+    return _body(context, item) | {
         "transmittance": max(mean("transmittance"), 1e-3),
         "reflectance": front if abs(front - back) < 1e-4 else [front, back],
     }
@@ -209,7 +209,7 @@ def _sunlight(wavelength: float) -> float:
     return 1.0 / (wavelength**5 * math.expm1(14387.77 / (wavelength * 5800.0)))
 
 
-def _pane_by_index(item: Item) -> Section:
+def _pane_by_index(item: IdfObject) -> Section:
     """A pane by refractive index and extinction coefficient: a homogeneous plate at normal incidence."""
     index, extinction = item.needed("solar_index_of_refraction"), item.needed("solar_extinction_coefficient")
     thickness = item.needed("thickness")
@@ -225,13 +225,13 @@ def _pane_by_index(item: Item) -> Section:
     }
 
 
-def _gap(work: Work, item: Item) -> Section:
+def _gap(context: Context, item: IdfObject) -> Section:
     thickness = item.needed("thickness")
     if item.kind == "WindowMaterial:Gas":
         gas = item.word("gas_type")
         if gas in _GASES:
             return {"thickness": thickness, "gas": gas}
-        work.findings.approximated(item, f"a gas '{gas}'", "air is used: the gap conducts more or less")
+        context.findings.approximated(item, f"a gas '{gas}'", "air is used: the gap conducts more or less")
         return {"thickness": thickness, "gas": "air"}
     count = round(item.number("number_of_gases_in_mixture") or 2)
     parts = [
@@ -239,13 +239,13 @@ def _gap(work: Work, item: Item) -> Section:
     ]
     share, gas = max(parts)
     gas = gas if gas in _GASES else "air"
-    work.findings.approximated(
+    context.findings.approximated(
         item, f"a mixture with {share:.0%} of {gas}", f"{gas} alone: some percent of the gap's conductance"
     )
     return {"thickness": thickness, "gas": gas}
 
 
-def _rated(work: Work, item: Item) -> Section:
+def _rated(context: Context, item: IdfObject) -> Section:
     """A glazing by U value and solar heat gain.
 
     EnergyPlus replaces it by one pane: its conductance without the surface resistances of the rating, with
@@ -255,7 +255,7 @@ def _rated(work: Work, item: Item) -> Section:
     inside = 1.0 / (0.359073 * math.log(u) + 6.949915) if u < _SINGLE else 1.0 / (1.788041 * u - 2.886625)
     outside = 1.0 / (0.025342 * u + 29.163853)
     if u * (inside + outside) >= 0.995:
-        work.findings.approximated(
+        context.findings.approximated(
             item, f"a U value of {u:g} W/(m2 K)", "a glazing of nearly no resistance of its own"
         )
         u = 0.995 / (inside + outside)
@@ -268,7 +268,7 @@ def _rated(work: Work, item: Item) -> Section:
     }
 
 
-def construction_of(work: Work, user: Item, *, name: str | None = None) -> Item:
+def construction_of(context: Context, user: IdfObject, *, name: str | None = None) -> IdfObject:
     """Construction that a surface or window names.
 
     Raises
@@ -276,7 +276,7 @@ def construction_of(work: Work, user: Item, *, name: str | None = None) -> Item:
     InputError
         There is none.
     """
-    return work.model.require(user, "construction_name", *CONSTRUCTIONS, name=name)
+    return context.model.require(user, "construction_name", *CONSTRUCTIONS, name=name)
 
 
 CONSTRUCTIONS: Final = (

@@ -6,8 +6,8 @@ import math
 from itertools import pairwise
 from typing import Any, Final
 
-from mascarin.convert.source import Item
-from mascarin.convert.work import Section, Work
+from mascarin.convert.context import Context, Section
+from mascarin.convert.idf import IdfObject
 
 MATERIALS: Final = (
     "Material",
@@ -22,10 +22,10 @@ MATERIALS: Final = (
 CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
 _FILMS: Final = (0.125, 0.03)
 #: Distance from a jump of the heat capacity over which it is smoothed, of the shorter interval [-].
-_JUMP: Final = 0.25
+_JUMP_WIDTH: Final = 0.25
 
 
-def layers_of(work: Work, construction: Item) -> list[Item]:
+def layers_of(context: Context, construction: IdfObject) -> list[IdfObject]:
     """Materials of a construction, from outside to inside.
 
     Raises
@@ -35,7 +35,7 @@ def layers_of(work: Work, construction: Item) -> list[Item]:
     """
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     kinds = (*MATERIALS, *WINDOW_MATERIALS)
-    return [work.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
+    return [context.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
 
 
 WINDOW_MATERIALS: Final = (
@@ -59,77 +59,77 @@ WINDOW_MATERIALS: Final = (
 )
 
 
-def plain_layers(work: Work, construction: Item, finite_differences: bool) -> list[Section]:
+def plain_layers(context: Context, construction: IdfObject, finite_differences: bool) -> list[Section]:
     """Layers of a construction as the description has them, each with its material entered.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
-    construction : Item
+    construction : IdfObject
         The construction.
     finite_differences : bool
         Whether EnergyPlus solves the surface by finite differences, without which it ignores phase change.
     """
     if construction.kind == "Construction:FfactorGroundFloor":
-        return _factor_layers(work, construction, *_f_factor(construction))
+        return _factor_layers(context, construction, *_f_factor(construction))
     if construction.kind == "Construction:CfactorUndergroundWall":
-        return _factor_layers(work, construction, *_c_factor(construction))
-    return [_layer(work, item, finite_differences) for item in layers_of(work, construction)]
+        return _factor_layers(context, construction, *_c_factor(construction))
+    return [_layer(context, item, finite_differences) for item in layers_of(context, construction)]
 
 
-def _layer(work: Work, item: Item, finite_differences: bool) -> Section:
+def _layer(context: Context, item: IdfObject, finite_differences: bool) -> Section:
     source = f"EnergyPlus {item.label}"
     melts = finite_differences and (
-        work.model.named(item.name, "MaterialProperty:PhaseChange") is not None
-        or work.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis") is not None
+        context.model.named(item.name, "MaterialProperty:PhaseChange") is not None
+        or context.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis") is not None
     )
-    name = work.names.of("materials", f"{item.name} melting" if melts else item.name)
-    materials = work.section("materials")
+    name = context.names.of("materials", f"{item.name} melting" if melts else item.name)
+    materials = context.section("materials")
     thickness = item.number("thickness")
     if name not in materials:
-        materials[name] = _material(work, item, melts) | {"source": source}
+        materials[name] = _material(context, item, melts) | {"source": source}
     bare = materials[name].get("kind") == "resistance"
     return {"material": name} | ({} if bare else {"thickness": thickness})
 
 
-def _material(work: Work, item: Item, melts: bool) -> Section:
+def _material(context: Context, item: IdfObject, melts: bool) -> Section:
     if item.kind in ("Material:NoMass", "Material:AirGap"):
         return {"kind": "resistance", "resistance": item.needed("thermal_resistance")}
     if item.kind == "Material:InfraredTransparent":
-        work.findings.approximated(
+        context.findings.approximated(
             item, "transparent to infrared", "a layer of small resistance; radiation does not pass it"
         )
         return {"kind": "resistance", "resistance": 0.01}
     keys: tuple[str, ...] = ("conductivity", "density", "specific_heat")
     if item.kind == "Material:RoofVegetation":
-        work.findings.left_out(
+        context.findings.left_out(
             item, "plants and moist soil", "only the dry soil is carried over: roofs are warmer in summer"
         )
         keys = tuple(f"{key}_of_dry_soil" for key in keys)
     conductivity, density, heat = (item.needed(key) for key in keys)
     solid = {"conductivity": conductivity, "density": density, "specific_heat": heat}
-    _variable_conductivity(work, item)
+    _variable_conductivity(context, item)
     if not melts:
         return solid
-    hysteresis = work.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis")
+    hysteresis = context.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis")
     if hysteresis is not None:
-        return _two_curves(work, hysteresis)
-    table = work.model.require(item, "name", "MaterialProperty:PhaseChange", name=item.name)
-    return _enthalpy_table(work, table, solid)
+        return _two_curves(context, hysteresis)
+    table = context.model.require(item, "name", "MaterialProperty:PhaseChange", name=item.name)
+    return _enthalpy_table(context, table, solid)
 
 
-def _variable_conductivity(work: Work, item: Item) -> None:
-    found = work.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
-    if found is not None:
-        work.findings.approximated(
-            found,
+def _variable_conductivity(context: Context, item: IdfObject) -> None:
+    variable = context.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
+    if variable is not None:
+        context.findings.approximated(
+            variable,
             "conductivity that changes with temperature",
             "that of the material is used at every temperature",
         )
 
 
-def _enthalpy_table(work: Work, item: Item, solid: Section) -> Section:
+def _enthalpy_table(context: Context, item: IdfObject, solid: Section) -> Section:
     """A piecewise linear enthalpy as heat capacities with short ramps at its corners.
 
     EnergyPlus uses the larger of the slope of the table and the specific heat of the material.
@@ -144,13 +144,13 @@ def _enthalpy_table(work: Work, item: Item, solid: Section) -> Section:
             f"{len(points)} temperatures", "at least 2, rising, each with its enthalpy", "Correct the table"
         )
     if item.number("temperature_coefficient_for_thermal_conductivity"):
-        work.findings.approximated(
+        context.findings.approximated(
             item, "temperature coefficient of the conductivity", "the conductivity does not change with it"
         )
     least = float(solid["specific_heat"])
     slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points)]
     if min(slopes) < least:
-        work.findings.approximated(
+        context.findings.approximated(
             item,
             f"slopes below the specific heat of the material, {least:g} J/(kg K)",
             "that specific heat is used there, as EnergyPlus does: the results are those of EnergyPlus",
@@ -170,13 +170,15 @@ def _stepped(temperatures: list[float], slopes: list[float]) -> tuple[list[float
     """Knots of a heat capacity that is constant between the temperatures. [degC, J/(kg K)]"""
     knots, heats = [temperatures[0]], [slopes[0]]
     for k in range(1, len(slopes)):
-        width = _JUMP * min(temperatures[k] - temperatures[k - 1], temperatures[k + 1] - temperatures[k])
+        width = _JUMP_WIDTH * min(
+            temperatures[k] - temperatures[k - 1], temperatures[k + 1] - temperatures[k]
+        )
         knots += [temperatures[k] - width, temperatures[k] + width]
         heats += [slopes[k - 1], slopes[k]]
     return [round(t, 6) for t in [*knots, temperatures[-1]]], [round(c, 4) for c in [*heats, slopes[-1]]]
 
 
-def _two_curves(work: Work, item: Item) -> Section:
+def _two_curves(context: Context, item: IdfObject) -> Section:
     """Melting and freezing curves about their peaks."""
     melting, freezing = item.needed("peak_melting_temperature"), item.needed("peak_freezing_temperature")
     curves = [
@@ -187,20 +189,20 @@ def _two_curves(work: Work, item: Item) -> Section:
         )
         for way, peak in (("melting", melting), ("freezing", freezing))
     ]
-    work.findings.approximated(
+    context.findings.approximated(
         item,
         "hysteresis",
         "the model curve_switch conserves heat, that of EnergyPlus does not where it changes between the "
         "curves (docs/pcm-energyplus.md): results differ in and around the melting range",
     )
-    found: Section = {"kind": "pcm"}
+    section: Section = {"kind": "pcm"}
     for key in ("conductivity", "density", "specific_heat"):
         ending = "thermal_conductivity" if key == "conductivity" else key
         pair = [item.needed(f"{phase}_state_{ending}") for phase in ("solid", "liquid")]
-        found[key] = pair[0] if pair[0] == pair[1] else pair
-    found["latent_heat"] = item.needed("latent_heat_during_the_entire_phase_change_process")
+        section[key] = pair[0] if pair[0] == pair[1] else pair
+    section["latent_heat"] = item.needed("latent_heat_during_the_entire_phase_change_process")
     (middle, width), (back, narrow) = curves
-    found |= {"melting_temperature": middle, "law": {"kind": "tanh", "width": width}}
+    section |= {"melting_temperature": middle, "law": {"kind": "tanh", "width": width}}
     if freezing > melting:
         raise item.error(
             f"a freezing peak of {freezing:g} degC above the melting peak of {melting:g} degC",
@@ -210,8 +212,8 @@ def _two_curves(work: Work, item: Item) -> Section:
     if curves[1] != curves[0]:
         cooling = {"model": "curve_switch", "freezing_temperature": back}
         shape = {} if narrow == width else {"law": {"kind": "tanh", "width": narrow}}
-        found["hysteresis"] = cooling | shape
-    return found
+        section["hysteresis"] = cooling | shape
+    return section
 
 
 def _curve(peak: float, low: float, high: float) -> tuple[float, float]:
@@ -227,40 +229,43 @@ def _curve(peak: float, low: float, high: float) -> tuple[float, float]:
     return round(peak + shift, 6), round(math.sqrt(12.0) / math.pi * deviation, 6)
 
 
-def _f_factor(item: Item) -> tuple[float, float]:
+def _f_factor(item: IdfObject) -> tuple[float, float]:
     area, edge = item.needed("area"), item.needed("perimeterexposed")
     return area / max(edge * item.needed("f_factor"), 1e-9) - sum(_FILMS), 0.0
 
 
-def _c_factor(item: Item) -> tuple[float, float]:
+def _c_factor(item: IdfObject) -> tuple[float, float]:
     # Resistance of the soil by the depth of the wall (ASHRAE 90.1-2010, table C6.10.1, as fitted there).
     return 1.0 / item.needed("c_factor") + 0.0607 + 0.3479 * item.needed("height"), 0.0
 
 
-def _factor_layers(work: Work, item: Item, whole: float, _: float) -> list[Section]:
+def _factor_layers(context: Context, item: IdfObject, total_resistance: float, _: float) -> list[Section]:
     thickness, conductivity, density, heat = CONCRETE
-    rest = whole - thickness / conductivity
-    if rest <= 0.0:
+    soil_resistance = total_resistance - thickness / conductivity
+    if soil_resistance <= 0.0:
         raise item.error(
-            f"a resistance of {whole:.3f} m2 K/W",
+            f"a resistance of {total_resistance:.3f} m2 K/W",
             f"more than {thickness / conductivity:.3f} m2 K/W, that of the concrete in it",
             "Correct the factor",
         )
-    work.findings.approximated(
+    context.findings.approximated(
         item, "a C or F factor", "concrete and a resistance between it and the ground, as in EnergyPlus"
     )
-    materials: dict[str, Any] = work.section("materials")
-    concrete, soil = work.names.of("materials", "factor concrete"), work.names.of("materials", item.name)
+    materials: dict[str, Any] = context.section("materials")
+    concrete, soil = (
+        context.names.of("materials", "factor concrete"),
+        context.names.of("materials", item.name),
+    )
     materials[concrete] = {"conductivity": conductivity, "density": density, "specific_heat": heat}
-    materials[soil] = {"kind": "resistance", "resistance": round(rest, 5)}
+    materials[soil] = {"kind": "resistance", "resistance": round(soil_resistance, 5)}
     return [{"material": soil}, {"material": concrete, "thickness": thickness}]
 
 
-def skin(work: Work, construction: Item, outer: bool) -> dict[str, Any]:
+def skin(context: Context, construction: IdfObject, outer: bool) -> dict[str, Any]:
     """Emissivity, solar absorptance and roughness of a side of a construction."""
     if construction.kind != "Construction":
         return {"emissivity": 0.9, "absorptance": 0.7, "roughness": "medium_rough"}
-    layers = layers_of(work, construction)
+    layers = layers_of(context, construction)
     item = layers[0 if outer else -1]
     rough = {"veryrough": "very_rough", "mediumrough": "medium_rough", "mediumsmooth": "medium_smooth"}
     rough |= {"verysmooth": "very_smooth"}

@@ -12,9 +12,9 @@ from typing import Final
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
+from mascarin.convert.context import Context
 from mascarin.convert.field_checks import finite
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
 from mascarin.tables.timezones import YEARS
 
@@ -43,7 +43,7 @@ _GROUPS: Final = {
 NEVER_HEATS, NEVER_COOLS = -50.0, 80.0
 
 
-def year(work: Work, user: Item, *keys: str, default: float = 1.0) -> Year:
+def year(context: Context, user: IdfObject, *keys: str, default: float = 1.0) -> Year:
     """Values of the schedule that a field names; the default all year where it names none.
 
     Raises
@@ -54,31 +54,31 @@ def year(work: Work, user: Item, *keys: str, default: float = 1.0) -> Year:
     key = next((key for key in keys if user.text(key)), None)
     if key is None:
         return constant(default)
-    item = work.model.require(user, key, *SCHEDULES)
-    return _year(work, item)
+    item = context.model.require(user, key, *SCHEDULES)
+    return _year(context, item)
 
 
-def _year(work: Work, item: Item) -> Year:
+def _year(context: Context, item: IdfObject) -> Year:
     if item.kind == "Schedule:Constant":
         return constant(item.number("hourly_value") or 0.0)
     if item.kind == "Schedule:Compact":
-        return _compact(work, item)
+        return _compact(context, item)
     if item.kind == "Schedule:Year":
-        return _weeks(work, item)
+        return _weeks(context, item)
     if item.kind == "Schedule:File":
-        return _file(work, item)
-    work.findings.left_out(
+        return _file(context, item)
+    context.findings.left_out(
         item, "values from another program or file", "its first value, or 0, is used all year"
     )
     return constant(item.number("initial_value") or 0.0)
 
 
-def fraction(work: Work, name: str, values: Year) -> tuple[str | None, float]:
+def fraction(context: Context, name: str, values: Year) -> tuple[str | None, float]:
     """Enter a schedule of a fraction.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     name : str
         Name of the schedule, in words.
@@ -91,57 +91,57 @@ def fraction(work: Work, name: str, values: Year) -> tuple[str | None, float]:
         Its name, None where the value is the same all year, and the factor by which it is to be multiplied:
         fractions of Mascarin are at most 1.
     """
-    given = values.constant
-    if given is not None:
-        return None, given
+    constant_value = values.constant
+    if constant_value is not None:
+        return None, constant_value
     most = max(1.0, *values.values)
-    return _entered(work, name, combined(lambda value: value / most, values), "fraction"), most
+    return _entered(context, name, combined(lambda value: value / most, values), "fraction"), most
 
 
-def temperature(work: Work, name: str, values: Year) -> str | float:
+def temperature(context: Context, name: str, values: Year) -> str | float:
     """Enter a schedule of a temperature; the number where it is the same all year. [degC]"""
-    given = values.constant
-    return given if given is not None else _entered(work, name, values, "temperature")
+    constant_value = values.constant
+    return constant_value if constant_value is not None else _entered(context, name, values, "temperature")
 
 
-def _entered(work: Work, name: str, values: Year, kind: str) -> str:
+def _entered(context: Context, name: str, values: Year, kind: str) -> str:
     """Name of a schedule with these values; one that is there already, if it is equal."""
-    made = plain(values, kind, holidays(work))
-    held = work.section("schedules")
-    for known, other in held.items():
-        if other == made:
-            return str(known)
-    free = work.names.new("schedules", name)
-    held[free] = made
+    description = plain(values, kind, holidays(context))
+    held = context.section("schedules")
+    for existing_name, other in held.items():
+        if other == description:
+            return str(existing_name)
+    free = context.names.new("schedules", name)
+    held[free] = description
     return free
 
 
 # --- the year that is simulated -----------------------------------------------------------------------------
 
 
-def calendar_year(work: Work) -> int:
+def calendar_year(context: Context) -> int:
     """Year without a 29 February whose days of the week are those of the run period."""
-    item = work.model.one("RunPeriod")
+    item = context.model.one("RunPeriod")
     if item is None:
         return 2017
-    given = item.number("begin_year")
-    if given is not None and not YEARS[0] <= given <= YEARS[1]:
+    begin_year = item.number("begin_year")
+    if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
         raise item.error(
-            f"begin_year: found {given:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
+            f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
         )
-    if given is not None and not calendar.isleap(int(given)):
-        return int(given)
+    if begin_year is not None and not calendar.isleap(int(begin_year)):
+        return int(begin_year)
     month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
     names = [name.casefold() for name in calendar.day_name]
     word = item.word("day_of_week_for_start_day")
-    wanted = names.index(word) if word in names else 6
-    if given is not None and word not in names:
-        wanted = day_of(item, int(given), month, day).weekday()
+    weekday = names.index(word) if word in names else 6
+    if begin_year is not None and word not in names:
+        weekday = day_of(item, int(begin_year), month, day).weekday()
     years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
-    return next(one for one in years if day_of(item, one, month, day).weekday() == wanted)
+    return next(candidate for candidate in years if day_of(item, candidate, month, day).weekday() == weekday)
 
 
-def day_of(item: Item, in_year: int, month: int, day: int) -> date:
+def day_of(item: IdfObject, in_year: int, month: int, day: int) -> date:
     """A day of a year; 29 February counts as the 28th.
 
     Raises
@@ -155,19 +155,19 @@ def day_of(item: Item, in_year: int, month: int, day: int) -> date:
         raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
 
 
-def holidays(work: Work) -> list[str]:
+def holidays(context: Context) -> list[str]:
     """Holidays of the file, as ``MM-DD``, in order."""
-    found: set[str] = set()
-    for item in work.model.of("RunPeriodControl:SpecialDays"):
+    dates: set[str] = set()
+    for item in context.model.of("RunPeriodControl:SpecialDays"):
         if item.word("special_day_type") not in ("holiday", ""):
             continue
-        first = _date(item, item.text("start_date"), calendar_year(work))
+        first = _date(item, item.text("start_date"), calendar_year(context))
         for k in range(int(item.number("duration") or 1)):
-            found.add(f"{first + timedelta(days=k):%m-%d}")
-    return sorted(found)
+            dates.add(f"{first + timedelta(days=k):%m-%d}")
+    return sorted(dates)
 
 
-def _date(item: Item, text: str, in_year: int) -> date:
+def _date(item: IdfObject, text: str, in_year: int) -> date:
     """A date such as 12/25, December 25, 25 Dec, 4th Thursday in November, Last Monday in May."""
     words = re.findall(r"[a-z]+|\d+", text.casefold())
     numbers = [int(word) if len(word) < 9 else 0 for word in words if word.isdigit()]  # no day is 0
@@ -188,7 +188,7 @@ def _date(item: Item, text: str, in_year: int) -> date:
         raise item.error(f"found a date '{text}'", "a day such as 12/25", "Correct the date") from None
 
 
-def _end(item: Item, text: str) -> str:
+def _end(item: IdfObject, text: str) -> str:
     """A last day as ``MM-DD``; 29 February counts as the 28th."""
     cleaned = re.sub(r"\b0?2/29\b", "2/28", text)
     return f"{_date(item, cleaned, 2017):%m-%d}"
@@ -197,54 +197,54 @@ def _end(item: Item, text: str) -> str:
 # --- classes of schedules -----------------------------------------------------------------------------------
 
 
-def _compact(work: Work, item: Item) -> Year:
+def _compact(context: Context, item: IdfObject) -> Year:
     words = [str(row.get("field", "")).strip() for row in item.rows("data")]
     if not words:
         words = [str(value).strip() for key, value in item.fields.items() if key.startswith("field")]
     seasons: list[tuple[str, Week]] = []
     for end, days in _throughs(item, words):
-        seasons.append((end, _week(work, item, days)))
+        seasons.append((end, _week(context, item, days)))
     if not seasons or seasons[-1][0] != "12-31":
         last = seasons[-1][0] if seasons else "no day"
         raise item.error(f"values through {last}", "values through 12/31", "Add the rest of the year")
     return year_of(seasons)
 
 
-def _throughs(item: Item, words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
+def _throughs(item: IdfObject, words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
     """Seasons of a compact schedule: last day, and days with the words that say which they are."""
     end, who = "", ""
     days: list[tuple[str, Day]] = []
     points: list[tuple[int, float]] = []
     last: int | None = None
     for word in words:
-        head, _, rest = word.partition(":")
+        head, _, tail = word.partition(":")
         low = head.casefold().strip()
         if low.startswith("through"):
             if end:
                 yield end, _closed(item, days, who, points)
-            text = rest.strip() or low.removeprefix("through").strip()
+            text = tail.strip() or low.removeprefix("through").strip()
             end, days, who, points = _end(item, text), [], "", []
         elif low.startswith("for"):
             days = _closed(item, days, who, points) if who else days
-            who, points = (low.removeprefix("for") + " " + rest.casefold()).strip(), []
+            who, points = (low.removeprefix("for") + " " + tail.casefold()).strip(), []
         elif low.startswith("interpolate"):
             continue
         elif low.startswith("until"):
-            last = _minute(item, (low.removeprefix("until") + ":" + rest).strip(": "))
+            last = _minute(item, (low.removeprefix("until") + ":" + tail).strip(": "))
         elif word:
             points.append((last or 0, _value(item, word)))
     if end:
         yield end, _closed(item, days, who, points)
 
 
-def _value(item: Item, word: str) -> float:
+def _value(item: IdfObject, word: str) -> float:
     try:
         return finite(word)
     except ValueError:
         raise item.error(f"found '{word}'", "a number after Until", "Correct the schedule") from None
 
 
-def _minute(item: Item, text: str) -> int:
+def _minute(item: IdfObject, text: str) -> int:
     match = re.fullmatch(r"(\d{1,2}):(\d{2})(?::\d{2})?", text.replace(" ", ""))
     if match is None or int(match[1]) * 60 + int(match[2]) > 1440:
         raise item.error(f"found a time '{text}'", "00:01 to 24:00", "Correct the schedule")
@@ -252,7 +252,7 @@ def _minute(item: Item, text: str) -> int:
 
 
 def _closed(
-    item: Item, days: list[tuple[str, Day]], who: str, points: list[tuple[int, float]]
+    item: IdfObject, days: list[tuple[str, Day]], who: str, points: list[tuple[int, float]]
 ) -> list[tuple[str, Day]]:
     """Days with the one that has just ended; its points hold the minute *until* which a value is valid."""
     ends = [minute for minute, _ in points]
@@ -266,9 +266,9 @@ def _closed(
     return [*days, (who, tuple(zip(starts, (value for _, value in points), strict=True)))]
 
 
-def _week(work: Work, item: Item, days: Iterable[tuple[str, Day]]) -> Week:
+def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) -> Week:
     """A day of each kind; the first entry that names it counts."""
-    found: dict[str, Day] = {}
+    day_of_kind: dict[str, Day] = {}
     for who, day in days:
         words = re.findall(r"[a-z0-9]+", who)
         for word in words:
@@ -281,38 +281,40 @@ def _week(work: Work, item: Item, days: Iterable[tuple[str, Day]]) -> Week:
                     f"found '{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it"
                 )
             for name in names:
-                found.setdefault(name, day)
-    missing = [name for name in DAYS[:7] if name not in found]
+                day_of_kind.setdefault(name, day)
+    missing = [name for name in DAYS[:7] if name not in day_of_kind]
     if missing:
         raise item.error(f"no values for {', '.join(missing)}", "values for every day", "Add AllOtherDays")
-    found.setdefault("holiday", found["sunday"])
-    return tuple(found[name] for name in DAYS)
+    day_of_kind.setdefault("holiday", day_of_kind["sunday"])
+    return tuple(day_of_kind[name] for name in DAYS)
 
 
-def _weeks(work: Work, item: Item) -> Year:
+def _weeks(context: Context, item: IdfObject) -> Year:
     seasons = []
     for row in item.rows("schedule_weeks"):
-        week = work.model.require(item, "schedule_week_name", *_WEEKS, name=str(row["schedule_week_name"]))
+        week = context.model.require(item, "schedule_week_name", *_WEEKS, name=str(row["schedule_week_name"]))
         month, day = int(row.get("end_month", 12)), int(row.get("end_day", 31))
-        seasons.append((f"{month:02d}-{28 if (month, day) == (2, 29) else day:02d}", _week_of(work, week)))
+        seasons.append((f"{month:02d}-{28 if (month, day) == (2, 29) else day:02d}", _week_of(context, week)))
     if not seasons or seasons[-1][0] != "12-31":
         raise item.error("weeks that end before 31 December", "weeks of a whole year", "Add the rest")
     return year_of(sorted(seasons))
 
 
-def _week_of(work: Work, item: Item) -> Week:
+def _week_of(context: Context, item: IdfObject) -> Week:
     if item.kind == "Schedule:Week:Daily":
         keys = [f"{name}_schedule_day_name" for name in DAYS]
-        return tuple(_day(work.model.require(item, key, *_DAYS)) for key in keys)
+        return tuple(_day(context.model.require(item, key, *_DAYS)) for key in keys)
     days = []
     for row in item.rows("data"):
         who = re.sub(r"^for:?", "", str(row.get("daytype_list", "")).strip().casefold())
-        one = work.model.require(item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name")))
-        days.append((who, _day(one)))
-    return _week(work, item, days)
+        day_schedule = context.model.require(
+            item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name"))
+        )
+        days.append((who, _day(day_schedule)))
+    return _week(context, item, days)
 
 
-def _day(item: Item) -> Day:
+def _day(item: IdfObject) -> Day:
     if item.kind == "Schedule:Day:Hourly":
         return tuple((60 * k, item.number(f"hour_{k + 1}") or 0.0) for k in range(24))
     if item.kind == "Schedule:Day:List":
@@ -326,9 +328,9 @@ def _day(item: Item) -> Day:
     return _closed(item, [], item.name, pairs)[0][1]
 
 
-def _file(work: Work, item: Item) -> Year:
+def _file(context: Context, item: IdfObject) -> Year:
     """Values of a file: each day is a season of its own, unless it equals the one before."""
-    values = _column(work, item)
+    values = _column(context, item)
     minutes = int(item.number("minutes_per_item") or 60)
     count = 1440 // minutes
     if len(values) == 366 * count:
@@ -345,10 +347,12 @@ def _file(work: Work, item: Item) -> Year:
     return year_of(seasons)
 
 
-def _column(work: Work, item: Item) -> list[float]:
+def _column(context: Context, item: IdfObject) -> list[float]:
     named = Path(item.text("file_name").replace("\\", "/"))
-    folder = work.model.file.parent
-    path = next((one for one in (folder / named, folder / named.name) if one.is_file()), None)
+    folder = context.model.file.parent
+    path = next(
+        (candidate for candidate in (folder / named, folder / named.name) if candidate.is_file()), None
+    )
     if path is None:
         raise item.error(f"file_name: found no file '{named}'", f"a table in {folder}", "Put it there")
     mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[
@@ -359,11 +363,11 @@ def _column(work: Work, item: Item) -> list[float]:
         require_regular(path).open(encoding="utf-8-sig", errors="replace", newline="") as lines,
     ):
         rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
-    place = int(item.needed("column_number")) - 1
+    column = int(item.needed("column_number")) - 1
     rows = [row for row in rows[int(item.number("rows_to_skip_at_top") or 0) :] if row]
     try:
-        return [finite(row[place]) for row in rows]
+        return [finite(row[column]) for row in rows]
     except (IndexError, ValueError) as error:
         raise item.error(
-            f"{path.name}: {error}", f"numbers in column {place + 1}", "Correct the file"
+            f"{path.name}: {error}", f"numbers in column {column + 1}", "Correct the file"
         ) from None

@@ -13,14 +13,14 @@ import numpy as np
 
 from mascarin.building.geometry import TOLERANCE
 from mascarin.convert import geometry as g
-from mascarin.convert.faces import Face, Opening
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
+from mascarin.convert.idf_surfaces import IdfOpening, IdfSurface
 
 #: Cosine of the angle up to which a window counts as parallel to its wall [-].
 _PARALLEL: Final = 1.0 - 1e-6
 
 
-def setback(opening: Opening) -> g.Array:
+def setback(opening: IdfOpening) -> g.Array:
     """How far the plane of the wall is from an opening, along its normal; shape (3,). [m]
 
     Parameters
@@ -28,32 +28,32 @@ def setback(opening: Opening) -> g.Array:
     opening : Opening
         The opening; zeros where it lies in its wall, or is not parallel to it.
     """
-    out, own = (g.normal_of(points) for points in (opening.base.points, opening.points))
-    out, own = out / np.linalg.norm(out), own / np.linalg.norm(own)
+    out, opening_normal = (g.normal_of(points) for points in (opening.base.points, opening.points))
+    out, opening_normal = out / np.linalg.norm(out), opening_normal / np.linalg.norm(opening_normal)
     depth = float((opening.base.points.mean(axis=0) - opening.points.mean(axis=0)) @ out)
-    if float(out @ own) < _PARALLEL or abs(depth) <= TOLERANCE:
+    if float(out @ opening_normal) < _PARALLEL or abs(depth) <= TOLERANCE:
         return np.zeros(3)
     moved: g.Array = depth * out
     return moved
 
 
-def outward(opening: Opening) -> float:
+def outward(opening: IdfOpening) -> float:
     """Depth of an opening behind its wall, negative in front of it. [m]"""
     return float(setback(opening) @ g.normal_of(opening.base.points)) / g.area_of(opening.base.points)
 
 
-def shift_of_shades(base: Face, openings: list[Opening]) -> g.Array:
+def shift_of_shades(base: IdfSurface, openings: list[IdfOpening]) -> g.Array:
     """How far shades of a wall move out: as its deepest window; shape (3,). [m]"""
-    own = [one for one in openings if one.base is base and outward(one) > 0.0]
-    return setback(max(own, key=outward)) if own else np.zeros(3)
+    outer_openings = [opening for opening in openings if opening.base is base and outward(opening) > 0.0]
+    return setback(max(outer_openings, key=outward)) if outer_openings else np.zeros(3)
 
 
-def describe_setback(work: Work, opening: Opening, outline: g.Array) -> None:
+def describe_setback(context: Context, opening: IdfOpening, outline: g.Array) -> None:
     """Note an opening that is moved, and enter the sides of its reveal.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     opening : Opening
         The opening.
@@ -64,13 +64,13 @@ def describe_setback(work: Work, opening: Opening, outline: g.Array) -> None:
     if depth == 0.0:
         return
     if depth < 0.0:
-        work.findings.approximated(
+        context.findings.approximated(
             opening.item,
             f"{-depth:.3f} m in front of its wall",
             "in the plane of the wall, with the shadows there",
         )
         return
-    work.findings.approximated(
+    context.findings.approximated(
         opening.item,
         f"{depth:.3f} m behind the plane of its wall",
         "in this plane, with a reveal that stands out; shades of its wall stand out by as much more",
@@ -79,6 +79,6 @@ def describe_setback(work: Work, opening: Opening, outline: g.Array) -> None:
         return
     for k, corner in enumerate(outline):
         after = outline[(k + 1) % len(outline)]
-        name = work.names.of("shades", f"{opening.item.name} reveal {k + 1}")
+        name = context.names.of("shades", f"{opening.item.name} reveal {k + 1}")
         corners = np.array([corner, after, after + move, corner + move])
-        work.section("shades")[name] = {"vertices": g.rounded(corners)}
+        context.section("shades")[name] = {"vertices": g.rounded(corners)}

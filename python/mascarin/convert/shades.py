@@ -10,20 +10,20 @@ import numpy as np
 
 from mascarin.building.geometry import Polygon
 from mascarin.convert import geometry as g
-from mascarin.convert.faces import SURFACES, Face, Opening
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
+from mascarin.convert.idf_surfaces import SURFACES, IdfOpening, IdfSurface
 from mascarin.convert.schedules import SCHEDULES, year
 from mascarin.convert.setbacks import setback, shift_of_shades
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
 from mascarin.errors import InputError
 
 _DETAILED: Final = ("Shading:Site:Detailed", "Shading:Building:Detailed", "Shading:Zone:Detailed")
 _SIMPLE: Final = ("Shading:Site", "Shading:Building")
 #: Mean transmittance above which a shade is left out rather than taken as opaque [-].
-_HALF: Final = 0.5
+_OPAQUE_BELOW: Final = 0.5
 
 
-def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> None:
+def describe_shades(context: Context, surfaces: list[IdfSurface], openings: list[IdfOpening]) -> None:
     """Enter all shading surfaces.
 
     Raises
@@ -31,20 +31,23 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
     InputError
         A shade of a window or surface that does not exist.
     """
-    rules, by_face = g.rules_of(work.model), {face.item.name.casefold(): face for face in every}
+    rules, by_face = (
+        g.rules_of(context.model),
+        {surface.item.name.casefold(): surface for surface in surfaces},
+    )
     by_opening = {opening.item.name.casefold(): opening for opening in openings}
-    for item in work.model.of(*_DETAILED):
-        points = _detailed(work, rules, item, by_face, openings)
-        if _opaque(work, item):
-            _enter(work, item, item.name, points)
-    for item in work.model.of(*_SIMPLE):
-        _enter(work, item, item.name, _simple(rules, item))
+    for item in context.model.of(*_DETAILED):
+        points = _detailed(context, rules, item, by_face, openings)
+        if _opaque(context, item):
+            _enter(context, item, item.name, points)
+    for item in context.model.of(*_SIMPLE):
+        _enter(context, item, item.name, _simple(rules, item))
     attached = {
         "Shading:Overhang": _overhang, "Shading:Overhang:Projection": _overhang,
         "Shading:Fin": _fins, "Shading:Fin:Projection": _fins,
     }  # fmt: skip
-    for kind, made in attached.items():
-        for item in work.model.of(kind):
+    for kind, outlines_of in attached.items():
+        for item in context.model.of(kind):
             window = by_opening.get(item.word("window_or_door_name"))
             if window is None:
                 raise item.error(
@@ -52,13 +55,17 @@ def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> N
                     "a window or door of the file",
                     "Correct it",
                 )
-            for name, points in made(item, window.points + setback(window)):
-                _enter(work, item, name, points)
-    _reflectances(work)
+            for name, points in outlines_of(item, window.points + setback(window)):
+                _enter(context, item, name, points)
+    _reflectances(context)
 
 
 def _detailed(
-    work: Work, rules: g.Rules, item: Item, by_face: dict[str, Face], openings: list[Opening]
+    context: Context,
+    rules: g.Rules,
+    item: IdfObject,
+    by_face: dict[str, IdfSurface],
+    openings: list[IdfOpening],
 ) -> g.Array:
     corners = g.corners_of(item)
     if item.kind == "Shading:Site:Detailed":
@@ -67,13 +74,13 @@ def _detailed(
         return g.frame_of(None, rules, rules.relative).place(corners)
     base = by_face.get(item.word("base_surface_name"))
     if base is None:
-        work.model.require(item, "base_surface_name", *SURFACES)
+        context.model.require(item, "base_surface_name", *SURFACES)
         raise item.error("no surface", "a surface", "Correct base_surface_name")
     placed = g.frame_of(base.zone, rules, rules.relative).place(corners)
     return placed + shift_of_shades(base, openings)
 
 
-def _simple(rules: g.Rules, item: Item) -> g.Array:
+def _simple(rules: g.Rules, item: IdfObject) -> g.Array:
     moved = item.kind == "Shading:Building" and rules.rectangles_relative
     frame = g.frame_of(None, rules, moved)
     start = np.array([[item.number(f"starting_{axis}_coordinate") or 0.0 for axis in "xyz"]])
@@ -83,34 +90,36 @@ def _simple(rules: g.Rules, item: Item) -> g.Array:
     return g.rectangle(frame.place(start)[0], plane, item.needed("length"), item.needed("height"))
 
 
-def _opaque(work: Work, item: Item) -> bool:
+def _opaque(context: Context, item: IdfObject) -> bool:
     """Whether a shade is carried over as an opaque one."""
     if not item.text("transmittance_schedule_name"):
         return True
-    if work.model.named(item.text("transmittance_schedule_name"), *SCHEDULES) is None:
-        work.model.require(item, "transmittance_schedule_name", *SCHEDULES)
-    values = year(work, item, "transmittance_schedule_name", default=0.0)
-    given = values.constant
-    if given == 0.0:
+    if context.model.named(item.text("transmittance_schedule_name"), *SCHEDULES) is None:
+        context.model.require(item, "transmittance_schedule_name", *SCHEDULES)
+    values = year(context, item, "transmittance_schedule_name", default=0.0)
+    transmittance = values.constant
+    if transmittance == 0.0:
         return True
     mean = values.mean()
-    if mean > _HALF:
-        work.findings.left_out(
+    if mean > _OPAQUE_BELOW:
+        context.findings.left_out(
             item, f"a transmittance of {mean:.2f}", "it shades nothing: more sun on what it shades"
         )
         return False
-    work.findings.left_out(item, f"a transmittance of {mean:.2f}", "it is opaque: less sun on what it shades")
+    context.findings.left_out(
+        item, f"a transmittance of {mean:.2f}", "it is opaque: less sun on what it shades"
+    )
     return True
 
 
-def _enter(work: Work, item: Item, name: str, points: g.Array) -> None:
+def _enter(context: Context, item: IdfObject, name: str, points: g.Array) -> None:
     points = g.without_repeats(points)
     try:
         Polygon.of(name, g.rounded(points))
     except InputError as error:
-        work.findings.left_out(item, str(error).split("; expected")[0], "it shades nothing")
+        context.findings.left_out(item, str(error).split("; expected")[0], "it shades nothing")
         return
-    work.section("shades")[work.names.of("shades", name)] = {"vertices": g.rounded(points)}
+    context.section("shades")[context.names.of("shades", name)] = {"vertices": g.rounded(points)}
 
 
 def _edges(points: g.Array) -> tuple[g.Plane, g.Array, float, float]:
@@ -120,9 +129,9 @@ def _edges(points: g.Array) -> tuple[g.Plane, g.Array, float, float]:
     return plane, g.lower_left(points), float(np.ptp(along)), float(np.ptp(above))
 
 
-def _overhang(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
+def _overhang(item: IdfObject, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     plane, corner, width, height = _edges(points)
-    left, right, above = (
+    left_extension, right_extension, above = (
         item.number(key) or 0.0
         for key in (
             "left_extension_from_window_door_width",
@@ -132,15 +141,15 @@ def _overhang(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     )
     depth = _depth(item, "depth", height)
     reach = _leaning(item, "tilt_angle_from_window_door", plane.up, plane.out) * depth
-    start = corner - left * plane.right + (height + above) * plane.up
-    along = (width + left + right) * plane.right
+    start = corner - left_extension * plane.right + (height + above) * plane.up
+    along = (width + left_extension + right_extension) * plane.right
     if depth > 0.0:
         yield item.name, np.array([start, start + along, start + along + reach, start + reach])
 
 
-def _fins(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
+def _fins(item: IdfObject, points: g.Array) -> Iterator[tuple[str, g.Array]]:
     plane, corner, width, height = _edges(points)
-    for side, sign, place in (("left", -1.0, 0.0), ("right", 1.0, width)):
+    for side, sign, edge in (("left", -1.0, 0.0), ("right", 1.0, width)):
         depth = _depth(item, f"{side}_depth", width)
         if depth <= 0.0:
             continue
@@ -149,12 +158,12 @@ def _fins(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
         below = item.number(f"{side}_distance_below_bottom_of_window") or 0.0
         angle = f"{side}_tilt_angle_from_window_door"
         reach = _leaning(item, angle, sign * plane.right, plane.out) * depth
-        start = corner + (place + sign * beside) * plane.right - below * plane.up
+        start = corner + (edge + sign * beside) * plane.right - below * plane.up
         up = (height + top + below) * plane.up
         yield f"{item.name} {side}", np.array([start, start + up, start + up + reach, start + reach])
 
 
-def _depth(item: Item, key: str, size: float) -> float:
+def _depth(item: IdfObject, key: str, size: float) -> float:
     """Depth of a shade, given in metres or as a fraction of the height or width of the window. [m]"""
     if not item.kind.endswith("Projection"):
         return item.number(key) or 0.0
@@ -166,22 +175,22 @@ def _depth(item: Item, key: str, size: float) -> float:
     return (item.number(fraction) or 0.0) * size
 
 
-def _leaning(item: Item, key: str, along: g.Array, out: g.Array) -> g.Array:
-    given = item.number(key)
-    angle = math.radians(90.0 if given is None else given)
+def _leaning(item: IdfObject, key: str, along: g.Array, out: g.Array) -> g.Array:
+    tilt = item.number(key)
+    angle = math.radians(90.0 if tilt is None else tilt)
     direction: g.Array = math.cos(angle) * along + math.sin(angle) * out
     return direction
 
 
-def _reflectances(work: Work) -> None:
-    building = work.model.one("Building")
+def _reflectances(context: Context) -> None:
+    building = context.model.one("Building")
     reflects = building is not None and "reflections" in building.word("solar_distribution")
-    for item in work.model.of("ShadingProperty:Reflectance"):
+    for item in context.model.of("ShadingProperty:Reflectance"):
         if reflects:
-            work.findings.left_out(item, "reflections from it", "less sun on the surfaces that it faces")
+            context.findings.left_out(item, "reflections from it", "less sun on the surfaces that it faces")
         else:
-            work.findings.no_effect([item], "reflectance", "EnergyPlus uses it only with reflections")
+            context.findings.no_effect([item], "reflectance", "EnergyPlus uses it only with reflections")
     if building is not None and reflects:
-        work.findings.left_out(
+        context.findings.left_out(
             building, "reflections from surfaces outdoors", "the ground and the sky alone reflect and emit"
         )

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
 from mascarin.convert.year import DAYS, Year, constant, year_of
 from mascarin.errors import InputError
 
@@ -33,7 +33,7 @@ _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 _GROUND: Final = 18.0
 
 
-def describe_site(work: Work, weather: Path | None) -> None:
+def describe_site(context: Context, weather: Path | None) -> None:
     """Enter the site.
 
     Raises
@@ -41,29 +41,29 @@ def describe_site(work: Work, weather: Path | None) -> None:
     InputError
         The file has no ``Site:Location`` and no weather file is given.
     """
-    found = work.section("site")
-    found |= _location(work, weather)
-    reflectance = _monthly(work.model.one("Site:GroundReflectance"), "ground_reflectance")
+    site = context.section("site")
+    site |= _location(context, weather)
+    reflectance = _monthly(context.model.one("Site:GroundReflectance"), "ground_reflectance")
     if reflectance is not None:
         mean = sum(v * n for v, n in zip(reflectance, _LENGTHS, strict=True)) / 365.0
-        found["ground_reflectance"] = round(mean, 4)
+        site["ground_reflectance"] = round(mean, 4)
         if max(reflectance) - min(reflectance) > 1e-6:
-            item = work.model.of("Site:GroundReflectance")[0]
-            work.findings.approximated(item, "a reflectance by month", "its mean over the year is used")
-    found["wind"] = _wind(work)
-    _sky(work, found)
+            item = context.model.of("Site:GroundReflectance")[0]
+            context.findings.approximated(item, "a reflectance by month", "its mean over the year is used")
+    site["wind"] = _wind(context)
+    _sky(context, site)
 
 
-def _location(work: Work, weather: Path | None) -> dict[str, Any]:
-    item = work.model.one("Site:Location")
+def _location(context: Context, weather: Path | None) -> dict[str, Any]:
+    item = context.model.one("Site:Location")
     if item is not None:
         values = [item.number(key) or 0.0 for key in ("latitude", "longitude", "elevation", "time_zone")]
     elif weather is not None:
         values = _of_weather(weather)
     else:
         raise InputError(
-            f"{work.model.file}: found no Site:Location; expected the place of the building. Add the object, "
-            "or name the weather file with --weather"
+            f"{context.model.file}: found no Site:Location; expected the place of the building. Add the "
+            "object, or name the weather file with --weather"
         )
     latitude, longitude, altitude, zone = values
     hours, minutes = divmod(round(abs(zone) * 60.0), 60)
@@ -83,56 +83,58 @@ def _of_weather(path: Path) -> list[float]:
     return [latitude, longitude, altitude, zone]
 
 
-def _wind(work: Work) -> dict[str, Any]:
-    building = work.model.one("Building")
+def _wind(context: Context) -> dict[str, Any]:
+    building = context.model.one("Building")
     word = building.word("terrain") if building is not None else ""
     wind: dict[str, Any] = {"terrain": _TERRAINS.get(word or "suburbs", "suburb")}
-    heights = work.model.one("Site:HeightVariation")
+    heights = context.model.one("Site:HeightVariation")
     if heights is not None:
         for key, name in (("exponent", "exponent"), ("layer", "boundary_layer_thickness")):
-            given = heights.fields.get(f"wind_speed_profile_{name}")
-            wind |= {} if given is None else {key: float(given)}
-    station = work.model.one("Site:WeatherStation")
+            entered_value = heights.fields.get(f"wind_speed_profile_{name}")
+            wind |= {} if entered_value is None else {key: float(entered_value)}
+    station = context.model.one("Site:WeatherStation")
     for key, name in (
         ("mast_height", "wind_sensor_height_above_ground"),
         ("mast_exponent", "wind_speed_profile_exponent"),
         ("mast_layer", "wind_speed_profile_boundary_layer_thickness"),
     ):
-        given = None if station is None else station.number(name)
-        wind |= {} if given is None else {key: given}
+        entered_value = None if station is None else station.number(name)
+        wind |= {} if entered_value is None else {key: entered_value}
     return wind
 
 
-def _sky(work: Work, site: dict[str, Any]) -> None:
-    items = work.model.of("WeatherProperty:SkyTemperature")
+def _sky(context: Context, site: dict[str, Any]) -> None:
+    items = context.model.of("WeatherProperty:SkyTemperature")
     if not items:
         return
     word = items[0].word("calculation_type")
     if word in _SKIES:
         site["sky"] = _SKIES[word]
-        work.findings.approximated(items[0], f"sky by {word}", f"the model '{_SKIES[word]}' with its clouds")
+        context.findings.approximated(
+            items[0], f"sky by {word}", f"the model '{_SKIES[word]}' with its clouds"
+        )
     else:
-        work.findings.left_out(items[0], f"sky temperature by {word}", "that of the weather file is used")
+        context.findings.left_out(items[0], f"sky temperature by {word}", "that of the weather file is used")
 
 
-def _monthly(item: Item | None, ending: str) -> list[float] | None:
+def _monthly(item: IdfObject | None, ending: str) -> list[float] | None:
     if item is None:
         return None
     values = [item.number(f"{month}_{ending}") for month in _MONTHS]
     return [_GROUND if value is None else value for value in values]
 
 
-def ground(work: Work, kind: str = "BuildingSurface") -> Year:
+def ground(context: Context, kind: str = "BuildingSurface") -> Year:
     """Temperature of the ground under the building over the year. [degC]
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     kind : str
         Which temperatures: ``BuildingSurface`` or ``FCfactorMethod``.
     """
-    item = work.model.one(f"Site:GroundTemperature:{kind}")
+    item = context.model.one(f"Site:GroundTemperature:{kind}")
     values = _monthly(item, "ground_temperature")
     if values is None:
         return constant(_GROUND)

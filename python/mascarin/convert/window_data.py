@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.source import Item
+from mascarin.convert.idf import IdfObject
 
 #: Surface resistances that a conductance of the file does not contain (EN 673) [m2 K/W].
 _FILMS: Final = 0.17
@@ -47,12 +47,12 @@ class DataFile:
     dividers: bool
 
 
-def read_data_file(item: Item, folder: Path) -> DataFile:
+def read_data_file(item: IdfObject, folder: Path) -> DataFile:
     """Read the window of a ``Construction:WindowDataFile``.
 
     Parameters
     ----------
-    item : Item
+    item : IdfObject
         The construction; it names the file and the window.
     folder : Path
         Folder of the model, in which a relative path is looked up.
@@ -64,25 +64,29 @@ def read_data_file(item: Item, folder: Path) -> DataFile:
     """
     named = item.text("file_name") or "Window5DataFile.dat"
     path = Path(named.replace("\\", "/"))
-    found = next((one for one in (folder / path, folder / path.name) if one.is_file()), None)
-    if found is None:
+    report = next(
+        (candidate for candidate in (folder / path, folder / path.name) if candidate.is_file()), None
+    )
+    if report is None:
         raise item.error(
             f"file_name: found no file '{named}'", f"a report of WINDOW in {folder}", "Put it there"
         )
-    require_regular(found)
-    lines = found.read_text(encoding="latin-1").splitlines()
+    require_regular(report)
+    lines = report.read_text(encoding="latin-1").splitlines()
     windows = [k for k, line in enumerate(lines) if line.startswith("Window name")]
-    wanted = item.name.casefold()
-    start = next((k for k in windows if lines[k].partition(":")[2].strip().casefold() == wanted), None)
+    window_name = item.name.casefold()
+    start = next((k for k in windows if lines[k].partition(":")[2].strip().casefold() == window_name), None)
     if start is None:
-        known = ", ".join(lines[k].partition(":")[2].strip() for k in windows)
-        raise item.error(f"no window '{item.name}' in {found.name}", f"one of {known}", "Correct the name")
+        window_names = ", ".join(lines[k].partition(":")[2].strip() for k in windows)
+        raise item.error(
+            f"no window '{item.name}' in {report.name}", f"one of {window_names}", "Correct the name"
+        )
     end = next((k for k in windows if k > start), len(lines))
     try:
-        return _window(found.name, lines[start:end])
+        return _window(report.name, lines[start:end])
     except (StopIteration, IndexError, ValueError):
         raise item.error(
-            f"{found.name}: a window that cannot be read", "a report of WINDOW 5", "Export it again"
+            f"{report.name}: a window that cannot be read", "a report of WINDOW 5", "Export it again"
         ) from None
 
 
@@ -92,7 +96,7 @@ def _window(file: str, lines: list[str]) -> DataFile:
     panes = list(_panes(lines, count))
     gaps = list(_gaps(lines, count - 1))
     frame = next((line for line in lines if line.strip().startswith("Average frame")), None)
-    divider = _row(lines, "DIVIDER DATA") if any(one.startswith("DIVIDER DATA") for one in lines) else []
+    divider = _row(lines, "DIVIDER DATA") if any(row.startswith("DIVIDER DATA") for row in lines) else []
     return DataFile(
         file,
         systems,

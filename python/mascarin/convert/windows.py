@@ -9,26 +9,28 @@ import numpy as np
 from mascarin.building.geometry import Polygon
 from mascarin.convert import geometry as g
 from mascarin.convert.constructions import construction
-from mascarin.convert.faces import Opening
-from mascarin.convert.films import Films
+from mascarin.convert.context import Context, Section
+from mascarin.convert.convection import ConvectionCoefficients
 from mascarin.convert.glazings import construction_of, glazing
+from mascarin.convert.idf import IdfObject
+from mascarin.convert.idf_surfaces import IdfOpening
 from mascarin.convert.materials import skin
 from mascarin.convert.setbacks import describe_setback, setback
-from mascarin.convert.source import Item
 from mascarin.convert.surfaces import Surfaces
-from mascarin.convert.work import Section, Work
 from mascarin.errors import InputError
 
 _WINDOWS: Final = ("window", "glassdoor")
 #: Surface resistances that the U value of a frame contains (ISO 10077) [m2 K/W].
 _FILMS: Final = 0.17
 #: Largest U value of a frame in a description [W/(m2 K)].
-_MOST: Final = 5.8
+_MAX_FRAME_U_VALUE: Final = 5.8
 #: Width [m], U value [W/(m2 K)], absorptance and emissivity [-] of a frame.
 FrameData = tuple[float, float, float, float]
 
 
-def describe_openings(work: Work, every: list[Opening], films: Films, surfaces: Surfaces) -> None:
+def describe_openings(
+    context: Context, openings: list[IdfOpening], coefficients: ConvectionCoefficients, surfaces: Surfaces
+) -> None:
     """Enter all windows, and doors as surfaces of their own.
 
     Raises
@@ -36,90 +38,92 @@ def describe_openings(work: Work, every: list[Opening], films: Films, surfaces: 
     InputError
         A construction that does not exist.
     """
-    _shading_controls(work)
-    names = {opening.item.name.casefold() for opening in every}
-    for opening in every:
+    _shading_controls(context)
+    names = {opening.item.name.casefold() for opening in openings}
+    for opening in openings:
         if opening.base.item.name.casefold() in surfaces.reversed_names:
             if opening.beyond.casefold() not in names:
-                work.findings.left_out(
+                context.findings.left_out(
                     opening.item, "an opening on one side of an interior wall", "the wall has no opening"
                 )
             continue
         if opening.shape in _WINDOWS:
-            _window(work, opening, films, surfaces)
+            _window(context, opening, coefficients, surfaces)
         elif opening.shape == "door":
-            _door(work, opening, films, surfaces)
+            _door(context, opening, coefficients, surfaces)
         else:
-            work.findings.left_out(
+            context.findings.left_out(
                 opening.item, f"a {opening.shape}", "its wall is opaque there: no daylight and no sun enters"
             )
 
 
-def _window(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> None:
+def _window(
+    context: Context, opening: IdfOpening, coefficients: ConvectionCoefficients, surfaces: Surfaces
+) -> None:
     item, base = opening.item, opening.base
     wall = surfaces.placed[base.item.name.casefold()]
-    outdoors = bool(work.section("surfaces")[wall]["outside"].get("outdoors"))
+    outdoors = bool(context.section("surfaces")[wall]["outside"].get("outdoors"))
     if not outdoors and base.boundary not in ("surface", "zone"):
-        work.findings.left_out(item, f"a window in a wall to {base.boundary}", "the wall has no window")
+        context.findings.left_out(item, f"a window in a wall to {base.boundary}", "the wall has no window")
         return
     if outdoors and not base.sun:
-        work.findings.approximated(item, "a window in a wall without sun", "the sun shines on the window")
-    found = glazing(work, item, construction_of(work, item))
-    if found is None:
+        context.findings.approximated(item, "a window in a wall without sun", "the sun shines on the window")
+    glazed = glazing(context, item, construction_of(context, item))
+    if glazed is None:
         return
-    frame = _frame_of(work, item) or found.frame
+    frame = _frame_of(context, item) or glazed.frame
     points = g.without_repeats(opening.points + setback(opening))
-    shape = _glazed_shape(work, opening, points, frame, surfaces.drawn[wall])
-    film = films.outside(item, base.zone, "very_smooth")
+    shape = _glazed_shape(context, opening, points, frame, surfaces.has_vertices[wall])
+    coefficient = coefficients.outside(item, base.zone, "very_smooth")
     tilt = g.tilt_of(base.points)
-    made: Section = {"surface": wall, "glazing": found.name, **shape}
+    window: Section = {"surface": wall, "glazing": glazed.name, **shape}
     if outdoors:
         # EnergyPlus adds long-wave radiation to a combined coefficient on windows, not on walls.
-        made["outside"] = {"convection": film.convection}
+        window["outside"] = {"convection": coefficient.convection}
     else:
-        made["outside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
-    made["inside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
-    work.section("windows")[work.names.of("windows", item.name)] = made
+        window["outside"] = {"convection": coefficients.inside(item, base.zone, tilt, window=True)}
+    window["inside"] = {"convection": coefficients.inside(item, base.zone, tilt, window=True)}
+    context.section("windows")[context.names.of("windows", item.name)] = window
 
 
 def _glazed_shape(
-    work: Work, opening: Opening, points: g.Array, frame: FrameData | None, drawn: bool
+    context: Context, opening: IdfOpening, points: g.Array, frame: FrameData | None, has_vertices: bool
 ) -> Section:
     """Corners, area and frame of a window; the glass of EnergyPlus lies inside its frame."""
     glass = g.area_of(opening.points)
-    made: Section = {}
+    shape: Section = {}
     outline = points
     if frame is not None:
         outline = _framed(points, frame[0])
-        whole = g.area_of(outline)
+        outer_area = g.area_of(outline)
         _, u_value, absorptance, emissivity = frame
-        made["frame"] = {
-            "fraction": round(1.0 - glass / whole, 9),
-            "u_value": min(round(u_value, 9), _MOST),
+        shape["frame"] = {
+            "fraction": round(1.0 - glass / outer_area, 9),
+            "u_value": min(round(u_value, 9), _MAX_FRAME_U_VALUE),
             "absorptance": absorptance,
             "emissivity": emissivity,
         }
-        glass = whole
+        glass = outer_area
     total = round(glass * opening.copies, 6)
-    if not drawn or not _accepted(opening, outline):
-        if drawn:
-            work.findings.approximated(
+    if not has_vertices or not _accepted(opening, outline):
+        if has_vertices:
+            context.findings.approximated(
                 opening.item, "corners outside of its wall", "its area alone: nothing shades it"
             )
-        return {"area": total} | made
-    describe_setback(work, opening, outline)
-    made = {"vertices": g.rounded(outline), **made}
+        return {"area": total} | shape
+    describe_setback(context, opening, outline)
+    shape = {"vertices": g.rounded(outline), **shape}
     if opening.copies > 1:
-        work.findings.approximated(
+        context.findings.approximated(
             opening.item,
             f"{opening.copies} windows",
             "one window of their area, with the shadows of the first",
         )
-        made["area"] = total
-    return made
+        shape["area"] = total
+    return shape
 
 
-def _accepted(opening: Opening, points: g.Array) -> bool:
+def _accepted(opening: IdfOpening, points: g.Array) -> bool:
     try:
         wall = Polygon.of("wall", g.rounded(g.without_repeats(opening.base.points)))
         return bool(wall.contains(Polygon.of(opening.item.name, g.rounded(points))))
@@ -142,14 +146,14 @@ def _framed(points: g.Array, width: float) -> g.Array:
     return np.array(moved)
 
 
-def _frame_of(work: Work, item: Item) -> FrameData | None:
+def _frame_of(context: Context, item: IdfObject) -> FrameData | None:
     if not item.text("frame_and_divider_name"):
         return None
-    frame = work.model.require(item, "frame_and_divider_name", "WindowProperty:FrameAndDivider")
+    frame = context.model.require(item, "frame_and_divider_name", "WindowProperty:FrameAndDivider")
     bars = frame.number("divider_width") or 0.0
     count = sum(frame.number(f"number_of_{way}_dividers") or 0.0 for way in ("horizontal", "vertical"))
     if bars > 0.0 and count > 0.0:
-        work.findings.left_out(
+        context.findings.left_out(
             item, "dividers", "more sun enters, by their fraction of the glass, and less heat is conducted"
         )
     width, conductance = frame.number("frame_width") or 0.0, frame.number("frame_conductance")
@@ -159,7 +163,7 @@ def _frame_of(work: Work, item: Item) -> FrameData | None:
         raise frame.error("a frame without frame_conductance", "a conductance [W/(m2 K)]", "Add it")
     for key in ("frame_outside_projection", "frame_inside_projection", "inside_reveal_depth"):
         if frame.number(key):
-            work.findings.approximated(frame, key.replace("_", " "), "it neither shades nor adds surface")
+            context.findings.approximated(frame, key.replace("_", " "), "it neither shades nor adds surface")
     return (
         width,
         1.0 / (1.0 / conductance + _FILMS),
@@ -168,41 +172,47 @@ def _frame_of(work: Work, item: Item) -> FrameData | None:
     )
 
 
-def _door(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> None:
+def _door(
+    context: Context, opening: IdfOpening, coefficients: ConvectionCoefficients, surfaces: Surfaces
+) -> None:
     """An opaque door: a surface that lies in its wall."""
     wall_name = surfaces.placed[opening.base.item.name.casefold()]
-    wall = work.section("surfaces")[wall_name]
-    made = construction_of(work, opening.item)
+    wall = context.section("surfaces")[wall_name]
+    door_construction = construction_of(context, opening.item)
     points = g.without_repeats(opening.points + setback(opening))
-    if not surfaces.drawn[wall_name] or not _accepted(opening, points):
-        work.findings.left_out(
+    if not surfaces.has_vertices[wall_name] or not _accepted(opening, points):
+        context.findings.left_out(
             opening.item, "a door whose wall has no corners here", "it has the construction of the wall"
         )
         return
     if np.any(setback(opening)):
-        work.findings.approximated(opening.item, "a door beside the plane of its wall", "in this plane")
+        context.findings.approximated(opening.item, "a door beside the plane of its wall", "in this plane")
     if opening.copies > 1:
-        work.findings.left_out(opening.item, f"{opening.copies} doors", "there is one of them")
+        context.findings.left_out(opening.item, f"{opening.copies} doors", "there is one of them")
     sides = {}
     for side, outer in (("outside", True), ("inside", False)):
-        own = {key: value for key, value in skin(work, made, outer).items() if key in wall[side]}
-        sides[side] = wall[side] | own
+        film_values = {
+            key: value for key, value in skin(context, door_construction, outer).items() if key in wall[side]
+        }
+        sides[side] = wall[side] | film_values
     if wall["outside"].get("outdoors"):
-        film = films.outside(opening.item, opening.base.zone, skin(work, made, outer=True)["roughness"])
-        sides["outside"]["convection"] = film.convection
+        coefficient = coefficients.outside(
+            opening.item, opening.base.zone, skin(context, door_construction, outer=True)["roughness"]
+        )
+        sides["outside"]["convection"] = coefficient.convection
     cut = bool(wall["outside"].get("adiabatic"))
-    work.section("surfaces")[work.names.of("surfaces", opening.item.name)] = {
-        "construction": construction(work, made, cut=cut, finite_differences=False),
+    context.section("surfaces")[context.names.of("surfaces", opening.item.name)] = {
+        "construction": construction(context, door_construction, cut=cut, finite_differences=False),
         "vertices": g.rounded(points),
         **sides,
     }
 
 
-def _shading_controls(work: Work) -> None:
-    for item in work.model.of("WindowShadingControl", "WindowProperty:ShadingControl"):
+def _shading_controls(context: Context) -> None:
+    for item in context.model.of("WindowShadingControl", "WindowProperty:ShadingControl"):
         device = item.text("shading_type") or "a device"
         control = item.text("shading_control_type")
-        work.findings.left_out(
+        context.findings.left_out(
             item,
             f"{device}, {control}",
             "the windows stay unshaded: more sun enters, and at night the glass alone insulates",

@@ -25,12 +25,13 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
         From `convert`.
     """
     for level in LEVELS:
-        found = sorted(
-            (one for one in conversion.findings if one.level == level), key=lambda one: one.line or 0
+        findings = sorted(
+            (finding for finding in conversion.findings if finding.level == level),
+            key=lambda finding: finding.line or 0,
         )
-        if found:
+        if findings:
             yield _HEADINGS[level]
-            yield from (f"  {one.text()}" for one in found)
+            yield from (f"  {finding.text()}" for finding in findings)
 
 
 def run_options(conversion: Conversion) -> str:
@@ -79,9 +80,11 @@ def report(conversion: Conversion) -> dict[str, Any]:
             "steps_per_hour": conversion.steps_per_hour,
         },
         "findings": [
-            {"level": one.level, "class": one.kind, "name": one.name, "line": one.line, "found": one.what,
-             "effect": one.effect}
-            for one in conversion.findings
+            {
+                "level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line,
+                "found": finding.what, "effect": finding.effect,
+            }
+            for finding in conversion.findings
         ],
         "names": conversion.names,
     }  # fmt: skip

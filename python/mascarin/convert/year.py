@@ -88,21 +88,21 @@ def _at(day: Day, minute: int) -> float:
 
 
 def _without_repeats(points: Sequence[tuple[int, float]]) -> Day:
-    kept: list[tuple[int, float]] = []
+    changes: list[tuple[int, float]] = []
     for minute, value in points:
-        if not kept or kept[-1][1] != value:
-            kept.append((minute, float(value)))
-    return tuple(kept)
+        if not changes or changes[-1][1] != value:
+            changes.append((minute, float(value)))
+    return tuple(changes)
 
 
 def _merged(year: Year) -> Year:
     """Seasons with equal weeks as one."""
-    kept: list[tuple[str, Week]] = []
+    seasons: list[tuple[str, Week]] = []
     for until, week in year.seasons:
-        if kept and kept[-1][1] == week:
-            kept.pop()
-        kept.append((until, week))
-    return Year(tuple(kept))
+        if seasons and seasons[-1][1] == week:
+            seasons.pop()
+        seasons.append((until, week))
+    return Year(tuple(seasons))
 
 
 def year_of(seasons: Sequence[tuple[str, Week]]) -> Year:
@@ -123,19 +123,19 @@ def plain(year: Year, kind: str, holidays: Sequence[str]) -> dict[str, Any]:
     holidays : sequence of str
         Dates of the holidays as ``MM-DD``; without them the profile of holidays is left out.
     """
-    given = year.constant
-    if given is not None:
-        return {"kind": kind, "value": _number(given)}
+    constant_value = year.constant
+    if constant_value is not None:
+        return {"kind": kind, "value": _number(constant_value)}
     weeks = [week if holidays else week[:7] for _, week in year.seasons]
-    own = any(week[7] != week[1] for week in weeks) if holidays else False
-    profiles = [_profiles(week, own) for week in weeks]
+    own_holidays = any(week[7] != week[1] for week in weeks) if holidays else False
+    profiles = [_profiles(week, own_holidays) for week in weeks]
     if len(profiles) == 1:
-        found: dict[str, Any] = {"kind": kind, "days": profiles[0]}
+        schedule: dict[str, Any] = {"kind": kind, "days": profiles[0]}
     else:
         ends = [until for until, _ in year.seasons]
         pairs = zip(ends, profiles, strict=True)
-        found = {"kind": kind, "seasons": [{"until": end, "days": days} for end, days in pairs]}
-    return found | ({"holidays": list(holidays)} if own else {})
+        schedule = {"kind": kind, "seasons": [{"until": end, "days": days} for end, days in pairs]}
+    return schedule | ({"holidays": list(holidays)} if own_holidays else {})
 
 
 def _profiles(week: Week, own_holidays: bool) -> dict[str, Any]:
@@ -144,12 +144,12 @@ def _profiles(week: Week, own_holidays: bool) -> dict[str, Any]:
     holiday = {"holidays": _points(week[7])} if own_holidays else {}
     if len(set(days.values())) == 1:
         return {"all": _points(week[0])} | holiday
-    found: dict[str, Any] = {}
+    profiles: dict[str, Any] = {}
     for group, names in (("weekdays", _WEEKDAYS), ("weekends", _WEEKENDS)):
         common = max(names, key=lambda name: sum(days[name] == days[other] for other in names))
-        found[group] = _points(days[common])
-        found |= {name: _points(days[name]) for name in names if days[name] != days[common]}
-    return found | holiday
+        profiles[group] = _points(days[common])
+        profiles |= {name: _points(days[name]) for name in names if days[name] != days[common]}
+    return profiles | holiday
 
 
 def _points(day: Day) -> list[dict[str, Any]]:
@@ -157,5 +157,5 @@ def _points(day: Day) -> list[dict[str, Any]]:
 
 
 def _number(value: float) -> float | int:
-    found = round(value, 9)
-    return int(found) if found == int(found) and abs(found) < 1e9 else found
+    rounded = round(value, 9)
+    return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e9 else rounded

@@ -8,13 +8,13 @@ import numpy as np
 
 from mascarin.building.site import Wind, wind_factor
 from mascarin.convert import geometry as g
-from mascarin.convert.faces import Face, floor_area
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
+from mascarin.convert.idf_surfaces import IdfSurface, floor_area
 from mascarin.errors import InputError
 
 #: Height of a zone of which neither volume nor closed surfaces are known [m].
-_HEIGHT = 2.5
+_USUAL_HEIGHT = 2.5
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Zone:
 
     Attributes
     ----------
-    item : Item
+    item : IdfObject
         The object.
     name : str
         Its name in the description.
@@ -35,7 +35,7 @@ class Zone:
         Wind at the middle of the zone over that at the mast. [-]
     """
 
-    item: Item
+    item: IdfObject
     name: str
     volume: float
     floor: float
@@ -44,7 +44,7 @@ class Zone:
     wind: float
 
 
-def describe_zones(work: Work, every: list[Face]) -> dict[str, Zone]:
+def describe_zones(context: Context, surfaces: list[IdfSurface]) -> dict[str, Zone]:
     """Enter all zones that have surfaces.
 
     Returns
@@ -57,74 +57,84 @@ def describe_zones(work: Work, every: list[Face]) -> dict[str, Zone]:
     InputError
         The file has no zones, or the volume of one is not known.
     """
-    items = work.zone_items()
+    items = context.zone_items()
     if not items:
-        raise InputError(f"{work.model.file}: found no Zone; expected at least one")
-    wind = Wind(**work.sections["site"]["wind"])
-    found = {}
+        raise InputError(f"{context.model.file}: found no Zone; expected at least one")
+    wind = Wind(**context.sections["site"]["wind"])
+    zones = {}
     for item in items:
-        own = [face for face in every if face.zone is item]
+        zone_surfaces = [surface for surface in surfaces if surface.zone is item]
         facing = [
-            face
-            for face in every
-            if face.boundary == "zone" and face.beyond.casefold() == item.name.casefold()
+            surface
+            for surface in surfaces
+            if surface.boundary == "zone" and surface.beyond.casefold() == item.name.casefold()
         ]
-        masses = [mass for mass in work.model.of("InternalMass") if item in _zones_of_mass(work, mass)]
-        if not own and not facing and not masses:
-            work.findings.left_out(item, "a zone without surfaces", "it has no counterpart here")
+        masses = [mass for mass in context.model.of("InternalMass") if item in _zones_of_mass(context, mass)]
+        if not zone_surfaces and not facing and not masses:
+            context.findings.left_out(item, "a zone without surfaces", "it has no counterpart here")
             continue
         if (item.number("multiplier") or 1.0) > 1.0:
-            work.findings.approximated(
+            context.findings.approximated(
                 item,
                 f"a multiplier of {item.number('multiplier'):g}",
                 "temperatures and loads are those of one of the zones: multiply its loads",
             )
-        name = work.names.of("zones", item.name)
-        sizes = _sizes(work, item, own, wind)
-        work.section("zones")[name] = {"volume": round(sizes.volume, 6)}
-        found[item.name.casefold()] = sizes
-    _capacities(work)
-    return found
+        name = context.names.of("zones", item.name)
+        sizes = _sizes(context, item, zone_surfaces, wind)
+        context.section("zones")[name] = {"volume": round(sizes.volume, 6)}
+        zones[item.name.casefold()] = sizes
+    _capacities(context)
+    return zones
 
 
-def _zones_of_mass(work: Work, mass: Item) -> list[Item]:
-    return work.zones_of(mass, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
+def _zones_of_mass(context: Context, mass: IdfObject) -> list[IdfObject]:
+    return context.zones_of(mass, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
 
 
-def _sizes(work: Work, item: Item, own: list[Face], wind: Wind) -> Zone:
-    floor = floor_area(item, own)
+def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], wind: Wind) -> Zone:
+    floor = floor_area(item, zone_surfaces)
     volume = item.number("volume") or 0.0
     ceiling = item.number("ceiling_height") or 0.0
     if volume <= 0.0:
-        volume = floor * ceiling if ceiling > 0.0 else abs(g.signed_volume([face.points for face in own]))
+        volume = (
+            floor * ceiling
+            if ceiling > 0.0
+            else abs(g.signed_volume([surface.points for surface in zone_surfaces]))
+        )
     if volume <= 0.01:
-        volume = floor * _HEIGHT
+        volume = floor * _USUAL_HEIGHT
         if volume <= 0.0:
             raise item.error("no volume", "a volume [m3], or surfaces that enclose it", "Give 'Volume'")
-        work.findings.approximated(item, "an unknown height", f"{_HEIGHT:g} m are used for its volume")
-    outer = [face for face in own if face.boundary == "outdoors"]
-    heights = np.concatenate([face.points[:, 2] for face in own]) if own else np.array([3.0])
+        context.findings.approximated(
+            item, "an unknown height", f"{_USUAL_HEIGHT:g} m are used for its volume"
+        )
+    outer = [surface for surface in zone_surfaces if surface.boundary == "outdoors"]
+    heights = (
+        np.concatenate([surface.points[:, 2] for surface in zone_surfaces])
+        if zone_surfaces
+        else np.array([3.0])
+    )
     middle = float(0.5 * (heights.min() + heights.max()))
     return Zone(
         item=item,
-        name=work.names.of("zones", item.name),
+        name=context.names.of("zones", item.name),
         volume=volume,
         floor=floor,
-        outdoors=sum(g.area_of(face.points) for face in outer),
-        walls=sum(g.area_of(face.points) for face in outer if face.shape == "wall"),
+        outdoors=sum(g.area_of(surface.points) for surface in outer),
+        walls=sum(g.area_of(surface.points) for surface in outer if surface.shape == "wall"),
         wind=wind_factor(wind, middle),
     )
 
 
-def _capacities(work: Work) -> None:
+def _capacities(context: Context) -> None:
     """Multipliers of the heat capacity of the air."""
-    for item in work.model.of("ZoneCapacitanceMultiplier:ResearchSpecial"):
+    for item in context.model.of("ZoneCapacitanceMultiplier:ResearchSpecial"):
         factor = item.number("temperature_capacity_multiplier") or 1.0
         if factor == 1.0:
             continue
         named = item.text("zone_or_zonelist_name")
-        zones = work.zones_of(item, "zone_or_zonelist_name") if named else work.zone_items()
+        zones = context.zones_of(item, "zone_or_zonelist_name") if named else context.zone_items()
         for zone in zones:
-            name = work.names.of("zones", zone.name)
-            if name in work.section("zones"):
-                work.section("zones")[name]["capacity_factor"] = factor
+            name = context.names.of("zones", zone.name)
+            if name in context.section("zones"):
+                context.section("zones")[name]["capacity_factor"] = factor

@@ -38,7 +38,7 @@ def intervals(ranking: Ranking, names: Sequence[str], title: str, unit: str) -> 
         width=left + 380.0,
         height=height,
         x_label=units.shown(unit),
-        left=left,
+        margin_left=left,
     )
     zero = chart.px(0.0)
     chart.svg.line(zero, 20.0, zero, height - 34.0, "grid zero")
@@ -59,7 +59,13 @@ def scatter(
 ) -> Any:
     """All designs by two objectives; those that no other one beats in both are joined by a line."""
     chart = Chart(
-        Axis.over(x), Axis.over(y), width=460.0, height=320.0, x_label=axes[0], y_label=axes[1], left=52.0
+        Axis.over(x),
+        Axis.over(y),
+        width=460.0,
+        height=320.0,
+        x_label=axes[0],
+        y_label=axes[1],
+        margin_left=52.0,
     )
     finite = np.isfinite(x) & np.isfinite(y)
     for k in _thinned(np.flatnonzero(finite & ~front), 1500):
@@ -98,8 +104,8 @@ def heat_map(
         width=width,
         height=height,
         y_label=labels[1],
-        left=60.0,
-        bottom=bottom,
+        margin_left=60.0,
+        margin_bottom=bottom,
     )
     good = np.where(np.isfinite(values), values if least else -values, np.nan)
     low, high = (np.nanmin(good), np.nanmax(good)) if np.isfinite(good).any() else (0.0, 1.0)
@@ -148,7 +154,7 @@ def cycling(counts: Array, names: Sequence[str], title: str) -> Any:
     x = Axis(0.0, max(total, ticks[-1]), ticks, tick_names(ticks))
     height = 60.0 + 22.0 * len(names)
     chart = Chart(
-        x, Axis(0.0, float(len(names))), width=left + 380.0, height=height, x_label="days", left=left
+        x, Axis(0.0, float(len(names))), width=left + 380.0, height=height, x_label="days", margin_left=left
     )
     for row, name in enumerate(names):
         at, y = 0.0, chart.py(len(names) - row - 0.5)
@@ -180,7 +186,9 @@ def day_curves(curves: Mapping[str, Array], unit: str, title: str, *, around: fl
     hours = np.arange(24, dtype=np.float64) + 0.5
     x = Axis(0.0, 24.0, (0.0, 6.0, 12.0, 18.0, 24.0), ("0", "6", "12", "18", "24"))
     y = Axis.over(*curves.values(), around=around)
-    chart = Chart(x, y, width=400.0, height=230.0, x_label="hour", y_label=units.shown(unit), left=46.0)
+    chart = Chart(
+        x, y, width=400.0, height=230.0, x_label="hour", y_label=units.shown(unit), margin_left=46.0
+    )
     classes = dict(legend(curves))
     for name, values in curves.items():
         chart.curve(hours, values, classes[name])

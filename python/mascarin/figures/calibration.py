@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-MOST_DOTS: Final = 20_000
+MAX_DOTS: Final = 20_000
 """Evaluations from which their dots are drawn as pixels: vectors would make a file of 100 MB."""
 
 
@@ -71,9 +71,9 @@ def correlation(axes: Axes, names: Sequence[str], matrix: Floats) -> None:
         Correlations. [-]
     """
     axes.imshow(matrix, cmap="RdBu_r", vmin=-1.0, vmax=1.0)
-    places = np.arange(len(names))
-    axes.set_xticks(places, [str(k + 1) for k in places], fontsize=8)
-    axes.set_yticks(places, [f"{k + 1}  {name}" for k, name in enumerate(names)], fontsize=8)
+    positions = np.arange(len(names))
+    axes.set_xticks(positions, [str(k + 1) for k in positions], fontsize=8)
+    axes.set_yticks(positions, [f"{k + 1}  {name}" for k, name in enumerate(names)], fontsize=8)
     for i, row in enumerate(matrix):
         for k, value in enumerate(row):
             color = "white" if abs(value) > 0.6 else colors.INK
@@ -122,7 +122,7 @@ def convergence(axes: Axes, cost: Floats, final: float) -> None:
     floor = max(float(np.nanmax(above, initial=0.0)), 1e-300) * 1e-9
     number = np.arange(1, cost.size + 1)
     dots = axes.plot(number, np.maximum(above, floor), ".", color=colors.FITTED, markersize=2, alpha=0.5)
-    dots[0].set_rasterized(cost.size > MOST_DOTS)
+    dots[0].set_rasterized(cost.size > MAX_DOTS)
     lowest = np.fmin.accumulate(np.where(np.isnan(above), np.inf, above))
     steps = np.append(np.flatnonzero(lowest < np.append(np.inf, lowest[:-1])), cost.size - 1)
     axes.plot(

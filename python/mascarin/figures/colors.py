@@ -21,7 +21,7 @@ FITTED: Final = PALETTE[0]
 NOMINAL: Final = PALETTE[1]
 INK: Final = "#333333"
 """Axes, texts and lines of reference; on a page the color of its text."""
-REST: Final = "#9aa0a8"
+REMAINDER: Final = "#9aa0a8"
 """What is left of a whole."""
 _MODELS: Final = {"fitted": FITTED, "nominal": NOMINAL}
 _DASHES: Final[tuple[object, ...]] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)))
@@ -93,11 +93,11 @@ def models(names: Iterable[str]) -> dict[str, str]:
     >>> models(["nominal", "fitted", "other"])
     {'nominal': '#d25a00', 'fitted': '#0078b4', 'other': '#00a55a'}
     """
-    others = [name for name in names if name not in _MODELS]
+    further = [name for name in names if name not in _MODELS]
     free = PALETTE[len(_MODELS) :]
     return {
-        name: _MODELS[name] if name in _MODELS else free[others.index(name) % len(free)]
-        for name in [*(n for n in names if n in _MODELS), *others]
+        name: _MODELS[name] if name in _MODELS else free[further.index(name) % len(free)]
+        for name in [*(n for n in names if n in _MODELS), *further]
     }
 
 
@@ -122,9 +122,9 @@ def parameters(shares: Mapping[str, Mapping[str, float]], most: int) -> dict[str
     ['a', 'b']
     """
     largest: dict[str, float] = {}
-    for found in shares.values():
-        for name in strongest(found, most):
-            largest[name] = max(largest.get(name, 0.0), found[name])
+    for share_of in shares.values():
+        for name in strongest(share_of, most):
+            largest[name] = max(largest.get(name, 0.0), share_of[name])
     return {name: look(number) for number, name in enumerate(strongest(largest, len(largest)))}
 
 

@@ -71,12 +71,12 @@ def carpet(ax: Axes, series: Series, *, centre: float | None = None) -> None:
     """
     cells, first, rows = grid(series)
     days = dates.date2num(first)  # type: ignore[no-untyped-call]
-    known = cells[np.isfinite(cells)]
+    finite = cells[np.isfinite(cells)]
     norm: Normalize | None = None
-    if centre is not None and len(known):
-        reach = max(float(np.max(np.abs(known - centre))), 1e-9)
+    if centre is not None and len(finite):
+        reach = max(float(np.max(np.abs(finite - centre))), 1e-9)
         norm = TwoSlopeNorm(vmin=centre - reach, vcenter=centre, vmax=centre + reach)
-    ax.set_facecolor(colors.REST)
+    ax.set_facecolor(colors.REMAINDER)
     edges = days + np.arange(cells.shape[1] + 1)
     hours = np.linspace(0.0, 24.0, rows + 1)
     colored = "viridis" if centre is None else "RdBu_r"
@@ -120,11 +120,11 @@ def grid(series: Series) -> tuple[Array, np.datetime64, int]:
     step = np.median(np.diff(local) / np.timedelta64(1, "m")) if len(local) > 1 else 60.0
     rows = int(np.clip(round(1440.0 / step), 1, 96))
     column = (day - day[0]).astype(np.int64)
-    place = column * rows + (minutes * rows / 1440.0).astype(np.int64)
-    known = np.isfinite(series.numbers)
+    cell = column * rows + (minutes * rows / 1440.0).astype(np.int64)
+    finite = np.isfinite(series.numbers)
     size = rows * (int(column[-1]) + 1)
-    total = np.bincount(place[known], weights=series.numbers[known], minlength=size)
-    count = np.bincount(place[known], minlength=size)
+    total = np.bincount(cell[finite], weights=series.numbers[finite], minlength=size)
+    count = np.bincount(cell[finite], minlength=size)
     with np.errstate(invalid="ignore"):
         cells = np.where(count > 0, total / np.maximum(count, 1), np.nan)
     return cells.reshape(-1, rows).T, day[0], rows
@@ -188,20 +188,20 @@ def daily_profile(ax: Axes, series: Series, months: Sequence[int] = ()) -> None:
     """
     import pandas as pd
 
-    known = np.isfinite(series.numbers)
-    month_of = np.asarray(series.times.month)[known]
-    hours, numbers = np.asarray(series.times.hour)[known], series.numbers[known]
-    means = {int(one): float(numbers[month_of == one].mean()) for one in np.unique(month_of)}
+    finite = np.isfinite(series.numbers)
+    month_of = np.asarray(series.times.month)[finite]
+    hours, numbers = np.asarray(series.times.hour)[finite], series.numbers[finite]
+    means = {int(month): float(numbers[month_of == month].mean()) for month in np.unique(month_of)}
     chosen = list(months)
     if means and not chosen:
         chosen = sorted({min(means, key=means.__getitem__), max(means, key=means.__getitem__)})
-    for number, month in enumerate(one for one in chosen if one in means):
+    for number, month in enumerate(chosen_month for chosen_month in chosen if chosen_month in means):
         by_hour = pd.Series(numbers[month_of == month]).groupby(hours[month_of == month])
         color = colors.PALETTE[number % len(colors.PALETTE)]
         middle, low, high = by_hour.mean(), by_hour.quantile(0.05), by_hour.quantile(0.95)
-        place = middle.index.to_numpy(dtype=np.float64) + 0.5
-        ax.plot(place, middle, color=color, label=_MONTHS[month - 1])
-        ax.fill_between(place, low, high, color=color, alpha=0.18, lw=0)
+        middle_hours = middle.index.to_numpy(dtype=np.float64) + 0.5
+        ax.plot(middle_hours, middle, color=color, label=_MONTHS[month - 1])
+        ax.fill_between(middle_hours, low, high, color=color, alpha=0.18, lw=0)
     ax.set_xlim(0, 24)
     ax.set_xticks([0, 6, 12, 18, 24])
     ax.set_xlabel("hour of the day")

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-_MOST_CIRCLES: Final = 200
+_MAX_CIRCLES: Final = 200
 """Of more observations every k-th is drawn, so that one can see the points."""
-_MOST_POINTS: Final = 3000
+_MAX_POINTS: Final = 3000
 """Observations from which all are drawn, as pixels: vectors would make a large file."""
-_BAND: Final = 0.2
-_SIZE: Final = 3.2
+_BAND_OPACITY: Final = 0.2
+_MARKER_SIZE: Final = 3.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ class Compared:
 
 
 def series(
-    ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None = None, label: str = "measured"
+    ax: Axes, x: Any, compared: Compared, *, looks: Mapping[str, str] | None = None, label: str = "measured"
 ) -> None:
     """Draw a measured series as points, the series of models as lines, and the prediction interval.
 
@@ -105,7 +105,7 @@ def series(
         Where to draw.
     x : array_like, shape (n,)
         Times, such as a pandas.DatetimeIndex without time zone.
-    one : Compared
+    compared : Compared
         The sensor.
     looks : mapping of str to str, optional
         Color of each model; default those of `colors.models`.
@@ -121,16 +121,16 @@ def series(
     >>> [line.get_label() for line in ax.lines], len(ax.collections)
     (['measured', 'fitted'], 1)
     """
-    found = colors.models(one.models) if looks is None else looks
-    if one.band is not None:
-        _band(ax, x, one.band, found[one.main])
-    _points(ax, x, one.measured, colors.MEASURED, label)
-    for name, values in one.models.items():
-        ax.plot(x, values, color=found[name], label=name, **_line(name))
+    color_of = colors.models(compared.models) if looks is None else looks
+    if compared.band is not None:
+        _band(ax, x, compared.band, color_of[compared.main])
+    _points(ax, x, compared.measured, colors.MEASURED, label)
+    for name, values in compared.models.items():
+        ax.plot(x, values, color=color_of[name], label=name, **_line(name))
     bare(ax)
 
 
-def errors(ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None = None) -> None:
+def errors(ax: Axes, x: Any, compared: Compared, *, looks: Mapping[str, str] | None = None) -> None:
     """Draw simulated minus measured values of models, with the prediction interval.
 
     Parameters
@@ -139,7 +139,7 @@ def errors(ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None =
         Where to draw.
     x : array_like, shape (n,)
         Times.
-    one : Compared
+    compared : Compared
         The sensor.
     looks : mapping of str to str, optional
         Color of each model; default those of `colors.models`.
@@ -152,15 +152,15 @@ def errors(ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None =
     >>> len(ax.lines)
     2
     """
-    found = colors.models(one.models) if looks is None else looks
-    if one.error_band is not None:
-        _band(ax, x, one.error_band, found[one.main])
-    if one.uncertainty > 0.0:
-        for end in (-one.uncertainty, one.uncertainty):
+    color_of = colors.models(compared.models) if looks is None else looks
+    if compared.error_band is not None:
+        _band(ax, x, compared.error_band, color_of[compared.main])
+    if compared.uncertainty > 0.0:
+        for end in (-compared.uncertainty, compared.uncertainty):
             ax.axhline(end, color=colors.MEASURED, linewidth=0.7, linestyle=(0, (1, 2)))
     ax.axhline(0.0, color=colors.INK, linewidth=0.7)
-    for name in one.models:
-        ax.plot(x, one.error(name), color=found[name], label=name, **_line(name))
+    for name in compared.models:
+        ax.plot(x, compared.error(name), color=color_of[name], label=name, **_line(name))
     bare(ax)
 
 
@@ -185,11 +185,11 @@ def together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.Look]]) 
     >>> len(ax.lines)
     2
     """
-    for one, look in sensors:
-        _points(ax, x, one.measured, look.color, "_measured")
-    for one, look in sensors:
+    for compared, look in sensors:
+        _points(ax, x, compared.measured, look.color, "_measured")
+    for compared, look in sensors:
         line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.2}
-        ax.plot(x, one.models[one.main], label=one.label, **line)
+        ax.plot(x, compared.models[compared.main], label=compared.label, **line)
     bare(ax)
 
 
@@ -214,13 +214,13 @@ def errors_together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.L
     >>> [line.get_label() for line in ax.lines][-1]
     'room'
     """
-    for one, look in sensors:
-        if one.error_band is not None:
-            _band(ax, x, one.error_band, look.color, 0.5 * _BAND)
+    for compared, look in sensors:
+        if compared.error_band is not None:
+            _band(ax, x, compared.error_band, look.color, 0.5 * _BAND_OPACITY)
     ax.axhline(0.0, color=colors.INK, linewidth=0.7)
-    for one, look in sensors:
+    for compared, look in sensors:
         line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.1}
-        ax.plot(x, one.error(one.main), label=one.label, **line)
+        ax.plot(x, compared.error(compared.main), label=compared.label, **line)
     bare(ax)
 
 
@@ -255,15 +255,16 @@ def _line(model: str) -> dict[str, Any]:
 
 
 def _points(ax: Axes, x: Any, values: Floats, color: str, label: str) -> Line2D:
-    many = values.size > _MOST_POINTS
-    every = 1 if many else max(1, -(-values.size // _MOST_CIRCLES))
-    (drawn,) = ax.plot(
-        x[::every], values[::every], "o", color=color, markerfacecolor=color if many else "none",
-        markersize=1.0 if many else _SIZE, markeredgewidth=0.0 if many else 0.8, label=label, zorder=3.0,
+    dense = values.size > _MAX_POINTS
+    stride = 1 if dense else max(1, -(-values.size // _MAX_CIRCLES))
+    (markers,) = ax.plot(
+        x[::stride], values[::stride], "o", color=color, markerfacecolor=color if dense else "none",
+        markersize=1.0 if dense else _MARKER_SIZE, markeredgewidth=0.0 if dense else 0.8, label=label,
+        zorder=3.0,
     )  # fmt: skip
-    drawn.set_rasterized(many)
-    return drawn
+    markers.set_rasterized(dense)
+    return markers
 
 
-def _band(ax: Axes, x: Any, ends: tuple[Floats, Floats], color: str, alpha: float = _BAND) -> None:
+def _band(ax: Axes, x: Any, ends: tuple[Floats, Floats], color: str, alpha: float = _BAND_OPACITY) -> None:
     ax.fill_between(x, *ends, color=color, alpha=alpha, lw=0)

@@ -13,7 +13,7 @@ from mascarin.figures import colors
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_USED, _OTHER, _PROPOSED = colors.PALETTE[2], colors.REST, colors.PALETTE[1]
+_USED, _OTHER, _PROPOSED = colors.PALETTE[2], colors.REMAINDER, colors.PALETTE[1]
 
 
 def leverage(

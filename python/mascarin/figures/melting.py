@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 #: Panels beside each other.
-_ACROSS: Final = 6
+_MAX_COLUMNS: Final = 6
 
 
 class Curve(NamedTuple):
@@ -78,14 +78,14 @@ def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Fi
     import numpy as np
 
     above, below = axes_for(ax, ["kJ/kg", "kJ/(kg K)"])
-    for one in curves:
+    for curve in curves:
         look: dict[str, Any] = {
-            "linestyle": one.style,
-            "color": colors.look(one.family).color,
-            "label": one.label,
+            "linestyle": curve.style,
+            "color": colors.look(curve.family).color,
+            "label": curve.label,
         }
-        above.plot(one.temperature, np.asarray(one.enthalpy) / 1000.0, **look)
-        below.plot(one.middle, np.asarray(one.specific_heat) / 1000.0, **look)
+        above.plot(curve.temperature, np.asarray(curve.enthalpy) / 1000.0, **look)
+        below.plot(curve.middle, np.asarray(curve.specific_heat) / 1000.0, **look)
     above.set_ylabel("enthalpy [kJ/kg]")
     below.set_ylabel("apparent specific heat [kJ/(kg K)]")
     below.set_xlabel(bracketed("temperature", shown("degC")))
@@ -119,16 +119,18 @@ def panels(groups: Mapping[str, Sequence[Curve]]) -> Figure:
     import numpy as np
     from matplotlib.figure import Figure
 
-    across = min(_ACROSS, len(groups))
+    across = min(_MAX_COLUMNS, len(groups))
     rows = -(-len(groups) // across)
     figure = Figure(figsize=(2.2 * across, 1.9 * rows + 0.5), layout="constrained")
     cells = figure.subplots(rows, across, squeeze=False, sharey=True).ravel()
     for cell in cells[len(groups) :]:
         cell.set_visible(False)
     for cell, (title, curves) in zip(cells, groups.items(), strict=False):
-        for number, one in enumerate(curves):
+        for number, curve in enumerate(curves):
             color = colors.look(number).color
-            cell.plot(one.temperature, np.asarray(one.enthalpy) / 1000.0, color=color, ls=one.style, lw=1.1)
+            cell.plot(
+                curve.temperature, np.asarray(curve.enthalpy) / 1000.0, color=color, ls=curve.style, lw=1.1
+            )
         cell.set_title(title, fontsize="small")
         cell.tick_params(labelsize="x-small")
         cell.grid(alpha=0.3)

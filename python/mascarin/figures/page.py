@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def embedded(figure: Figure, description: str, colors: Mapping[str, str], *, place: str = "") -> str:
+def embedded(figure: Figure, description: str, colors: Mapping[str, str], *, key: str = "") -> str:
     """Draw a figure as an SVG element for an HTML page.
 
     Parameters
@@ -24,7 +24,7 @@ def embedded(figure: Figure, description: str, colors: Mapping[str, str], *, pla
         Text for readers who do not see the figure.
     colors : mapping of str to str
         Color of the figure, such as ``#0072b2`` -> CSS variable, such as ``--c0``.
-    place : str
+    key : str
         Name of the place on the page, for a figure that is shown at several.
 
     Returns
@@ -55,12 +55,12 @@ def embedded(figure: Figure, description: str, colors: Mapping[str, str], *, pla
     if view is None or inner is None:
         raise ValueError("no SVG")
     content = inner.group(1).replace("xlink:href", "href")
-    content = re.sub(r"#[0-9a-f]{6}\b", lambda found: _color(found.group(), colors), content)
+    content = re.sub(r"#[0-9a-f]{6}\b", lambda match: _color(match.group(), colors), content)
     content = re.sub(r"'DejaVu Sans'[^;\"]*", "var(--sans)", content)
     content = re.sub(r"\n\s*", " ", content)
     return (
         f'<svg class="figure-svg" viewBox="{view.group(1)}" role="img" '
-        f'aria-label="{html.escape(description)}">{_unique(content, place + description)}</svg>'
+        f'aria-label="{html.escape(description)}">{_unique(content, key + description)}</svg>'
     )
 
 
@@ -73,6 +73,6 @@ def _unique(content: str, mark: str) -> str:
     used = set(re.findall(r'(?:href="|url\()#([^")]+)', content))
     mark = "f" + hashlib.sha256((mark + content).encode()).hexdigest()[:8]
     content = re.sub(
-        r' id="([^"]+)"', lambda found: f' id="{mark}{found[1]}"' if found[1] in used else "", content
+        r' id="([^"]+)"', lambda match: f' id="{mark}{match[1]}"' if match[1] in used else "", content
     )
     return re.sub(r'(href="|url\()#', rf"\1#{mark}", content)

@@ -61,11 +61,11 @@ def chart(
     from matplotlib.colors import LogNorm
     from matplotlib.patches import Polygon
 
-    known = np.isfinite(temperature) & np.isfinite(ratio)
-    grams = 1000.0 * ratio[known]
+    finite = np.isfinite(temperature) & np.isfinite(ratio)
+    grams = 1000.0 * ratio[finite]
     if len(grams):
         bins = (np.arange(saturated[0, 0], saturated[-1, 0] + 0.5, 0.5), np.arange(0.0, top + 0.5, 0.5))
-        counts, x, y = np.histogram2d(temperature[known], grams, bins=bins)
+        counts, x, y = np.histogram2d(temperature[finite], grams, bins=bins)
         shown = np.where(counts > 0, counts, np.nan).T
         mesh = ax.pcolormesh(x, y, shown, cmap="YlGnBu", norm=LogNorm(vmin=0.7), rasterized=True)
         figure = ax.get_figure(root=True)
@@ -76,9 +76,15 @@ def chart(
         vapour = physics.vapour_pressure(saturated[:, 1], 1.0)
         line = 1000.0 * physics.ratio_of_vapour(percent / 100.0 * vapour, 1.0)
         ax.plot(saturated[:, 0], line, color=colors.INK, lw=1.0 if percent == 100 else 0.5, alpha=0.7)
-        at = int(np.flatnonzero(line <= 0.94 * top)[-1])
-        at = min(at, int(0.97 * len(line)))
-        ax.annotate(f"{percent} %", (saturated[at, 0], line[at]), fontsize="x-small", ha="right", va="bottom")
+        label_index = int(np.flatnonzero(line <= 0.94 * top)[-1])
+        label_index = min(label_index, int(0.97 * len(line)))
+        ax.annotate(
+            f"{percent} %",
+            (saturated[label_index, 0], line[label_index]),
+            fontsize="x-small",
+            ha="right",
+            va="bottom",
+        )
     for number, (name, corners) in enumerate((zones or {}).items()):
         color = colors.PALETTE[(number + 1) % len(colors.PALETTE)]
         points = np.column_stack([corners[:, 0], 1000.0 * corners[:, 1]])

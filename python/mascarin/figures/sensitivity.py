@@ -24,7 +24,7 @@ _KINDS: Final = {
     "fundamental": colors.PALETTE[0],
     "harmonic": colors.PALETTE[1],
     "interaction": colors.PALETTE[2],
-    "unnamed": colors.REST,
+    "unnamed": colors.REMAINDER,
 }
 
 Legend = tuple[list["Artist"], list[str]]
@@ -152,7 +152,7 @@ def effects(ax: Axes, names: Sequence[str], effect: Floats, unit: str, *, rms: F
 
 
 def indices_over_time(
-    ax: Axes, x: Floats, index: Floats, named: Sequence[tuple[str, colors.Look]], *, rest: str
+    ax: Axes, x: Floats, index: Floats, named: Sequence[tuple[str, colors.Look]], *, remainder: str
 ) -> Legend:
     """Draw first-order indices over time as stacked areas.
 
@@ -166,7 +166,7 @@ def indices_over_time(
         Indices. [-]
     named : sequence of (str, Look), length G
         Parameters and how each is drawn; see `colors.parameters`.
-    rest : str
+    remainder : str
         Name of what the indices leave of 1.
 
     Returns
@@ -179,21 +179,21 @@ def indices_over_time(
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
     >>> index, named = np.full((1, 3), 0.8), [("a", colors.look(0))]
-    >>> handles, labels = indices_over_time(ax, np.arange(3.0), index, named, rest="others")
+    >>> handles, labels = indices_over_time(ax, np.arange(3.0), index, named, remainder="others")
     >>> labels
     ['others', 'a']
     """
     percent = 100.0 * index
     # Estimates scatter a little: the rest is never negative.
     remaining = np.maximum(0.0, 100.0 - percent.sum(axis=0))
-    shades = (*(look.color for _, look in named), colors.REST)
+    shades = (*(look.color for _, look in named), colors.REMAINDER)
     hatches = [*(look.hatch for _, look in named), ""]
     areas = ax.stackplot(x, *percent, remaining, colors=shades, hatch=hatches, linewidth=0.0)
     ax.set_ylim(0.0, 100.0)
     ax.set_xlim(float(x[0]), float(x[-1]))
     ax.set_ylabel("first-order index S1 [%]")
     _bare(ax)
-    return [*areas[::-1]], [*(name for name, _ in named), rest][::-1]
+    return [*areas[::-1]], [*(name for name, _ in named), remainder][::-1]
 
 
 def standard_deviation(ax: Axes, x: Floats, deviation: Floats, unit: str) -> None:
@@ -290,10 +290,10 @@ def spectrum(
         ax.vlines(line.number, 0.0, 100.0 * line.power, color=_KINDS[line.kind], linewidth=1.8)
     strongest = sorted(lines, key=lambda line: -line.power)[:listed]
     for line in strongest:
-        place = (line.number, 100.0 * line.power)
+        peak = (line.number, 100.0 * line.power)
         ax.annotate(
             str(line.number),
-            place,
+            peak,
             (0, 2),
             textcoords="offset points",
             ha="center",

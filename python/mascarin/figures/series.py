@@ -91,8 +91,8 @@ def draw(
         look = colors.look(len(axis.lines))
         axis.plot(days, values, label=name, lw=1.1, color=look.color, linestyle=look.dash)
     for axis in dict.fromkeys(axes):
-        here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
-        axis.set_ylabel(", ".join(bracketed("", shown(unit) or "-") for unit in here))
+        axis_units = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
+        axis.set_ylabel(", ".join(bracketed("", shown(unit) or "-") for unit in axis_units))
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
         _mark_dates(axis, index.tz)
@@ -193,13 +193,13 @@ def axes_for(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axe
             _let_notebook_show_figures()
         figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
         return list(figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]) if units else []
-    given = [ax] if isinstance(ax, Axes) else list(np.ravel(np.array(ax, dtype=object)))
-    for one in given:
-        require_type("ax", one, Axes, "axes of matplotlib, one or a list")
-    if len(given) == 1:
-        return given * len(units)
-    if len(given) != len(units):
+    all_axes = [ax] if isinstance(ax, Axes) else list(np.ravel(np.array(ax, dtype=object)))
+    for entry in all_axes:
+        require_type("ax", entry, Axes, "axes of matplotlib, one or a list")
+    if len(all_axes) == 1:
+        return all_axes * len(units)
+    if len(all_axes) != len(units):
         raise InputError(
-            f"ax: found {len(given)} axes, expected one, or one for each unit ({', '.join(units)})"
+            f"ax: found {len(all_axes)} axes, expected one, or one for each unit ({', '.join(units)})"
         )
-    return given
+    return all_axes

@@ -21,7 +21,7 @@ from mascarin.report.series import Column, Series
 __all__ = ["Column", "Series", "is_report", "render", "write", "write_folder"]
 
 
-_HEAD: Final = 4096  # bytes
+_HEAD_BYTES: Final = 4096  # bytes
 
 
 def render(study: Mapping[str, Any], series: Series) -> str:
@@ -140,7 +140,7 @@ def is_report(path: Path) -> bool:
     True
     """
     with path.open("rb") as file:
-        return b'<meta name="generator" content="Mascarin' in file.read(_HEAD)
+        return b'<meta name="generator" content="Mascarin' in file.read(_HEAD_BYTES)
 
 
 def __dir__() -> list[str]:

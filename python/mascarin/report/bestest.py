@@ -72,15 +72,15 @@ def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts
 def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> str:
     """Make the page; the parameters are those of `write`."""
     held = [row for row in rows if row.range is not None]
-    found = {(row.case, row.quantity): row for row in held}
+    rows_by_case = {(row.case, row.quantity): row for row in held}
     sections = [
         {"id": key, "title": title, "content": content}
         for key, title, content in (
-            ("loads", "Annual loads", _bars(found, ("annual_heating", "annual_cooling"), "MWh")),
-            ("peaks", "Peak loads", _bars(found, ("peak_heating", "peak_cooling"), "kW")),
-            ("floating", "Free-floating temperatures", _floating(found)),
-            ("sun", "Solar radiation", _sun(found)),
-            ("differences", "Differences between cases", _differences(found)),
+            ("loads", "Annual loads", _bars(rows_by_case, ("annual_heating", "annual_cooling"), "MWh")),
+            ("peaks", "Peak loads", _bars(rows_by_case, ("peak_heating", "peak_cooling"), "kW")),
+            ("floating", "Free-floating temperatures", _floating(rows_by_case)),
+            ("sun", "Solar radiation", _sun(rows_by_case)),
+            ("differences", "Differences between cases", _differences(rows_by_case)),
             ("days", "Hourly values of three days", _days(years)),
             ("months", "Monthly values", _months(years)),
             ("bins", "Hours at each temperature", _bins(years)),
@@ -117,7 +117,7 @@ def _words(quantity: str) -> str:
 
 # ------------------------------------------------------------------ bars
 
-Found = Mapping[tuple[str, str], Quantity]
+Rows = Mapping[tuple[str, str], Quantity]
 Group = tuple[str, tuple[Case, ...]]
 _GROUPS: Final[tuple[Group, ...]] = (
     ("low mass", MAIN[:8]),
@@ -128,11 +128,11 @@ _GROUPS: Final[tuple[Group, ...]] = (
 )
 
 
-def _bars(found: Found, quantities: Sequence[str], unit: str) -> list[dict[str, Any]]:
+def _bars(rows_by_case: Rows, quantities: Sequence[str], unit: str) -> list[dict[str, Any]]:
     figures = []
     for quantity in quantities:
         for title, cases in _GROUPS:
-            rows = [found[key] for case in cases if (key := (case.name, quantity)) in found]
+            rows = [rows_by_case[key] for case in cases if (key := (case.name, quantity)) in rows_by_case]
             if rows:
                 figures.append(_bar_chart(f"{_words(quantity)}, {title}", [(r.case, r) for r in rows], unit))
     return figures
@@ -147,23 +147,23 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
     chart = Chart(axis, y, width=max(340.0, 90.0 + 62.0 * len(rows)), height=210.0, y_label=units.shown(unit))
     width = 0.105
     for centre, (_, row) in zip(centres, rows, strict=True):
-        left = centre - 3.5 * width
+        group_start = centre - 3.5 * width
         theirs = _theirs(row)
-        chart.bar(left - 0.03, left + 7 * width + 0.03, theirs.low, theirs.high, "sensor-band")
+        chart.bar(group_start - 0.03, group_start + 7 * width + 0.03, theirs.low, theirs.high, "sensor-band")
         for index, program in enumerate(PROGRAMS):
             if program in theirs.programs:
-                x = left + index * width
+                x = group_start + index * width
                 chart.bar(x, x + 0.85 * width, 0.0, theirs.programs[program], _CLASSES[index])
-        x = left + 6 * width
+        x = group_start + 6 * width
         chart.bar(x, x + width, 0.0, row.value, "ours" if row.passed else "ours outside")
     said = "; ".join(f"{name}: {_shown(row, row.value)} of {_span(row)}" for name, row in rows)
     return {"title": f"{title}, {units.shown(unit)}", "drawing": chart.markup(f"{title}. {said}")}
 
 
 def _outside(row: Quantity) -> str:
-    found = f"{_shown(row, row.value)} {units.shown(row.unit)}"
+    shown_value = f"{_shown(row, row.value)} {units.shown(row.unit)}"
     whose = "the six programs" if (row.case, row.quantity) in ranges() else "--ranges"
-    return f"{row.case}: {_words(row.quantity)}, {found} outside of the range {_span(row)} of {whose}"
+    return f"{row.case}: {_words(row.quantity)}, {shown_value} outside of the range {_span(row)} of {whose}"
 
 
 def _span(row: Quantity) -> str:
@@ -176,16 +176,16 @@ def _theirs(row: Quantity) -> Range:
     return row.range or ranges()[row.case, row.quantity]
 
 
-def _floating(found: Found) -> list[dict[str, Any]]:
+def _floating(rows_by_case: Rows) -> list[dict[str, Any]]:
     figures = []
     for quantity in ("max_temperature", "min_temperature", "mean_temperature"):
-        rows = [(case, row) for (case, name), row in found.items() if name == quantity]
+        rows = [(case, row) for (case, name), row in rows_by_case.items() if name == quantity]
         if rows:
             figures.append(_bar_chart(_words(quantity), rows, "degC"))
     return figures
 
 
-def _sun(found: Found) -> list[dict[str, Any]]:
+def _sun(rows_by_case: Rows) -> list[dict[str, Any]]:
     kinds = (
         ("incident_solar", "Solar irradiation of each plane over the year, case 600", "kWh/m2"),
         ("transmitted_solar", "Solar radiation through the window over the year", "kWh/m2"),
@@ -196,7 +196,7 @@ def _sun(found: Found) -> list[dict[str, Any]]:
     for start, title, unit in kinds:
         rows = [
             (f"{name.removeprefix(start + '_')}" if start == "incident_solar" else case, row)
-            for (case, name), row in found.items()
+            for (case, name), row in rows_by_case.items()
             if name.startswith(start)
         ]
         if rows:
@@ -207,28 +207,31 @@ def _sun(found: Found) -> list[dict[str, Any]]:
 # ------------------------------------------------------------------ differences between cases
 
 
-def _differences(found: Found) -> list[dict[str, Any]]:
+def _differences(rows_by_case: Rows) -> list[dict[str, Any]]:
     """Each case minus its base, which isolates one part of the model."""
     rows = []
     for case in CASES.values():
         cells: list[dict[str, Any]] = []
         for quantity in ("annual_heating", "annual_cooling", "peak_heating", "peak_cooling"):
-            one, other = found.get((case.name, quantity)), found.get((case.base, quantity))
-            if case.name == case.base or one is None or other is None:
+            case_row, base_row = (
+                rows_by_case.get((case.name, quantity)),
+                rows_by_case.get((case.base, quantity)),
+            )
+            if case.name == case.base or case_row is None or base_row is None:
                 break
-            cells.append(_difference(one, other))
+            cells.append(_difference(case_row, base_row))
         else:
             rows.append({"name": f"{case.name} − {case.base}", "change": case.change, "cells": cells})
     return rows
 
 
-def _difference(one: Quantity, other: Quantity) -> dict[str, Any]:
+def _difference(case_row: Quantity, base_row: Quantity) -> dict[str, Any]:
     theirs = [
-        value - _theirs(other).programs[program]
-        for program, value in _theirs(one).programs.items()
-        if program in _theirs(other).programs
+        value - _theirs(base_row).programs[program]
+        for program, value in _theirs(case_row).programs.items()
+        if program in _theirs(base_row).programs
     ]
-    ours = one.value - other.value
+    ours = case_row.value - base_row.value
     low, high = min(theirs), max(theirs)
     return {
         "ours": text.fixed(ours, sign=True),
@@ -244,13 +247,13 @@ def _days(years: Mapping[str, Year]) -> list[dict[str, Any]]:
     """The charts that the standard requires, without cases that were not run."""
     figures = []
     for title, month, day, unit, curves in _DAYS:
-        drawn = [
+        labeled_curves = [
             (label, _day_values(years[case], series, month, day))
             for label, case, series in curves
             if case in years and (series in ("load", "temperature") or series in years[case].series)
         ]
-        if drawn:
-            figures.append(_curves(f"{title}, {day} {month}", drawn, unit))
+        if labeled_curves:
+            figures.append(_curves(f"{title}, {day} {month}", labeled_curves, unit))
     return figures
 
 
@@ -262,20 +265,20 @@ def _day_values(year: Year, series: str, month: str, day: int) -> Array:
     return values[hours]
 
 
-def _curves(title: str, drawn: Sequence[tuple[str, Array]], unit: str) -> dict[str, Any]:
-    y = Axis.over(*[values for _, values in drawn], around=0.0 if unit != "degC" else None)
+def _curves(title: str, labeled_curves: Sequence[tuple[str, Array]], unit: str) -> dict[str, Any]:
+    y = Axis.over(*[values for _, values in labeled_curves], around=0.0 if unit != "degC" else None)
     x = Axis(0.0, 24.0, (0.0, 6.0, 12.0, 18.0, 24.0), ("0", "6", "12", "18", "24"))
     chart = Chart(x, y, width=340.0, height=200.0, x_label="hour", y_label=units.shown(unit))
-    for index, (_, values) in enumerate(drawn):
+    for index, (_, values) in enumerate(labeled_curves):
         chart.curve(np.asarray(_HOURS, dtype=np.float64), values, f"s{index}")
     said = "; ".join(
         f"{label}: {text.significant(float(values.min()))} to {text.significant(float(values.max()))}"
-        for label, values in drawn
+        for label, values in labeled_curves
     )
     return {
         "title": title,
         "drawing": chart.markup(f"{title}, {units.shown(unit)}. {said}"),
-        "keys": [(label, f"s{index}") for index, (label, _) in enumerate(drawn)],
+        "keys": [(label, f"s{index}") for index, (label, _) in enumerate(labeled_curves)],
     }
 
 

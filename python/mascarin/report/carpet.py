@@ -18,7 +18,7 @@ STOPS = ((8, 64, 129), (91, 155, 203), (240, 239, 235), (232, 142, 88), (148, 30
 #: Color of instants without a value.
 EMPTY = (150, 150, 150)
 _LEVELS = 201
-_MOST_ROWS = 96
+_MAX_ROWS = 96
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def carpet(series: Series, values: Array, limit: float) -> Carpet:
     """
     first = series.time(0).replace(hour=0, minute=0, second=0, microsecond=0)
     offset = (series.time(0) - first).total_seconds()
-    rows = int(min(_MOST_ROWS, max(1.0, 86400.0 // series.step)))
+    rows = int(min(_MAX_ROWS, max(1.0, 86400.0 // series.step)))
     seconds = offset + series.step * np.arange(len(values))
     days = (seconds // 86400.0).astype(np.intp)
     slots = (seconds % 86400.0 / 86400.0 * rows).astype(np.intp)
@@ -68,10 +68,10 @@ def carpet(series: Series, values: Array, limit: float) -> Carpet:
     np.add.at(total, (slots[good], days[good]), values[good])
     np.add.at(count, (slots[good], days[good]), 1.0)
     grid = np.where(count > 0, total / np.maximum(count, 1.0), np.nan)[::-1]
-    every = max(1, round(columns / 6))
+    mark_spacing = max(1, round(columns / 6))
     marks = [
         (column, f"{(first + timedelta(days=column)).day} {first + timedelta(days=column):%b}")
-        for column in range(0, columns, every)
+        for column in range(0, columns, mark_spacing)
         if column < 0.93 * columns
     ]
     return Carpet(_address(_levels(grid, limit)), columns, rows, limit, marks)
@@ -92,17 +92,17 @@ def round_limit(spread: float) -> float:
 
 
 def _levels(grid: Array, limit: float) -> npt.NDArray[np.uint8]:
-    place = np.clip((grid / limit + 1.0) * 0.5, 0.0, 1.0) * (_LEVELS - 1)
-    levels = np.where(np.isfinite(grid), np.round(np.nan_to_num(place)) + 1.0, 0.0)
+    level = np.clip((grid / limit + 1.0) * 0.5, 0.0, 1.0) * (_LEVELS - 1)
+    levels = np.where(np.isfinite(grid), np.round(np.nan_to_num(level)) + 1.0, 0.0)
     return levels.astype(np.uint8)
 
 
 def _palette() -> list[int]:
     """Red, green and blue of each level; level 0 is :data:`EMPTY`."""
-    places = np.linspace(0.0, 1.0, _LEVELS)
+    positions = np.linspace(0.0, 1.0, _LEVELS)
     stops = np.array(STOPS, dtype=np.float64)
-    at = np.linspace(0.0, 1.0, len(stops))
-    colors = np.column_stack([np.interp(places, at, stops[:, c]) for c in range(3)])
+    stop_positions = np.linspace(0.0, 1.0, len(stops))
+    colors = np.column_stack([np.interp(positions, stop_positions, stops[:, c]) for c in range(3)])
     return [*EMPTY, *np.round(colors).astype(int).ravel().tolist()]
 
 

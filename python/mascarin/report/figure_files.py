@@ -13,7 +13,7 @@ from mascarin.figures import colors
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.figures.files import save, save_both
 from mascarin.report import text
-from mascarin.report.compared import by_unit, compared_sensors, model_looks, sensor_looks
+from mascarin.report.comparison_data import by_unit, compared_sensors, model_looks, sensor_looks
 from mascarin.report.labels import label_of, model_label, period_label, short_periods, unit_of
 from mascarin.report.series import Series, moment
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDTH: Final = 9.0  # inches
-_EVERY: Final = 1_000_000
+_MAX_SAMPLES: Final = 1_000_000
 """More points than a record has: none is left out of a file."""
 
 
@@ -58,19 +58,19 @@ def write_figures(
     written: list[Path] = []
     for period in short_periods(study):
         start, end = study["periods"][period]["spans"][0]
-        times, sensors = compared_sensors(study, curves, curves.slice_of(start, end), _EVERY)
+        times, sensors = compared_sensors(study, curves, curves.slice_of(start, end), _MAX_SAMPLES)
         if not sensors:
             continue
         title = f"{period_label(study, period)}, {text.span_of(moment(start), moment(end))}"
-        whole = partial(_all, study, times, sensors, title)
-        written += once(f"{period}-all", partial(_save, whole, folder / f"{period}-all"))
-        for sensor, one in sensors.items():
-            single = partial(_single, study, times, sensor, one, f"{one.label}: {title}")
+        all_sensors = partial(_all, study, times, sensors, title)
+        written += once(f"{period}-all", partial(_save, all_sensors, folder / f"{period}-all"))
+        for sensor, compared in sensors.items():
+            single = partial(_single, study, times, sensor, compared, f"{compared.label}: {title}")
             written += once(f"{period}-{sensor}", partial(_save, single, folder / f"{period}-{sensor}"))
-    times, sensors = compared_sensors(study, curves, slice(0, len(curves)), _EVERY)
-    for sensor, one in sensors.items():
-        title = f"{one.label}: whole record"
-        single = partial(_single, study, times, sensor, one, title, shaded=True)
+    times, sensors = compared_sensors(study, curves, slice(0, len(curves)), _MAX_SAMPLES)
+    for sensor, compared in sensors.items():
+        title = f"{compared.label}: whole record"
+        single = partial(_single, study, times, sensor, compared, title, shaded=True)
         path = folder / f"{sensor}.svg"
         written += once(sensor, partial(_save, single, path))
     return written
@@ -93,9 +93,9 @@ def _all(
     axes = figure.subplots(2 * len(groups), 1, sharex=True, height_ratios=(2, 1) * len(groups))
     for row, (unit, names) in enumerate(groups.items()):
         upper, lower = axes[2 * row], axes[2 * row + 1]
-        drawn = [(sensors[name], looks[name]) for name in names]
-        together(upper, times, drawn)
-        errors_together(lower, times, drawn)
+        compared_looks = [(sensors[name], looks[name]) for name in names]
+        together(upper, times, compared_looks)
+        errors_together(lower, times, compared_looks)
         upper.set_ylabel(bracketed("", shown(unit)))
         lower.set_ylabel(bracketed("error", difference(unit)))
     axes[0].set_title(title, loc="left", fontsize=11)
@@ -127,7 +127,7 @@ def _single(
     study: Mapping[str, Any],
     times: list[datetime],
     sensor: str,
-    one: Compared,
+    compared: Compared,
     title: str,
     *,
     shaded: bool = False,
@@ -138,12 +138,12 @@ def _single(
     unit = unit_of(study, sensor)
     named = Compared(
         label_of(study, sensor),
-        one.measured,
-        {model_label(study, model): values for model, values in one.models.items()},
-        model_label(study, one.main),
-        half=one.half,
-        center=one.center,
-        uncertainty=one.uncertainty,
+        compared.measured,
+        {model_label(study, model): values for model, values in compared.models.items()},
+        model_label(study, compared.main),
+        half=compared.half,
+        center=compared.center,
+        uncertainty=compared.uncertainty,
     )
     figure = Figure(figsize=(_WIDTH, 5.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
@@ -151,7 +151,7 @@ def _single(
     series(upper, times, named, looks=looks, label=observed)
     errors(lower, times, named, looks=looks)
     handles, labels = upper.get_legend_handles_labels()
-    if one.half is not None:
+    if compared.half is not None:
         handles.append(upper.collections[0])
         labels.append("95 % prediction interval")
     if shaded:
@@ -168,7 +168,7 @@ def _shade(study: Mapping[str, Any], axes: tuple[Axes, ...]) -> None:
     """Tint the identification period."""
     for start, end in study.get("periods", {}).get("identification", {}).get("spans", []):
         for ax in axes:
-            ax.axvspan(moment(start), moment(end), color=colors.REST, alpha=0.18, lw=0, zorder=0)  # type: ignore[arg-type]
+            ax.axvspan(moment(start), moment(end), color=colors.REMAINDER, alpha=0.18, lw=0, zorder=0)  # type: ignore[arg-type]
 
 
 def _days(ax: Axes, study: Mapping[str, Any]) -> None:

@@ -133,16 +133,18 @@ def _number(cell: str) -> float:
 
 def _columns(names: Sequence[str], values: Array, study: Mapping[str, Any]) -> dict[str, Column]:
     sensors, models = study.get("sensor_info", {}), ("measured", "band", "expected", *study.get("models", {}))
-    found = {}
+    columns = {}
     for name, column in zip(names, values.T, strict=True):
         owner, what = _parts(name, models)
         if owner in sensors:
             info = sensors[owner]
             key = f"{'observed' if what == 'measured' else what}/{owner}"
-            found[key] = Column(column, str(info.get("label", owner)), str(info.get("unit", "degC")))
+            columns[key] = Column(column, str(info.get("label", owner)), str(info.get("unit", "degC")))
         elif owner == "weather":
             label, unit = _WEATHER.get(what, (plain_path(what), ""))
-            found[f"weather/{what}"] = Column(column, label, unit)
+            columns[f"weather/{what}"] = Column(column, label, unit)
         elif owner == "state":
-            found[f"state/{what}"] = Column(column, plain_path(what), "degC" if "temperature" in what else "")
-    return found
+            columns[f"state/{what}"] = Column(
+                column, plain_path(what), "degC" if "temperature" in what else ""
+            )
+    return columns

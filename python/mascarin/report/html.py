@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.report.numbering import Numbering
+from mascarin.report.cross_references import CrossReferences
 from mascarin.report.page import context, explorer
 from mascarin.report.series import Series
 from mascarin.report.template import CURVES, environment, frame
@@ -21,8 +21,8 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     series : Series
         Curves.
     """
-    numbering = Numbering()
-    template = environment(numbering).get_template("report/page.html")
+    references = CrossReferences()
+    template = environment(references).get_template("report/page.html")
     values = context(study, series) | frame(
         styles=["report/vendor/uPlot.min.css"],
         libraries=[CURVES],
@@ -30,5 +30,5 @@ def page(study: Mapping[str, Any], series: Series) -> str:
         data=explorer(study, series),
     )
     template.render(values)  # counts the tables and figures to which texts refer
-    numbering.restart()
+    references.restart()
     return template.render(values)

@@ -10,7 +10,7 @@ from mascarin.report import text
 from mascarin.report.series import moment
 
 #: Periods longer than this are not printed as curves. [days]
-_LONG = 16.0
+_MAX_PRINTED_DAYS = 16.0
 
 
 def label_of(study: Mapping[str, Any], sensor: str) -> str:
@@ -31,12 +31,12 @@ def main_model(study: Mapping[str, Any]) -> str | None:
 
 def short_periods(study: Mapping[str, Any]) -> list[str]:
     """Periods short enough to be printed as curves."""
-    found = []
+    keys = []
     for key, period in study.get("periods", {}).items():
         spans = period.get("spans", [])
-        if len(spans) == 1 and moment(spans[0][1]) - moment(spans[0][0]) <= timedelta(days=_LONG):
-            found.append(key)
-    return found
+        if len(spans) == 1 and moment(spans[0][1]) - moment(spans[0][0]) <= timedelta(days=_MAX_PRINTED_DAYS):
+            keys.append(key)
+    return keys
 
 
 def period_label(study: Mapping[str, Any], key: str) -> str:
@@ -54,7 +54,7 @@ def model_label(study: Mapping[str, Any], key: str | None) -> str:
 def parameter_label(study: Mapping[str, Any], path: str) -> str:
     """Name of a parameter, or of several for a peak of a combination."""
     label = study.get("parameters", {}).get(path, {}).get("label")
-    return str(label) if label else text.PATH.sub(lambda found: text.plain_path(found.group()), path)
+    return str(label) if label else text.PATH.sub(lambda match: text.plain_path(match.group()), path)
 
 
 def layout(study: Mapping[str, Any], what: str) -> str:

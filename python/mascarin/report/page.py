@@ -10,7 +10,7 @@ from typing import Any, Final
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.report import text
-from mascarin.report.compared import model_looks
+from mascarin.report.comparison_data import model_looks
 from mascarin.report.labels import label_of, main_model, model_label, period_label, short_periods, unit_of
 from mascarin.report.sections import (
     carpets,
@@ -88,12 +88,12 @@ def headline(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
 
 def _looks(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
     """What the legend of the curves of a sensor shows."""
-    model, found = main_model(study), model_looks(study)
+    model, color_of = main_model(study), model_looks(study)
     main = model_label(study, model)
     nominal = model_label(study, "nominal") if "nominal" in study.get("models", {}) else ""
     return {
-        "main": {"label": main, "color": found.get(main, "")},
-        "nominal": {"label": nominal, "color": found[nominal]} if nominal and model != "nominal" else None,
+        "main": {"label": main, "color": color_of.get(main, "")},
+        "nominal": {"label": nominal, "color": color_of[nominal]} if nominal and model != "nominal" else None,
         "band": any(key.startswith("band/") for key in series.columns),
         "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
     }
@@ -108,30 +108,30 @@ def _created(raw: str | None) -> str:
 
 def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
     """Main results for the head of the page."""
-    found: list[dict[str, str]] = []
+    facts: list[dict[str, str]] = []
     criteria = study.get("criteria", [])
     judged = [c for c in criteria if c.get("model", "fitted") == main_model(study)] or criteria
     if judged:
         met = sum(1 for c in judged if c.get("passed"))
         kind = "pass" if met == len(judged) else "fail"
-        found.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
-    found += coverage_facts(study)
-    found += _errors(study)
+        facts.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
+    facts += coverage_facts(study)
+    facts += _errors(study)
     fitted = [p for p in study.get("parameters", {}).values() if "fitted" in p]
     if fitted:
         sensed = len({path for shares in study.get("sensitivity", {}).values() for path in shares})
         note = f"of {sensed} analyzed" if sensed else "from the measurements"
-        found.append(_fact("Calibrated parameters", str(len(fitted)), note))
+        facts.append(_fact("Calibrated parameters", str(len(fitted)), note))
     closure = study.get("ledger", {}).get("closure")
     if closure is not None:
-        found.append(
+        facts.append(
             _fact(
                 "Energy-balance residual",
                 text.significant(closure, 2),
                 "relative to the total heat exchanged",
             )
         )
-    return found
+    return facts
 
 
 def _fact(name: str, value: str, note: str, kind: str = "") -> dict[str, str]:
@@ -172,8 +172,8 @@ def _percents(shares: Collection[float]) -> str:
 
 def _values(study: Mapping[str, Any], sensor: str, period: str) -> int:
     """Number of compared values."""
-    found = study.get("sensors", {}).get(sensor, {}).get(period, {})
-    return int(found.get(main_model(study), {}).get("n", 0))
+    metrics = study.get("sensors", {}).get(sensor, {}).get(period, {})
+    return int(metrics.get(main_model(study), {}).get("n", 0))
 
 
 def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
@@ -206,14 +206,14 @@ def _span(values: Sequence[float]) -> str:
 
 def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
     """The sections with content, numbered in their order."""
-    found: list[dict[str, Any]] = []
+    sections: list[dict[str, Any]] = []
     for module in SECTIONS:
         content = module.content(study, series)
         if content:
             key = module.__name__.rpartition(".")[2]
-            number = len(found) + 1
+            number = len(sections) + 1
             tables = [_further_table(t) for t in _tables(study) if t.get("section", "comparison") == key]
-            found.append(
+            sections.append(
                 {
                     "id": key.replace("_", "-"),
                     "template": f"report/sections/{key}.html",
@@ -223,13 +223,13 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
                     "tables": tables,
                 }
             )
-    return found
+    return sections
 
 
 def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """All further tables: those by themselves, and those of the diagnosis and of the choice of days."""
-    own = [study.get(key, {}).get("table") for key in ("days", "diagnosis")]
-    return [*study.get("tables", []), *(table for table in own if table)]
+    section_tables = [study.get(key, {}).get("table") for key in ("days", "diagnosis")]
+    return [*study.get("tables", []), *(table for table in section_tables if table)]
 
 
 def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -49,24 +49,26 @@ def tidy(study: Mapping[str, Any]) -> dict[str, Any]:
     dict
         The same without the repetitions, in periods, metrics, criteria and aims.
     """
-    kept: dict[str, Any] = {}
+    distinct_periods: dict[str, Any] = {}
     for key, period in study.get("periods", {}).items():
-        if not any(period.get("spans") == other.get("spans") for other in kept.values()):
-            kept[key] = period
+        if not any(period.get("spans") == other.get("spans") for other in distinct_periods.values()):
+            distinct_periods[key] = period
     sensors = {
-        sensor: {key: entries for key, entries in periods.items() if key in kept}
+        sensor: {key: entries for key, entries in periods.items() if key in distinct_periods}
         for sensor, periods in study.get("sensors", {}).items()
     }
     limits = {
-        what: [c for c in study.get(what, []) if not c.get("period") or c["period"] in kept]
+        what: [c for c in study.get(what, []) if not c.get("period") or c["period"] in distinct_periods]
         for what in ("criteria", "aims")
     }
-    changed = {"periods": kept, "sensors": sensors, **limits}
+    changed = {"periods": distinct_periods, "sensors": sensors, **limits}
     return {**study, **{key: value for key, value in changed.items() if key in study}}
 
 
 def _declared(where: str, names: Iterable[str], study: Mapping[str, Any]) -> None:
-    known: Sequence[str] = list(study.get(where, {}))
+    declared: Sequence[str] = list(study.get(where, {}))
     for name in names:
-        if name not in known:
-            raise InputError(f"study: metrics of '{name}', which '{where}' does not declare (it has {known})")
+        if name not in declared:
+            raise InputError(
+                f"study: metrics of '{name}', which '{where}' does not declare (it has {declared})"
+            )

@@ -21,12 +21,12 @@ from mascarin.report.series import Array
 from mascarin.report.svg import Svg
 
 #: Assumed height of a room without vertices. [m]
-_HEIGHT: Final = 2.5
+_STOREY_HEIGHT: Final = 2.5
 #: Weight of a wall between rooms beside that of a facade of the same area.
-_NEAR: Final = 0.4
-_PUSHES: Final = 200
+_NEIGHBOR_WEIGHT: Final = 0.4
+_MAX_PUSHES: Final = 200
 #: Rooms beyond this number would be too small to be labelled.
-_MOST: Final = 40
+_MAX_ROOMS: Final = 40
 _WIDTH: Final = 560.0
 _MARGIN: Final = 34.0
 
@@ -61,7 +61,7 @@ def plan(building: Mapping[str, Any]) -> Plan | None:
         None for one room or more than 40, rooms without walls between them, and floors above each other.
     """
     names = [str(zone.get("name")) for zone in building.get("zones", [])]
-    if not 2 <= len(names) <= _MOST:
+    if not 2 <= len(names) <= _MAX_ROOMS:
         return None
     floors = _floors(building)
     if set(floors) == set(names):
@@ -74,7 +74,7 @@ def plan(building: Mapping[str, Any]) -> Plan | None:
 
 def _floors(building: Mapping[str, Any]) -> dict[str, Array]:
     """The largest floor of each room."""
-    found: dict[str, Array] = {}
+    floor_outlines: dict[str, Array] = {}
     largest: dict[str, float] = {}
     for surface in building.get("surfaces", []):
         vertices, zone, area = (
@@ -83,8 +83,8 @@ def _floors(building: Mapping[str, Any]) -> dict[str, Array]:
             float(surface.get("area", 0.0)),
         )
         if vertices and float(surface.get("tilt", 0.0)) > 150.0 and area > largest.get(zone, 0.0):
-            found[zone], largest[zone] = np.array(vertices, dtype=np.float64), area
-    return found
+            floor_outlines[zone], largest[zone] = np.array(vertices, dtype=np.float64), area
+    return floor_outlines
 
 
 def _stacked(floors: Sequence[Array]) -> bool:
@@ -95,23 +95,23 @@ def _stacked(floors: Sequence[Array]) -> bool:
 
 def _walls(building: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, str, float, float]]:
     """Room, what is behind, azimuth [rad] and area [m2] of the upright walls."""
-    found = []
+    walls = []
     for surface in building.get("surfaces", []):
         inside, outside = str(surface.get("inside")), str(surface.get("outside"))
         upright = 45.0 < float(surface.get("tilt", 0.0)) < 135.0
         if upright and inside in names and outside != inside:
             azimuth = math.radians(float(surface.get("azimuth", 0.0)))
-            found.append((inside, outside, azimuth, float(surface.get("area", 0.0))))
-    return found
+            walls.append((inside, outside, azimuth, float(surface.get("area", 0.0))))
+    return walls
 
 
 def _connected(names: Sequence[str], walls: Sequence[tuple[str, str, float, float]]) -> bool:
     """Whether walls between rooms join all of them."""
     reached, waiting = {names[0]}, [names[0]]
     while waiting:
-        here = waiting.pop()
-        for one, other, _, _ in walls:
-            beyond = {one: other, other: one}.get(here)
+        room = waiting.pop()
+        for inside, outside, _, _ in walls:
+            beyond = {inside: outside, outside: inside}.get(room)
             if beyond is not None and beyond in names and beyond not in reached:
                 reached.add(beyond)
                 waiting.append(beyond)
@@ -123,8 +123,8 @@ def _squares(
 ) -> dict[str, Array]:
     """Squares of the floor areas at places that follow from the directions of the walls."""
     volume = {str(zone.get("name")): float(zone.get("volume") or 0.0) for zone in building["zones"]}
-    half = np.array([0.5 * math.sqrt(max(volume[name], 1.0) / _HEIGHT) for name in names])
-    place = {name: k for k, name in enumerate(names)}
+    half = np.array([0.5 * math.sqrt(max(volume[name], 1.0) / _STOREY_HEIGHT) for name in names])
+    index_of = {name: k for k, name in enumerate(names)}
     reach = 0.5 * float(np.sqrt((4.0 * half**2).sum()))
     # Unknown are the eastings, then the northings.
     rows, right = [], []
@@ -139,17 +139,22 @@ def _squares(
     for axis in (0, len(names)):
         require(1.0, 0.0, *((axis + k, 1.0) for k in range(len(names))))
     for inside, outside, azimuth, area in walls:
-        at = place[inside]
-        if outside in place:
+        room = index_of[inside]
+        if outside in index_of:
             # Neighbours are near each other; the azimuth of an inner wall is often left at zero.
             for axis in (0, len(names)):
-                require(_NEAR * math.sqrt(area), 0.0, (axis + at, 1.0), (axis + place[outside], -1.0))
+                require(
+                    _NEIGHBOR_WEIGHT * math.sqrt(area),
+                    0.0,
+                    (axis + room, 1.0),
+                    (axis + index_of[outside], -1.0),
+                )
         else:
             # The room stands at this side of the building.
             east, north = math.sin(azimuth), math.cos(azimuth)
-            require(math.sqrt(area), reach - half[at], (at, east), (len(names) + at, north))
-    found, *_ = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)
-    centres = found.reshape(2, -1).T
+            require(math.sqrt(area), reach - half[room], (room, east), (len(names) + room, north))
+    solution, *_ = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)
+    centres = solution.reshape(2, -1).T
     centres = _apart(centres, half)
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     return {name: centres[k] + half[k] * corners for k, name in enumerate(names)}
@@ -158,7 +163,7 @@ def _squares(
 def _apart(centres: Array, half: Array) -> Array:
     """Push squares apart until none overlap."""
     centres = centres.copy()
-    for _ in range(_PUSHES):
+    for _ in range(_MAX_PUSHES):
         moved = False
         for i in range(len(half)):
             for j in range(i):
@@ -175,7 +180,7 @@ def _apart(centres: Array, half: Array) -> Array:
     return centres
 
 
-def drawn(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
+def plan_drawing(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
     """The plan with the error of the air temperature of each room; north is up.
 
     Parameters
@@ -189,35 +194,35 @@ def drawn(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
         Drawing, outlines, and the name of the period of the errors.
     """
     building = study.get("building") or {}
-    found = plan(building)
-    if found is None:
+    room_plan = plan(building)
+    if room_plan is None:
         return None
     period = _period(study)
-    every = np.concatenate(list(found.outlines.values()))
-    low, high = every[:, :2].min(axis=0), every[:, :2].max(axis=0)
+    outline_points = np.concatenate(list(room_plan.outlines.values()))
+    low, high = outline_points[:, :2].min(axis=0), outline_points[:, :2].max(axis=0)
     scale = (_WIDTH - 2.0 * _MARGIN) / max(float((high - low).max()), 1e-6)
     svg = Svg(_WIDTH, float(scale * (high - low)[1]) + 2.0 * _MARGIN)
-    left = 0.5 * (_WIDTH - scale * float((high - low)[0]))
+    left_margin = 0.5 * (_WIDTH - scale * float((high - low)[0]))
 
-    def at(points: Array) -> Array:
+    def on_page(points: Array) -> Array:
         """Place on the page. [px]"""
         return np.column_stack(
-            [left + scale * (points[:, 0] - low[0]), _MARGIN + scale * (high[1] - points[:, 1])]
+            [left_margin + scale * (points[:, 0] - low[0]), _MARGIN + scale * (high[1] - points[:, 1])]
         )
 
-    for name, outline in found.outlines.items():
-        corners = at(outline[:, :2])
+    for name, outline in room_plan.outlines.items():
+        corners = on_page(outline[:, :2])
         svg.polygon(corners, "room")
         x, y = corners.mean(axis=0)
         shown = [_name(study, name), *_errors(study, name, period)]
         for k, words in enumerate(shown):
             svg.label(float(x), float(y) + 15.0 * (k - 0.5 * (len(shown) - 1)) + 4.0, words,
                       "layer-name" if k == 0 else "tick", "middle")  # fmt: skip
-    _openings(svg, building, found, at)
+    _openings(svg, building, room_plan, on_page)
     svg.label(_WIDTH - 12.0, 18.0, "N", "small", "middle")
     svg.line(_WIDTH - 12.0, 40.0, _WIDTH - 12.0, 23.0, "arrow")
     label = period_label(study, period) if period else ""
-    return svg.markup("Plan of the rooms with the errors of their temperatures"), found, label
+    return svg.markup("Plan of the rooms with the errors of their temperatures"), room_plan, label
 
 
 def _period(study: Mapping[str, Any]) -> str | None:
@@ -239,32 +244,36 @@ def _name(study: Mapping[str, Any], zone: str) -> str:
 
 def _errors(study: Mapping[str, Any], zone: str, period: str | None) -> list[str]:
     """Root mean square error of the air, and mean error of the load, of the main model."""
-    model, found = main_model(study), []
+    model, error_texts = main_model(study), []
     for sensor, info in study.get("sensor_info", {}).items():
         owner, _, what = str(info.get("output", "")).rpartition(".")
         values = (study.get("sensors", {}).get(sensor, {}).get(period) or {}).get(model) or {}
         if owner != zone or not values.get("n"):
             continue
         if what == "air_temperature":
-            found.append(f"{text.fixed(values['rmse'], 2)} {units.difference(str(info.get('unit', 'degC')))}")
+            error_texts.append(
+                f"{text.fixed(values['rmse'], 2)} {units.difference(str(info.get('unit', 'degC')))}"
+            )
         elif what in ("net_load", "heating_load", "cooling_load"):
-            found.append(f"{values['bias']:+.0f} {units.shown(str(info.get('unit', 'W')))}".replace("-", "−"))
-    return found
+            error_texts.append(
+                f"{values['bias']:+.0f} {units.shown(str(info.get('unit', 'W')))}".replace("-", "−")
+            )
+    return error_texts
 
 
-def _openings(svg: Svg, building: Mapping[str, Any], found: Plan, at: Any) -> None:
+def _openings(svg: Svg, building: Mapping[str, Any], room_plan: Plan, on_page: Any) -> None:
     """Windows on their sides of the rooms, and doors between rooms."""
     by_name = {str(surface.get("name")): surface for surface in building.get("surfaces", [])}
     for window in building.get("windows", []):
         surface = by_name.get(str(window.get("surface")), {})
-        outline = found.outlines.get(str(surface.get("inside")))
+        outline = room_plan.outlines.get(str(surface.get("inside")))
         if outline is not None and 45.0 < float(surface.get("tilt", 0.0)) < 135.0:
-            ends = at(_side(outline[:, :2], math.radians(float(surface.get("azimuth", 0.0)))))
+            ends = on_page(_side(outline[:, :2], math.radians(float(surface.get("azimuth", 0.0)))))
             _stroke(svg, ends, "room-window")
     for door in building.get("doors", []):
-        pair = [found.outlines[str(name)][:, :2] for name in door if str(name) in found.outlines]
+        pair = [room_plan.outlines[str(name)][:, :2] for name in door if str(name) in room_plan.outlines]
         if len(pair) == 2:
-            ends = at(_between(*pair))
+            ends = on_page(_between(*pair))
             _stroke(svg, ends, "room-door")
 
 
@@ -273,11 +282,11 @@ def _stroke(svg: Svg, ends: Array, class_: str) -> None:
     svg.line(x1, y1, x2, y2, class_)
 
 
-def _between(one: Array, other: Array) -> Array:
+def _between(first_outline: Array, second_outline: Array) -> Array:
     """A short line across the boundary of two outlines, shape (2, 2). [m]"""
-    start, end = one.mean(axis=0), other.mean(axis=0)
+    start, end = first_outline.mean(axis=0), second_outline.mean(axis=0)
     way = end - start
-    middle = 0.5 * (_leaves(one, start, way) + 1.0 - _leaves(other, end, -way))
+    middle = 0.5 * (_leaves(first_outline, start, way) + 1.0 - _leaves(second_outline, end, -way))
     across = 0.3 * way / max(float(np.hypot(*way)), 1e-6)
     return np.array([start + middle * way - across, start + middle * way + across])
 
@@ -300,5 +309,5 @@ def _side(outline: Array, azimuth: float) -> Array:
     following = np.roll(outline, -1, axis=0)
     middle = 0.5 * (outline + following)
     best = int(np.argmax((middle - outline.mean(axis=0)) @ way))
-    one, other = outline[best], following[best]
-    return np.array([0.75 * one + 0.25 * other, 0.25 * one + 0.75 * other])
+    corner, following_corner = outline[best], following[best]
+    return np.array([0.75 * corner + 0.25 * following_corner, 0.25 * corner + 0.75 * following_corner])

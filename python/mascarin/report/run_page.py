@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io import atomic, units
 from mascarin.building.output_kinds import KINDS
 from mascarin.report import text
-from mascarin.report.drawn import short_day, time_axis
+from mascarin.report.axes import short_day, time_axis
 from mascarin.report.sections.energy import ledger_bars
 from mascarin.report.series import Array
 from mascarin.report.svg import Axis, Chart
@@ -131,18 +131,18 @@ def render(results: Results, notes: Notes) -> str:
         )
         if content
     ]
-    found = results.provenance
+    provenance = results.provenance
     return (
         environment()
         .get_template("report/run.html")
         .render(
             frame(styles=["report/run.css"]),
-            title=found.building,
-            version=found.version,
+            title=provenance.building,
+            version=provenance.version,
             sections=sections,
             facts=_facts(results),
             period=text.span_of(results.index[0], results.index[-1]),
-            climate=_climate(found.climate),
+            climate=_climate(provenance.climate),
         )
     )
 
@@ -172,9 +172,9 @@ def _facts(results: Results) -> list[dict[str, str]]:
 
 
 def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
-    found = []
-    others = [o.kind for o in results.outputs if o.kind not in _FIGURES and not o.usual]
-    for kind in dict.fromkeys((*_FIGURES, *others)):  # those that were asked for follow
+    figures = []
+    requested_kinds = [o.kind for o in results.outputs if o.kind not in _FIGURES and not o.usual]
+    for kind in dict.fromkeys((*_FIGURES, *requested_kinds)):  # those that were asked for follow
         curves = [
             (output.name.rpartition(".")[0], results.records[:, k], output.mean)
             for k, output in enumerate(results.outputs)
@@ -187,8 +187,8 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
         shown = curves[:_CURVES]
         if kind == "air_temperature" and notes.outdoors is not None:
             shown = [*shown, ("outdoors", notes.outdoors, False)]
-        found.append(_figure(title, unit, shown, results.index, max(left_out, 0)))
-    return found
+        figures.append(_figure(title, unit, shown, results.index, max(left_out, 0)))
+    return figures
 
 
 def _figure(
@@ -196,15 +196,17 @@ def _figure(
 ) -> dict[str, Any]:
     hours = np.asarray((index - index[0]).total_seconds(), dtype=np.float64) / 3600.0
     each = max(1, -(-(len(hours) - 1) // _POINTS))
-    drawn = [(name, *_thinned(hours, values, each, mean=mean)) for name, values, mean in curves]
+    thinned_curves = [(name, *_thinned(hours, values, each, mean=mean)) for name, values, mean in curves]
     around = 0.0 if unit in ("W", "-") else None
-    y = Axis.over(*[values for _, _, values, _, _ in drawn], *_ends(drawn, each), around=around)
+    y = Axis.over(
+        *[values for _, _, values, _, _ in thinned_curves], *_ends(thinned_curves, each), around=around
+    )
     sign = units.shown(unit)
     chart = Chart(
         time_axis(index[0].to_pydatetime(), float(hours[-1])), y, width=720.0, height=230.0, y_label=sign
     )
     legend = []
-    for number, (name, times, values, low, high) in enumerate(drawn):
+    for number, (name, times, values, low, high) in enumerate(thinned_curves):
         look = "outdoors" if name == "outdoors" else f"s{number}"
         if each > 1:
             chart.band(times, low, high, f"band-{look}")
@@ -212,7 +214,7 @@ def _figure(
         legend.append((name, look))
     said = "; ".join(
         f"{name} {text.fixed(float(np.min(low)), 1)} to {text.fixed(float(np.max(high)), 1)} {sign}".strip()
-        for name, _, _, low, high in drawn
+        for name, _, _, low, high in thinned_curves
     )
     step = float(hours[1] - hours[0]) * each
     caption = f"Means of {text.significant(step)} h, with their range." if each > 1 else ""
@@ -226,8 +228,8 @@ def _figure(
     }
 
 
-def _ends(drawn: Sequence[tuple[str, Array, Array, Array, Array]], each: int) -> list[Array]:
-    return [end for one in drawn for end in one[3:]] if each > 1 else []
+def _ends(thinned_curves: Sequence[tuple[str, Array, Array, Array, Array]], each: int) -> list[Array]:
+    return [end for curve in thinned_curves for end in curve[3:]] if each > 1 else []
 
 
 def _thinned(hours: Array, values: Array, each: int, *, mean: bool) -> tuple[Array, Array, Array, Array]:
@@ -299,32 +301,34 @@ def _outputs(results: Results) -> list[tuple[str, str, str, str, str]]:
 
 
 def _inputs(results: Results, notes: Notes) -> list[tuple[str, str]]:
-    found = results.provenance
-    rows = [*notes.inputs, ("Mascarin", found.version), ("Building, SHA-256", found.building_hash)]
+    provenance = results.provenance
+    rows = [*notes.inputs, ("Mascarin", provenance.version), ("Building, SHA-256", provenance.building_hash)]
     rows += [
-        (f"Weather, {key.replace('_', ' ')}", _words(value)) for key, value in found.climate.items() if value
+        (f"Weather, {key.replace('_', ' ')}", _words(value))
+        for key, value in provenance.climate.items()
+        if value
     ]
     rows += [
         (f"Measurements, {key.replace('_', ' ')}", _words(value))
-        for key, value in (found.measurements or {}).items()
+        for key, value in (provenance.measurements or {}).items()
         if value
     ]
     rows += [
         ("Period", f"{results.index[0]:%Y-%m-%d %H:%M} to {results.index[-1]:%Y-%m-%d %H:%M}"),
         ("Time zone", str(results.index.tz)),
-        ("Step", text.with_unit(found.step_seconds, "s", 6)),
-        ("Scheme", found.scheme),
-        ("Start", found.start),
-        *((path, text.significant(value, 6)) for path, value in found.changed.items()),
-        ("Newton iterations", text.significant(found.newton_iterations, 9)),
-        ("Halved steps", str(found.halved_steps)),
+        ("Step", text.with_unit(provenance.step_seconds, "s", 6)),
+        ("Scheme", provenance.scheme),
+        ("Start", provenance.start),
+        *((path, text.significant(value, 6)) for path, value in provenance.changed.items()),
+        ("Newton iterations", text.significant(provenance.newton_iterations, 9)),
+        ("Halved steps", str(provenance.halved_steps)),
     ]
     return rows
 
 
 def _words(value: Any) -> str:
     if isinstance(value, Mapping):
-        return "; ".join(f"{key}: {_words(one)}" for key, one in value.items())
+        return "; ".join(f"{key}: {_words(part)}" for key, part in value.items())
     if isinstance(value, list | tuple):
-        return ", ".join(_words(one) for one in value)
+        return ", ".join(_words(part) for part in value)
     return str(value)

@@ -241,7 +241,7 @@ class Shortfall(TypedDict, total=False):
     period: str
     steps: list[dict[str, Any]]
     """Each with ``path`` (what is changed besides those before), ``changes`` by path [ranges], and ``sd``."""
-    every: dict[str, Any]
+    all_parameters: dict[str, Any]
     """``parameters``, their number, and ``sd`` with all of them changed."""
 
 

@@ -24,8 +24,8 @@ from mascarin.errors import InputError
 Array = npt.NDArray[np.float64]
 
 #: Largest number of values over all columns in a report; longer series are thinned.
-MOST_VALUES = 600_000
-_MISSING = -32768
+MAX_VALUES = 600_000
+_MISSING_CODE = -32768
 _LEVELS = 65_000
 
 
@@ -100,7 +100,7 @@ class Series:
         last = (moment(end) - moment(self.start)).total_seconds() / self.step
         return slice(max(0, math.ceil(first - 1e-6)), max(0, math.ceil(last - 1e-6)))
 
-    def thinned(self, most: int = MOST_VALUES) -> Series:
+    def thinned(self, most: int = MAX_VALUES) -> Series:
         """Keep every k-th instant, k as small as the number of values allows.
 
         Parameters
@@ -113,11 +113,11 @@ class Series:
         Series
             The same object if it is small enough.
         """
-        every = max(1, math.ceil(len(self) * len(self.columns) / most))
-        if every == 1:
+        stride = max(1, math.ceil(len(self) * len(self.columns) / most))
+        if stride == 1:
             return self
-        kept = {k: Column(c.values[::every], c.label, c.unit) for k, c in self.columns.items()}
-        return Series(self.start, self.step * every, kept)
+        thinned_columns = {k: Column(c.values[::stride], c.label, c.unit) for k, c in self.columns.items()}
+        return Series(self.start, self.step * stride, thinned_columns)
 
     def to_dict(self) -> dict[str, Any]:
         """Give the compact form, ready for JSON."""
@@ -200,7 +200,7 @@ def _packed(column: Column) -> _Column:
     low = float(finite.min()) if finite.size else 0.0
     high = float(finite.max()) if finite.size else 0.0
     scale = (high - low) / _LEVELS or 1.0
-    levels = np.where(np.isfinite(values), np.round((values - low) / scale) - _LEVELS // 2, _MISSING)
+    levels = np.where(np.isfinite(values), np.round((values - low) / scale) - _LEVELS // 2, _MISSING_CODE)
     data = base64.b64encode(levels.astype("<i2").tobytes()).decode("ascii")
     return {"label": column.label, "unit": column.unit, "offset": low, "scale": scale, "data": data}
 
@@ -208,5 +208,5 @@ def _packed(column: Column) -> _Column:
 def _unpacked(raw: Mapping[str, Any]) -> Column:
     levels = np.frombuffer(base64.b64decode(raw["data"]), dtype="<i2").astype(np.float64)
     values = (levels + _LEVELS // 2) * float(raw["scale"]) + float(raw["offset"])
-    values[levels == _MISSING] = math.nan
+    values[levels == _MISSING_CODE] = math.nan
     return Column(values, str(raw["label"]), str(raw["unit"]))

@@ -159,10 +159,10 @@ class Chart:
     height: float = 200.0
     x_label: str = ""
     y_label: str = ""
-    left: float = 40.0
-    right: float = 8.0
-    top: float = 20.0
-    bottom: float = 34.0
+    margin_left: float = 40.0
+    margin_right: float = 8.0
+    margin_top: float = 20.0
+    margin_bottom: float = 34.0
     svg: Svg = field(init=False)
 
     def __post_init__(self) -> None:
@@ -171,39 +171,52 @@ class Chart:
         self._frame()
 
     def _frame(self) -> None:
-        bottom = self.height - self.bottom
+        bottom = self.height - self.margin_bottom
         for value, name in zip(self.y.ticks, self.y.names, strict=True):
             y = self.py(value)
-            self.svg.line(self.left, y, self.width - self.right, y, "grid zero" if value == 0.0 else "grid")
-            self.svg.label(self.left - 5, y + 3.5, name, "tick", "end")
+            self.svg.line(
+                self.margin_left,
+                y,
+                self.width - self.margin_right,
+                y,
+                "grid zero" if value == 0.0 else "grid",
+            )
+            self.svg.label(self.margin_left - 5, y + 3.5, name, "tick", "end")
         for value, name in zip(self.x.ticks, self.x.names, strict=True):
             x = self.px(value)
             self.svg.line(x, bottom, x, bottom + 4, "tickmark")
             self.svg.label(x, bottom + 15, name, "tick", "middle")
-        self.svg.line(self.left, bottom, self.width - self.right, bottom, "axis")
+        self.svg.line(self.margin_left, bottom, self.width - self.margin_right, bottom, "axis")
         if self.y_label:
             self.svg.label(0, 11, self.y_label, "axis-label")
         if self.x_label:
-            self.svg.label(self.width - self.right, self.height - 3, self.x_label, "axis-label", "end")
+            self.svg.label(self.width - self.margin_right, self.height - 3, self.x_label, "axis-label", "end")
 
     def px(self, value: float) -> float:
         """Horizontal place of a value. [px]"""
         span = (self.x.high - self.x.low) or 1.0
-        return self.left + (value - self.x.low) / span * (self.width - self.left - self.right)
+        return self.margin_left + (value - self.x.low) / span * (
+            self.width - self.margin_left - self.margin_right
+        )
 
     def py(self, value: float) -> float:
         """Vertical place of a value. [px]"""
         span = (self.y.high - self.y.low) or 1.0
         return (
-            self.height - self.bottom - (value - self.y.low) / span * (self.height - self.top - self.bottom)
+            self.height
+            - self.margin_bottom
+            - (value - self.y.low) / span * (self.height - self.margin_top - self.margin_bottom)
         )
 
     def _points(self, xs: Array, ys: Array) -> Array:
         span_x = (self.x.high - self.x.low) or 1.0
         span_y = (self.y.high - self.y.low) or 1.0
-        inner_x, inner_y = self.width - self.left - self.right, self.height - self.top - self.bottom
-        px = self.left + (np.asarray(xs) - self.x.low) / span_x * inner_x
-        py = self.height - self.bottom - (np.asarray(ys) - self.y.low) / span_y * inner_y
+        inner_x, inner_y = (
+            self.width - self.margin_left - self.margin_right,
+            self.height - self.margin_top - self.margin_bottom,
+        )
+        px = self.margin_left + (np.asarray(xs) - self.x.low) / span_x * inner_x
+        py = self.height - self.margin_bottom - (np.asarray(ys) - self.y.low) / span_y * inner_y
         return np.column_stack([px, py])
 
     def curve(self, xs: Array, ys: Array, class_: str) -> None:
@@ -218,18 +231,18 @@ class Chart:
             up, down = self._points(xs[good], high[good]), self._points(xs[good], low[good])
             self.svg.polygon(np.vstack([up, down[::-1]]), class_)
 
-    def bar(self, left: float, right: float, low: float, high: float, class_: str) -> None:
+    def bar(self, x_low: float, x_high: float, low: float, high: float, class_: str) -> None:
         """Draw a filled rectangle."""
-        x0, x1 = sorted((self.px(left), self.px(right)))
+        x0, x1 = sorted((self.px(x_low), self.px(x_high)))
         y0, y1 = sorted((self.py(low), self.py(high)))
         self.svg.add("rect", x=x0, y=y0, width=max(x1 - x0, 0.3), height=max(y1 - y0, 0.3), class_=class_)
 
     def level(self, value: float, class_: str, name: str = "") -> None:
         """Draw a horizontal line over the whole width."""
         y = self.py(value)
-        self.svg.line(self.left, y, self.width - self.right, y, class_)
+        self.svg.line(self.margin_left, y, self.width - self.margin_right, y, class_)
         if name:
-            self.svg.label(self.width - self.right, y - 3, name, "note", "end")
+            self.svg.label(self.width - self.margin_right, y - 3, name, "note", "end")
 
     def markup(self, title: str, class_: str = "") -> Markup:
         """Finish the chart."""

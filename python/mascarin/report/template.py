@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from mascarin._io.terminal import printable
 from mascarin.figures import colors
-from mascarin.report.numbering import Numbering
+from mascarin.report.cross_references import CrossReferences
 from mascarin.report.text import significant, typeset
 
 
@@ -44,12 +44,12 @@ CURVES: Final = Library(
 )
 
 
-def environment(numbering: Numbering | None = None) -> Environment:
+def environment(references: CrossReferences | None = None) -> Environment:
     """Templates of all packages, by their path below ``mascarin``; they extend ``report/base.html``.
 
     Parameters
     ----------
-    numbering : Numbering, optional
+    references : CrossReferences, optional
         Numbers of tables and figures; new ones if not given.
 
     Examples
@@ -57,7 +57,7 @@ def environment(numbering: Numbering | None = None) -> Environment:
     >>> environment().get_template("report/base.html").name
     'report/base.html'
     """
-    made = Environment(
+    templates = Environment(
         loader=PackageLoader("mascarin", ""),
         autoescape=True,
         finalize=lambda value: printable(value) if type(value) is str else value,
@@ -66,9 +66,9 @@ def environment(numbering: Numbering | None = None) -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters |= {"typeset": typeset, "significant": significant, "symbol": _symbol}
-    made.globals["numbering"] = numbering or Numbering()
-    return made
+    templates.filters |= {"typeset": typeset, "significant": significant, "symbol": _symbol}
+    templates.globals["references"] = references or CrossReferences()
+    return templates
 
 
 def frame(
@@ -109,9 +109,11 @@ def frame(
     return {
         "style": Markup(style),  # noqa: S704  (our own files)
         "policy": _policy(texts, served=served),
-        "scripts": [Markup(one) for one in texts],  # noqa: S704
+        "scripts": [Markup(script) for script in texts],  # noqa: S704
         "data": None if data is None else _json(data),
-        "software": [{"purpose": one.purpose, "licence": asset(one.licence)} for one in libraries],
+        "software": [
+            {"purpose": library.purpose, "licence": asset(library.licence)} for library in libraries
+        ],
     }
 
 
@@ -127,7 +129,7 @@ def palette() -> str:
         "observed": colors.MEASURED,
         "fitted": colors.FITTED,
         "nominal": colors.NOMINAL,
-        "rest": colors.REST,
+        "rest": colors.REMAINDER,
     }
     named |= {f"c{number}": color for number, color in enumerate(colors.PALETTE)}
     return ":root {" + " ".join(f"--{name}: {color};" for name, color in named.items()) + "}"

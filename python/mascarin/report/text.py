@@ -80,7 +80,7 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
         return NONE, ""
     if low is None or high is None:
         return significant(value), ""
-    shown = [_typographic(one) for one in numbers.with_interval(value, low, high)]
+    shown = [_typographic(number) for number in numbers.with_interval(value, low, high)]
     return shown[0], f"{shown[1]} to {shown[2]}"
 
 
@@ -112,16 +112,20 @@ def beside_limit(value: float | None, limit: float | None) -> tuple[str, str]:
     """Value and limit with so many decimals that one sees whether the limit is met."""
     if value is None or limit is None or not math.isfinite(value):
         return NONE, fixed(limit)
-    found, wanted = numbers.beside_limit(value, limit)
-    return _typographic(found), _typographic(wanted)
+    value_text, limit_text = numbers.beside_limit(value, limit)
+    return _typographic(value_text), _typographic(limit_text)
 
 
 def _typographic(number: str) -> str:
     """A number with a true minus sign, and thin spaces between thousands."""
-    whole, point, rest = number.partition(".")
-    grouped = f"{int(whole):,}".replace(",", "\u202f") if whole.lstrip("-").isdigit() else whole
-    sign = "-" if whole.startswith("-0") else ""
-    return f"{sign}{grouped}{point}{rest}".replace("-", MINUS)
+    integer_part, point, decimals = number.partition(".")
+    grouped = (
+        f"{int(integer_part):,}".replace(",", "\u202f")
+        if integer_part.lstrip("-").isdigit()
+        else integer_part
+    )
+    sign = "-" if integer_part.startswith("-0") else ""
+    return f"{sign}{grouped}{point}{decimals}".replace("-", MINUS)
 
 
 def with_unit(value: float | None, raw_unit: str, digits: int = 3) -> str:
@@ -139,8 +143,8 @@ def percent(value: float | None, digits: int = 1) -> str:
 
 def span_of(start: datetime, end: datetime) -> str:
     """Span of time in words; whole days by their dates."""
-    whole = start.time() == end.time() and start.hour == start.minute == 0
-    if not whole:
+    full_days = start.time() == end.time() and start.hour == start.minute == 0
+    if not full_days:
         return f"{day(start)} {start:%H:%M} to {day(end)} {end:%H:%M}"
     last = datetime.fromordinal(end.toordinal() - 1)
     if last.toordinal() <= start.toordinal():
@@ -172,7 +176,7 @@ def typeset(words: str) -> str:
     words = re.sub(r"(?<=\d) deg\b", "°", words)
     words = re.sub(r"(?<=\d) degC\b", "\u00a0°C", words)
     words = re.sub(r"(?<=\d) (?=m[23]\b)", "\u00a0", words)
-    words = re.sub(r"(?<![\w.])m[23](?!\w)", lambda found: shown(found[0]), words)
+    words = re.sub(r"(?<![\w.])m[23](?!\w)", lambda match: shown(match[0]), words)
     return re.sub(r"(^|\s)-(?=\d)", rf"\1{MINUS}", words)
 
 
@@ -185,8 +189,8 @@ def duration(seconds: float) -> str:
     """Time a run took."""
     if seconds < 60.0:
         return f"{significant(seconds, 2)}\u00a0s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}\u00a0min {rest}\u00a0s"
+    minutes, remaining_seconds = divmod(round(seconds), 60)
+    return f"{minutes}\u00a0min {remaining_seconds}\u00a0s"
 
 
 def clock(hours: float | None) -> str:

@@ -110,7 +110,7 @@ def day(result: SpectralSensitivity, output: str, *, hour: ArrayLike | None = No
     ]
     remainder = 100.0 * (1.0 - result.index[order, s].sum())
     rest = f"others and interactions  {remainder:.1f} %"
-    legend = figures.indices_over_time(upper, x, index[order], named, rest=rest)
+    legend = figures.indices_over_time(upper, x, index[order], named, remainder=rest)
     figure.legend(*legend, loc="upper left", bbox_to_anchor=_LEGEND, fontsize=8, frameon=False)
     upper.set_title(output, loc="left", fontsize=10)
     upper.tick_params(labelbottom=False)

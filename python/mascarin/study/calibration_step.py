@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, SearchOptions, solve
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 
 if TYPE_CHECKING:
@@ -146,9 +146,9 @@ def identify(
         method=plan.method,
         cost=plan.cost,
         seed=plan.seed,
-        rules=Rules(
+        options=SearchOptions(
             starts=plan.starts,
-            tolerance=Rules().tolerance if tolerance is None else tolerance,
+            tolerance=SearchOptions().tolerance if tolerance is None else tolerance,
             slopes=plan.slopes,
             sequences=plan.sequences,
             agree=plan.agree,

@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin._io.limits import above, below
-from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
+from mascarin.calibration.building_calibration import CONSTANT, MAX_CONSTANT_SHARE
 from mascarin.errors import InputError
 from mascarin.study.comfort_step import require_rooms
 from mascarin.study.periods import overlap
@@ -186,7 +186,7 @@ def _working(study: Setup) -> None:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue
             shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
-            if shared > MOST_CONSTANT * (end - start).total_seconds():
+            if shared > MAX_CONSTANT_SHARE * (end - start).total_seconds():
                 with study.places.blame("sensors", name, "column"):
                     raise InputError(
                         f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.calibration.form_weights import weighted_quantiles
-from mascarin.calibration.refining import METHOD
+from mascarin.calibration.joint_estimation import METHOD
+from mascarin.calibration.pseudo_bma_weights import weighted_quantiles
 from mascarin.study.error_model import (
     effects_of_sensors,
     effects_of_unknowns,
@@ -125,7 +125,7 @@ def _predicted(
     about[:, columns], variance[:, columns] = joint.predicted(used, z)
     # What the identification does not tell of these numbers remains as uncertain as it was.
     variance += np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
-    own[columns], white[columns] = joint.sizes.new_day, joint.sizes.independent
+    own[columns], white[columns] = joint.error_covariances.new_day, joint.error_covariances.independent
     seen = study.used["identification"]
     for s in range(own.size):
         if s not in columns:

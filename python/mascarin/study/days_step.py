@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin.study.residuals_step import drivers
-from mascarin.validation.days import FAR, DayChoice, choose_days
+from mascarin.validation.days import EXTRAPOLATION_RATIO, DayChoice, choose_days
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -93,7 +93,7 @@ def days_table(found: DayChoice) -> dict[str, Any]:
             "before it (D-optimal). The gain is the fall of the logarithm of the volume of the confidence "
             "region; the reduction is that of the variance of the predictions on all days that were not used "
             "[%]. The leverage is the variance of the prediction from the estimated parameters, relative to "
-            f"the days of the identification; days above {FAR:g} are extrapolations."
+            f"the days of the identification; days above {EXTRAPOLATION_RATIO:g} are extrapolations."
         ),
         "columns": ["day", "order", "gain", "reduction", "leverage", "drivers outside of the identification"],
         "rows": rows,
@@ -108,7 +108,7 @@ def day_words(found: DayChoice) -> list[str]:
     if count:
         texts.append(
             f"{count} of {others} days that were not used for the calibration are extrapolations: their "
-            f"leverage is more than {FAR:g} times that of the identification."
+            f"leverage is more than {EXTRAPOLATION_RATIO:g} times that of the identification."
         )
     texts += [
         f"{one.name}: {100.0 * one.outside:.0f} % of the other instants are outside of the range of the "

@@ -9,8 +9,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mascarin.building.names import Name
 from mascarin.building.part import Part, fault, insist
-from mascarin.calibration.rules import WITH_SQUARES, SlopesName
-from mascarin.calibration.rules import MethodName as FitMethod
+from mascarin.calibration.search_options import WITH_SQUARES, SlopesName
+from mascarin.calibration.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mascarin.study.diagnosis_model import PRIOR
-from mascarin.validation.joint import Joint, Solution
+from mascarin.validation.whitened_regression import Solution, WhitenedRegression
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,7 +41,7 @@ class Candidate:
     ----------
     what : int or OtherForm
         Number of the parameter, or the form.
-    problem : Joint
+    problem : WhitenedRegression
         The residuals with it.
     active : list of int
         Columns that are fitted.
@@ -50,7 +50,7 @@ class Candidate:
     """
 
     what: int | OtherForm
-    problem: Joint
+    problem: WhitenedRegression
     active: list[int]
     fit: Solution
 

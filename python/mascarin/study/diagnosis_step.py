@@ -24,11 +24,11 @@ from mascarin.study.corrections import Corrections, Found
 from mascarin.study.diagnosis_candidates import Candidate, OtherForm, name_of
 from mascarin.study.diagnosis_model import Model, Store
 from mascarin.study.other_laws import forms
-from mascarin.validation.causes import Cause, Diagnosis
-from mascarin.validation.changes import changes
-from mascarin.validation.evidence import Squares, chance, level_chance
-from mascarin.validation.joint import Joint, Solution, Whitening
+from mascarin.validation.hypotheses import Cause, Diagnosis
+from mascarin.validation.likelihood_ratio import SquareSums, p_value, step_change_p_value
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, white_noise
+from mascarin.validation.step_changes import step_changes
+from mascarin.validation.whitened_regression import Solution, WhitenedRegression, Whitening
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -141,7 +141,7 @@ class _Search:
         self.slopes_at = vector
         self.whitening: Whitening | None = None
         self._key = (model.simulation.identity, vector.tobytes(), setup.inputs()["measurements"])
-        self._joint: tuple[tuple[object, ...], Joint] | None = None
+        self._joint: tuple[tuple[object, ...], WhitenedRegression] | None = None
         self.first: float | None = None
         self.last: float | None = None
 
@@ -158,7 +158,7 @@ class _Search:
             offsets[s, :, s] = 1.0
         return np.concatenate([slopes, offsets])
 
-    def joint(self) -> Joint:
+    def joint(self) -> WhitenedRegression:
         """The problem at the present parameters; whitened as the errors of its richest form."""
         key = (
             id(self.slopes),
@@ -173,7 +173,7 @@ class _Search:
             self._joint = (key, made)
         return self._joint[1]
 
-    def _made(self) -> Joint:
+    def _made(self) -> WhitenedRegression:
         simulated = self.corrected(self.model.series(self.vector))
         center, precision, limits = self.model.priors(self.paths, self.vector)
         free = np.tile([-np.inf, np.inf], (len(self.names), 1))
@@ -185,10 +185,10 @@ class _Search:
             np.concatenate([limits, free]),
         )
         if self.whitening is None:
-            plain = Joint(*args, Whitening(tuple(np.empty(0) for _ in self.names)))
+            plain = WhitenedRegression(*args, Whitening(tuple(np.empty(0) for _ in self.names)))
             best = plain.solve(range(len(plain.columns)))
             self.whitening = Whitening.of(args[0] - np.tensordot(best.values, args[1], 1))
-        return Joint(*args, self.whitening)
+        return WhitenedRegression(*args, self.whitening)
 
     def _refit(self) -> None:
         """Adjust the calibrated parameters to all days, so that a faulty sensor has little influence."""
@@ -232,18 +232,20 @@ class _Search:
         places = self.model.neighbours(self.vector) if near else {}
         return Series(self.measured, simulated, self.u, self.model.interval, shortest, self.units, places)
 
-    def _best_fault(self, near: bool) -> tuple[Fault, float, float, Joint, Solution, list[int]] | None:
+    def _best_fault(
+        self, near: bool
+    ) -> tuple[Fault, float, float, WhitenedRegression, Solution, list[int]] | None:
         """The most important fault, its p and its part of the sum of squares; None where there is none."""
         problem = self.joint().in_directions(range(len(self.model.fitted)))  # a house has hundreds of columns
         active = list(range(len(problem.columns)))
         null = problem.solve(active)
         series = self._series(near)
-        faults = [*sensor_faults(problem, active, null, series), *changes(problem, active, null, series)]
+        faults = [*sensor_faults(problem, active, null, series), *step_changes(problem, active, null, series)]
         faults.sort(key=lambda fault: -fault.deviance)
         # What is taken away is counted with the calibrated parameters alone.
         first = len(problem.columns) - len(self.names)
         adjusted = [*range(len(self.model.fitted)), *range(first, len(problem.columns))]
-        squares = Squares(problem, adjusted, self.u)
+        squares = SquareSums(problem, adjusted, self.u)
         if self.first is None:
             self.first = float(squares.before.sum())
         self.last = float(squares.before.sum())
@@ -266,7 +268,7 @@ class _Search:
         share, fault, p = max(found, key=lambda item: item[0])
         return fault, p, share, problem, null, active
 
-    def _chance(self, problem: Joint, null: Solution, active: list[int], fault: Fault) -> float:
+    def _chance(self, problem: WhitenedRegression, null: Solution, active: list[int], fault: Fault) -> float:
         """Probability of a fault by chance. [-]"""
         from scipy import stats
 
@@ -280,9 +282,9 @@ class _Search:
                 return min(1.0, ratio)
             s, values = fault.sensors[0], fault.solution.values[: len(active)]
             left = problem.residual[:, s] - values @ problem.columns[active, :, s]
-            return min(1.0, max(ratio, level_chance(left, fault.rows, interval=interval)))
+            return min(1.0, max(ratio, step_change_p_value(left, fault.rows, interval=interval)))
         after = problem if fault.residual is None else problem.with_residual(dict(fault.residual))
-        return chance(
+        return p_value(
             (problem, null, active), (after, fault.solution, active, fault.extra),
             interval=interval, tried=tried, deviance=fault.deviance,
         )  # fmt: skip
@@ -323,7 +325,13 @@ class _Search:
         }  # fmt: skip
 
     def _remains(
-        self, fault: Fault, _p: float, _share: float, problem: Joint, null: Solution, active: list[int]
+        self,
+        fault: Fault,
+        _p: float,
+        _share: float,
+        problem: WhitenedRegression,
+        null: Solution,
+        active: list[int],
     ) -> bool:
         """Whether a fault keeps its evidence with the form of the model that explains most."""
         best, form = 0.0, None
@@ -338,7 +346,7 @@ class _Search:
         base = changed_problem.solve(active, start=null)
         simulated = self.corrected(form.series)
         series = replace(self._series(near=True), simulated=simulated)
-        find = sensor_faults if fault.rows is None else changes
+        find = sensor_faults if fault.rows is None else step_changes
         again = find(changed_problem, active, base, series)
         left = [one.deviance for one in again if one.what == fault.what and one.sensors == fault.sensors]
         return bool(left) and left[0] >= _KEPT * fault.deviance
@@ -386,7 +394,7 @@ class _Search:
                 squares += count * (sd / self.u[s]) ** 2
         return found, excess, min(1.0, squares / max(whole, 1e-300))
 
-    def _with(self, problem: Joint, form: OtherForm) -> Joint:
+    def _with(self, problem: WhitenedRegression, form: OtherForm) -> WhitenedRegression:
         shown = self.corrected(form.series)
         return problem.with_residual({s: self.measured[:, s] - shown[:, s] for s in range(len(self.names))})
 
@@ -429,7 +437,7 @@ class _Search:
         for form in [form for form in others if name_of(self.paths, form) in chosen]:
             problem, others = self._with(problem, form), []
         null = problem.solve(active)
-        squares = Squares(problem, active, self.u)
+        squares = SquareSums(problem, active, self.u)
         candidates: list[Candidate] = []
         for k in range(first):
             if k not in active:
@@ -452,7 +460,7 @@ class _Search:
             return nothing
         best = min(alike, key=lambda one: one.size)
         gain = null.deviance - best.fit.deviance
-        p = chance(
+        p = p_value(
             (problem, null, active), (best.problem, best.fit, best.active, ()),
             interval=self.model.interval, tried=len(candidates), deviance=gain,
         )  # fmt: skip
@@ -465,7 +473,7 @@ class _Search:
         name = name_of(self.paths, best.what)
         return {"cause": cause.to_dict(), "name": name, "before": before, "after": float(after.sum())}
 
-    def _taken(self, squares: Squares, one: Candidate) -> Array:
+    def _taken(self, squares: SquareSums, one: Candidate) -> Array:
         """Sums of squares with a candidate, shape (S,). [-]"""
         if isinstance(one.what, OtherForm):
             return squares.after(residual={s: one.problem.residual[:, s] for s in range(len(self.names))})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import pandas as pd
 
 from mascarin._io.numbers import with_interval
-from mascarin.validation.causes import WORDS, Cause
+from mascarin.validation.hypotheses import WORDS, Cause
 
 if TYPE_CHECKING:
     import numpy as np

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration import Rules
-from mascarin.calibration.joint import ErrorStatement
-from mascarin.calibration.refining import refined
+from mascarin.calibration import SearchOptions
+from mascarin.calibration.joint_estimation import estimate_jointly
+from mascarin.calibration.joint_posterior import ErrorStatement
 from mascarin.calibration.sensor_errors import error_columns
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.description import DiscrepancyPlan
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
-    from mascarin.calibration.joint import Joint
+    from mascarin.calibration.joint_posterior import JointPosterior
     from mascarin.calibration.sensor_errors import SensorError
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.setup import Setup
@@ -126,7 +126,9 @@ def statement(study: Setup, fit: Calibration, further: tuple[str, ...] = ()) -> 
     )
 
 
-def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Calibration, Joint, Unknowns]:
+def with_errors(
+    study: Setup, variant: str | None, fit: Calibration
+) -> tuple[Calibration, JointPosterior, Unknowns]:
     """Estimate the parameters of a calibration again, together with the errors.
 
     Parameters
@@ -142,7 +144,7 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
     -------
     Calibration
         With estimates and intervals that account for the errors.
-    Joint
+    JointPosterior
         Parameters and errors together.
     Unknowns
         Numbers that are not estimated; their directions are the last effects of sensors of the joint
@@ -161,12 +163,12 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
     directions = vector[:, value > _SMALL**2][:, ::-1]
     names = tuple(f"numbers that are not estimated, {k + 1}" for k in range(directions.shape[1]))
     stated = statement(study, fit, names)
-    rules = Rules(slopes=study.sought.slopes)
+    rules = SearchOptions(slopes=study.sought.slopes)
 
     def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
         return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
 
-    found, joint = refined(fit, stated, rules, effects @ directions, keep=keep)
+    found, joint = estimate_jointly(fit, stated, rules, effects @ directions, keep=keep)
     return found, joint, Unknowns(tuple(every), directions)
 
 

@@ -8,25 +8,25 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.form_weights import form_weights, simplest
+from mascarin.calibration.pseudo_bma_weights import most_parsimonious, pseudo_bma_weights
 from mascarin.study.forms import Choice, label
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration, Profile
-    from mascarin.calibration.joint import Joint
+    from mascarin.calibration.joint_posterior import JointPosterior
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.tables.quality import Stretch
-    from mascarin.validation.causes import Diagnosis
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
     from mascarin.validation.error_sources import ErrorSources
+    from mascarin.validation.hypotheses import Diagnosis
     from mascarin.validation.residuals import ResidualAnalysis
 
     Array = npt.NDArray[np.float64]
@@ -75,7 +75,7 @@ class FormFit:
         The calibrated model.
     fit : Calibration
         The calibration, with the errors.
-    joint : Joint
+    joint : JointPosterior
         Parameters and errors together.
     unknown : Unknowns
         Numbers that are not estimated.
@@ -84,7 +84,7 @@ class FormFit:
     choice: Choice
     run: ModelRun
     fit: Calibration
-    joint: Joint
+    joint: JointPosterior
     unknown: Unknowns
 
     @property
@@ -112,8 +112,8 @@ class Combination:
     def of(forms: list[FormFit]) -> Combination:
         """Weigh forms by the days left out of their calibration; the one to use comes first."""
         by_day = np.array([form.joint.by_day for form in forms])
-        weights = form_weights(by_day)
-        used = simplest(by_day, [len(form.choice) for form in forms])
+        weights = pseudo_bma_weights(by_day)
+        used = most_parsimonious(by_day, [len(form.choice) for form in forms])
         order = [used, *(int(k) for k in np.argsort(-weights, kind="stable") if k != used)]
         return Combination(tuple(forms[k] for k in order), weights[order])
 

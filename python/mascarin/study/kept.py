@@ -36,7 +36,7 @@ NAME: Final = "kept"
 CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.discrepancy": ("Discrepancy",),
     "mascarin.calibration.evaluations": ("Trace",),
-    "mascarin.calibration.joint": ("Joint",),
+    "mascarin.calibration.joint_posterior": ("JointPosterior",),
     "mascarin.calibration.problem": ("FitParameter",),
     "mascarin.calibration.result": ("Calibration", "Minimum"),
     "mascarin.calibration.uncertainty": ("Uncertainty",),
@@ -49,7 +49,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.simulation.single_precision": ("Difference",),
     "mascarin.study.error_model": ("Unknown", "Unknowns"),
     "mascarin.study.findings": ("PredictionIntervals",),
-    "mascarin.validation.causes": ("Cause", "Diagnosis"),
+    "mascarin.validation.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.validation.days": ("DayChoice", "DriverRange"),
     "mascarin.validation.error_sources": ("Correction", "ErrorSources"),
     "mascarin.validation.residuals": ("DailyCycle", "DriverCorrelation", "ResidualAnalysis"),

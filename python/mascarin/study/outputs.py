@@ -22,7 +22,7 @@ from mascarin.study.document.whole import document
 from mascarin.study.kept import written_once
 from mascarin.study.storage import RUN, WRITTEN
 from mascarin.study.tables import tables_of, write_tables
-from mascarin.validation.days import FAR
+from mascarin.validation.days import EXTRAPOLATION_RATIO
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -142,7 +142,7 @@ def _days(findings: Findings) -> Figure:
     dates = to_datetime(list(found.days))
     figure = Figure(figsize=(9.0, 4.5), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, FAR)
+    day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, EXTRAPOLATION_RATIO)
     day_figures.information(lower, dates, found.information, found.used, found.proposed)
     upper.legend(fontsize="small", ncols=4, frameon=False)
     lower.set_xlabel(f"local time ({findings.setup.climate.timezone})")

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from mascarin.study.findings import Findings, ModelRun
     from mascarin.study.setup import Setup
     from mascarin.tables.quality import Stretch
-    from mascarin.validation.causes import Diagnosis
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
+    from mascarin.validation.hypotheses import Diagnosis
 
 
 def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:

@@ -1,5 +1,3 @@
-from .causes import Cause as Cause
-from .causes import Diagnosis as Diagnosis
 from .comparison import METRICS as METRICS
 from .comparison import Metrics as Metrics
 from .comparison import compare_sensors as compare_sensors
@@ -14,6 +12,8 @@ from .diagnosis import diagnose as diagnose
 from .error_sources import ErrorSources as ErrorSources
 from .error_sources import explain_missed_aims as explain_missed_aims
 from .error_sources import find_error_sources as find_error_sources
+from .hypotheses import Cause as Cause
+from .hypotheses import Diagnosis as Diagnosis
 from .observation import Observation as Observation
 from .observation import observe as observe
 from .residuals import DriverCorrelation as DriverCorrelation

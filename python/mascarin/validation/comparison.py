@@ -358,7 +358,7 @@ def compare_sensors(
     >>> round(found["room"].rmse, 3)
     0.2
     """
-    found: dict[str, Metrics] = {}
+    metrics: dict[str, Metrics] = {}
     for name, series in measured.items():
         if name not in simulated:
             msg = f"sensor '{name}' has no simulated series. {did_you_mean(name, simulated)}"
@@ -366,11 +366,11 @@ def compare_sensors(
         mask = use.get(name) if isinstance(use, Mapping) else use
         unit = (units or {}).get(name, "degC")
         try:
-            found[name] = compare(series, simulated[name], use=mask, unit=unit)
+            metrics[name] = compare(series, simulated[name], use=mask, unit=unit)
         except InputError as error:
             msg = f"sensor '{name}': {error}"
             raise InputError(msg) from error
-    return found
+    return metrics
 
 
 def _aligned(

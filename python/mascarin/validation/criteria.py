@@ -203,13 +203,13 @@ def parse_criteria(items: Iterable[Mapping[str, Any]], *, where: str = "criteria
     >>> parse_criteria([{"metric": "max_error", "limit": 1.0, "sensors": "room"}])[0].sensors
     ('room',)
     """
-    found = []
+    criteria = []
     for k, item in enumerate(items):
         try:
-            found.append(Criterion.model_validate(dict(item)))
+            criteria.append(Criterion.model_validate(dict(item)))
         except ValidationError as error:
             raise InputError(_explain(error, f"{where}[{k}]")) from error
-    return tuple(found)
+    return tuple(criteria)
 
 
 def judge(
@@ -246,12 +246,12 @@ def judge(
     """
     verdicts: list[Verdict] = []
     # A sensor may lack a period that another has; a name that none has is a mistake.
-    every = {period: None for periods in metrics.values() for period in periods}
+    all_periods = {period: None for periods in metrics.values() for period in periods}
     for k, criterion in enumerate(criteria):
         sensors = _selected(criterion.sensors, metrics, f"{where}[{k}]: sensor")
         sensors = _of_units(criterion, sensors, metrics, f"{where}[{k}]")
         _require_true_zero(criterion, sensors, metrics, f"{where}[{k}]")
-        periods = _selected(criterion.periods, every, f"{where}[{k}]: period")
+        periods = _selected(criterion.periods, all_periods, f"{where}[{k}]: period")
         verdicts += [
             _verdict(criterion, sensor, period, metrics[sensor][period])
             for sensor in sensors
@@ -273,7 +273,7 @@ def _require_true_zero(
     if criterion.metric not in OVER_MEAN:
         return
     for sensor in sensors:
-        if any(found.unit == "degC" for found in metrics[sensor].values()):
+        if any(period_metrics.unit == "degC" for period_metrics in metrics[sensor].values()):
             other = "rmse_over_range" if criterion.metric == "cv_rmse" else "bias_over_range"
             raise InputError(
                 f"{where}: found {criterion.metric} for sensor '{sensor}' in degC, expected a sensor whose "
@@ -282,29 +282,29 @@ def _require_true_zero(
             )
 
 
-def _verdict(criterion: Criterion, sensor: str, period: str, found: Metrics) -> Verdict:
-    value = float(getattr(found, criterion.metric))
+def _verdict(criterion: Criterion, sensor: str, period: str, metrics: Metrics) -> Verdict:
+    value = float(getattr(metrics, criterion.metric))
     return Verdict(
-        name=criterion.describe(found.unit),
+        name=criterion.describe(metrics.unit),
         sensor=sensor,
         period=period,
         metric=criterion.metric,
         value=value,
         limit=criterion.limit,
-        unit=metric_unit(criterion.metric, found.unit),
+        unit=metric_unit(criterion.metric, metrics.unit),
         passed=at_most(abs(value), criterion.limit),
     )
 
 
-def _selected(wanted: tuple[str, ...] | None, known: Mapping[str, object], where: str) -> list[str]:
+def _selected(selection: tuple[str, ...] | None, names: Mapping[str, object], where: str) -> list[str]:
     """Return the names a criterion applies to; each is known."""
-    if wanted is None:
-        return list(known)
-    for name in wanted:
-        if name not in known:
-            msg = f"{where} '{name}' was not compared. {did_you_mean(name, known)}"
+    if selection is None:
+        return list(names)
+    for name in selection:
+        if name not in names:
+            msg = f"{where} '{name}' was not compared. {did_you_mean(name, names)}"
             raise InputError(msg)
-    return list(wanted)
+    return list(selection)
 
 
 def _of_units(
@@ -313,7 +313,7 @@ def _of_units(
     """Sensors of the units that a criterion applies to."""
     if criterion.units is None:
         return sensors
-    unit_of = {s: next((found.unit for found in metrics[s].values()), "") for s in sensors}
+    unit_of = {s: next((period_metrics.unit for period_metrics in metrics[s].values()), "") for s in sensors}
     for unit in criterion.units:
         if unit not in unit_of.values():
             raise InputError(
@@ -328,15 +328,15 @@ def _explain(error: ValidationError, where: str) -> str:
     lines = []
     for fault in error.errors():
         path = ".".join(str(part) for part in fault["loc"])
-        found = fault["input"]
+        value = fault["input"]
         if fault["type"] == "extra_forbidden":
             hint = did_you_mean(path, Criterion.model_fields)
             lines.append(f"{where}.{path}: unknown key. {hint}".rstrip())
         elif fault["type"] == "missing":
             lines.append(f"{where}.{path}: missing; a criterion needs 'metric' and 'limit'")
         elif fault["type"] == "literal_error":
-            hint = did_you_mean(str(found), MetricName.__args__)  # type: ignore[attr-defined]
-            lines.append(f"{where}.{path}: '{found}' is not a metric. {hint}".rstrip())
+            hint = did_you_mean(str(value), MetricName.__args__)  # type: ignore[attr-defined]
+            lines.append(f"{where}.{path}: '{value}' is not a metric. {hint}".rstrip())
         else:
-            lines.append(f"{where}.{path}: {fault['msg']}, found {found!r}")
+            lines.append(f"{where}.{path}: {fault['msg']}, found {value!r}")
     return "\n".join(lines)

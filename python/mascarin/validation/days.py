@@ -30,9 +30,9 @@ from mascarin.errors import InputError
 Floats = NDArray[np.float64]
 
 #: Number of days that are proposed.
-_PROPOSED: Final = 5
+_MAX_PROPOSED: Final = 5
 #: A day with this many times the leverage of the days of the calibration is an extrapolation. [-]
-FAR: Final = 3.0
+EXTRAPOLATION_RATIO: Final = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ class DayChoice:
     @property
     def extrapolated(self) -> NDArray[np.bool_]:
         """Days that are an extrapolation, shape (D,)."""
-        return np.asarray(~self.used & (np.nan_to_num(self.ratio) > FAR))
+        return np.asarray(~self.used & (np.nan_to_num(self.ratio) > EXTRAPOLATION_RATIO))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for a JSON file, with six digits."""
@@ -132,11 +132,12 @@ class DayChoice:
             "reduction": plain(self.reduction),
             "outside": {name: plain(values) for name, values in self.outside.items()},
             "ranges": {
-                one.name: {
-                    "calibration": [one.low, one.high], "others": [one.other_low, one.other_high],
-                    "outside": one.outside,
+                driver_range.name: {
+                    "calibration": [driver_range.low, driver_range.high],
+                    "others": [driver_range.other_low, driver_range.other_high],
+                    "outside": driver_range.outside,
                 }
-                for one in self.ranges
+                for driver_range in self.ranges
             },
             "proposed": [self.days[k] for k in self.proposed],
         }  # fmt: skip
@@ -191,8 +192,8 @@ def choose_days(
     [1.0, 1.0]
     """
     j, number = np.asarray(slopes, dtype=np.float64), np.asarray(day, dtype=np.int64)
-    seen, sigma = np.asarray(used, dtype=bool), np.asarray(sd, dtype=np.float64)
-    if j.ndim != 3 or j.shape[1:] != (number.size, sigma.size) or seen.shape != number.shape:
+    in_use, sigma = np.asarray(used, dtype=bool), np.asarray(sd, dtype=np.float64)
+    if j.ndim != 3 or j.shape[1:] != (number.size, sigma.size) or in_use.shape != number.shape:
         raise InputError(
             f"slopes: found shape {j.shape}, expected (parameters, {number.size}, {sigma.size}): one value "
             "for each instant and sensor"
@@ -204,46 +205,48 @@ def choose_days(
     matrices = np.zeros((count, len(j), len(j)))
     samples, from_used = np.zeros(count), np.zeros((len(j), len(j)))
     for d in range(count):
-        here = number == d
-        part = scaled[:, here]
+        of_day = number == d
+        part = scaled[:, of_day]
         matrices[d] = np.einsum("pts,s,qts->pq", part, w, part)
-        samples[d] = float((good[here] * w).sum())
-    from_used = np.einsum("pts,s,qts->pq", scaled[:, seen], w, scaled[:, seen])
-    share = np.bincount(number, weights=seen.astype(np.float64), minlength=count) / np.maximum(
+        samples[d] = float((good[of_day] * w).sum())
+    from_used = np.einsum("pts,s,qts->pq", scaled[:, in_use], w, scaled[:, in_use])
+    share = np.bincount(number, weights=in_use.astype(np.float64), minlength=count) / np.maximum(
         np.bincount(number, minlength=count), 1
     )
-    whole = share >= 0.5
-    known = from_used + np.diag(np.asarray(precision, dtype=np.float64))
-    covariance = np.linalg.pinv(known, hermitian=True)
+    used_days = share >= 0.5
+    information = from_used + np.diag(np.asarray(precision, dtype=np.float64))
+    covariance = np.linalg.pinv(information, hermitian=True)
     with np.errstate(invalid="ignore", divide="ignore"):
         # Per sample, so that days with gaps compare with others.
         leverage = np.einsum("pq,dpq->d", covariance, matrices) / samples * float(w.mean())
-    rest: Floats = matrices[~whole].sum(axis=0)
-    gains = [_gains(known, covariance, matrices[d], rest) for d in range(count)]
-    outside, ranges = _drivers(drivers or {}, number, seen, count)
+    other_information: Floats = matrices[~used_days].sum(axis=0)
+    gains = [_gains(information, covariance, matrices[d], other_information) for d in range(count)]
+    outside, ranges = _drivers(drivers or {}, number, in_use, count)
     return DayChoice(
-        tuple(labels), whole, leverage, np.array([g[0] for g in gains]), np.array([g[1] for g in gains]),
-        outside, ranges, _proposed(known, matrices, whole),
+        tuple(labels), used_days, leverage, np.array([g[0] for g in gains]), np.array([g[1] for g in gains]),
+        outside, ranges, _proposed(information, matrices, used_days),
     )  # fmt: skip
 
 
-def _gains(known: Floats, covariance: Floats, matrix: Floats, rest: Floats) -> tuple[float, float]:
+def _gains(
+    information: Floats, covariance: Floats, matrix: Floats, other_information: Floats
+) -> tuple[float, float]:
     """Gain of information of a day, and the part by which the variance of predictions falls."""
-    sign, logarithm = np.linalg.slogdet(np.eye(len(known)) + covariance @ matrix)
-    before = float(np.sum(covariance * rest))
-    after = float(np.sum(np.linalg.pinv(known + matrix, hermitian=True) * rest))
+    sign, logarithm = np.linalg.slogdet(np.eye(len(information)) + covariance @ matrix)
+    before = float(np.sum(covariance * other_information))
+    after = float(np.sum(np.linalg.pinv(information + matrix, hermitian=True) * other_information))
     return 0.5 * float(logarithm) if sign > 0 else 0.0, 1.0 - after / before if before > 0.0 else 0.0
 
 
-def _proposed(known: Floats, matrices: Floats, used: NDArray[np.bool_]) -> tuple[int, ...]:
+def _proposed(information: Floats, matrices: Floats, used: NDArray[np.bool_]) -> tuple[int, ...]:
     """Days with the largest gain of information, each beside those before it."""
     chosen: list[int] = []
-    now: Floats = known
-    rest: Floats = matrices[~used].sum(axis=0)
-    while len(chosen) < min(_PROPOSED, int((~used).sum())):
+    now: Floats = information
+    other_information: Floats = matrices[~used].sum(axis=0)
+    while len(chosen) < min(_MAX_PROPOSED, int((~used).sum())):
         covariance: Floats = np.asarray(np.linalg.pinv(now, hermitian=True), dtype=np.float64)
         gain = {
-            d: _gains(now, covariance, matrices[d], rest)[0]
+            d: _gains(now, covariance, matrices[d], other_information)[0]
             for d in np.flatnonzero(~used).tolist()
             if d not in chosen
         }
@@ -256,23 +259,28 @@ def _proposed(known: Floats, matrices: Floats, used: NDArray[np.bool_]) -> tuple
 
 
 def _drivers(
-    drivers: Mapping[str, ArrayLike], day: NDArray[np.int64], seen: NDArray[np.bool_], count: int
+    drivers: Mapping[str, ArrayLike], day: NDArray[np.int64], in_use: NDArray[np.bool_], count: int
 ) -> tuple[dict[str, Floats], tuple[DriverRange, ...]]:
     outside: dict[str, Floats] = {}
     ranges = []
     for name, values in drivers.items():
         x = np.asarray(values, dtype=np.float64)
-        known = np.isfinite(x)
-        inside, other = x[seen & known], x[~seen & known]
+        finite = np.isfinite(x)
+        inside, other = x[in_use & finite], x[~in_use & finite]
         if not inside.size or not other.size:
             continue
         low, high = float(inside.min()), float(inside.max())
-        out = known & (below(x, low) | above(x, high))
-        total = np.bincount(day[known], minlength=count)
+        out = finite & (below(x, low) | above(x, high))
+        total = np.bincount(day[finite], minlength=count)
         outside[name] = np.bincount(day[out], minlength=count) / np.maximum(total, 1)
         ranges.append(
             DriverRange(
-                name, low, high, float(other.min()), float(other.max()), float(out[~seen].sum() / other.size)
+                name,
+                low,
+                high,
+                float(other.min()),
+                float(other.max()),
+                float(out[~in_use].sum() / other.size),
             )
         )
     return outside, tuple(ranges)

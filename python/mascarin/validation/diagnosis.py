@@ -59,12 +59,12 @@ def diagnose(analyses: Iterable[ResidualAnalysis]) -> list[str]:
     """
     sentences = []
     for e in analyses:
-        found = [*_bias_words(e), *_cycle_words(e), *_driver_words(e), *_hour_words(e)]
-        if not found and not e.white:
-            found = [_autocorrelation_words(e)]
-        if not found:
-            found = ["the residuals are white noise: they show no error of the model"]
-        sentences += [f"{e.sensor}: {text}." for text in found]
+        texts = [*_bias_words(e), *_cycle_words(e), *_driver_words(e), *_hour_words(e)]
+        if not texts and not e.white:
+            texts = [_autocorrelation_words(e)]
+        if not texts:
+            texts = ["the residuals are white noise: they show no error of the model"]
+        sentences += [f"{e.sensor}: {text}." for text in texts]
     return sentences
 
 
@@ -104,13 +104,13 @@ def _cycle_words(e: ResidualAnalysis) -> list[str]:
 
 def _driver_words(e: ResidualAnalysis) -> list[str]:
     texts = []
-    for one in e.correlations:
-        if not (one.significant and abs(one.correlation) >= _CORRELATION):
+    for link in e.correlations:
+        if not (link.significant and abs(link.correlation) >= _CORRELATION):
             continue
-        delay = f", delay {one.lag:.2g} h" if one.lag > 0.0 else ""
-        text = f"the error is correlated with the {one.driver} ({one.correlation:+.2f}{delay})"
-        hint = _HINTS.get(one.driver)
-        texts.append(text if hint is None else f"{text}: {hint[0 if one.correlation > 0.0 else 1]}")
+        delay = f", delay {link.lag:.2g} h" if link.lag > 0.0 else ""
+        text = f"the error is correlated with the {link.driver} ({link.correlation:+.2f}{delay})"
+        hint = _HINTS.get(link.driver)
+        texts.append(text if hint is None else f"{text}: {hint[0 if link.correlation > 0.0 else 1]}")
     return texts
 
 

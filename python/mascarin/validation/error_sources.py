@@ -32,16 +32,16 @@ Flags = NDArray[np.bool_]
 
 PRIOR: Final = 0.25
 """Standard deviation of the prior of a change. [ranges]"""
-MOST: Final = 6
+MAX_NAMED: Final = 6
 """Largest number of parameters that are named."""
 #: A parameter is named when it reduces the cost by at least this part of what all of them do, and parameters
 #: are named at all when some reduce the squared error by this part on weeks that were not used to find them.
-_SIGNIFICANT: Final = 0.05
+_MIN_GAIN_SHARE: Final = 0.05
 #: The coordinate descent ends when no change moves by more [ranges], or after so many sweeps.
-_CONVERGED: Final = 1e-6
-_SWEEPS: Final = 500
+_MAX_CHANGE: Final = 1e-6
+_MAX_SWEEPS: Final = 500
 #: Length of the pieces that the record is divided into. [d]
-_PIECE: Final = 7
+_BLOCK_DAYS: Final = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class ErrorSources:
         Standard deviation of the error as it is. [unit of each]
     steps : tuple of Correction
         The parameter that explains most, then together with the next, and so on; empty where none does.
-    every : Correction
+    all_adjusted : Correction
         All parameters together: the best that these equations can do.
 
     Examples
@@ -88,11 +88,11 @@ class ErrorSources:
     sensors: tuple[str, ...]
     sd: tuple[float, ...]
     steps: tuple[Correction, ...]
-    every: Correction
+    all_adjusted: Correction
 
     def floor(self, sensor: str) -> float:
         """Return the standard deviation that remains with all parameters changed. [unit of the sensor]"""
-        return self.every.sd[self.sensors.index(sensor)]
+        return self.all_adjusted.sd[self.sensors.index(sensor)]
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for a JSON file, with six digits, which no order of summation changes."""
@@ -110,7 +110,10 @@ class ErrorSources:
                 }
                 for step in self.steps
             ],
-            "every": {"parameters": len(self.every.paths), "sd": by_sensor(self.every.sd)},
+            "all_parameters": {
+                "parameters": len(self.all_adjusted.paths),
+                "sd": by_sensor(self.all_adjusted.sd),
+            },
         }
 
 
@@ -171,23 +174,23 @@ def find_error_sources(
     chosen: list[int] = []
     steps: list[Correction] = []
     gained = 0.0
-    while len(chosen) < min(MOST, len(everything)):
+    while len(chosen) < min(MAX_NAMED, len(everything)):
         gains = {k: equations.gain([*chosen, k]) for k in everything if k not in chosen}
         best = max(gains, key=lambda k: gains[k])
-        if gains[best] - gained < _SIGNIFICANT * gain_of_all or gains[best] <= gained:
+        if gains[best] - gained < _MIN_GAIN_SHARE * gain_of_all or gains[best] <= gained:
             break
         gained = gains[best]
         chosen.append(best)
         steps.append(equations.correction(chosen))
-    as_it_is, every = tuple(equations.scatter(equations.error)), equations.correction(everything)
-    least = min(equations.weighted(found.sd) for found in (*steps, every))
-    if least > (1.0 - _SIGNIFICANT) * equations.weighted(as_it_is):
+    as_it_is, all_adjusted = tuple(equations.scatter(equations.error)), equations.correction(everything)
+    least = min(equations.weighted(correction.sd) for correction in (*steps, all_adjusted))
+    if least > (1.0 - _MIN_GAIN_SHARE) * equations.weighted(as_it_is):
         steps = []
-    return ErrorSources(tuple(residuals), as_it_is, tuple(steps), every)
+    return ErrorSources(tuple(residuals), as_it_is, tuple(steps), all_adjusted)
 
 
 def explain_missed_aims(
-    aims: Iterable[Verdict], found: ErrorSources, period: str, noise: Mapping[str, float] | None = None
+    aims: Iterable[Verdict], sources: ErrorSources, period: str, noise: Mapping[str, float] | None = None
 ) -> list[str]:
     """Say of each missed aim whether other values of parameters could reach it.
 
@@ -195,7 +198,7 @@ def explain_missed_aims(
     ----------
     aims : iterable of Verdict
         Desired limits, and the values reached.
-    found : ErrorSources
+    sources : ErrorSources
         From `find_error_sources`.
     period : str
         The period that it was found on.
@@ -217,9 +220,9 @@ def explain_missed_aims(
     """
     sentences = []
     for aim in aims:
-        if aim.passed or aim.metric != "sd" or aim.period != period or aim.sensor not in found.sensors:
+        if aim.passed or aim.metric != "sd" or aim.period != period or aim.sensor not in sources.sensors:
             continue
-        floor, unit = found.floor(aim.sensor), aim.unit.replace("degC", "K")
+        floor, unit = sources.floor(aim.sensor), aim.unit.replace("degC", "K")
         white = (noise or {}).get(aim.sensor, 0.0)
         if above(white, aim.limit):
             why = f"the white noise of the sensor, {white:.2g} {unit}, is above the aim: no model reaches it"
@@ -229,8 +232,8 @@ def explain_missed_aims(
             why = "no parameter values reach the aim: the cause is in the equations or in the weather data"
         sentences.append(
             f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, the aim is {aim.limit:g} "
-            f"{unit}. With all {len(found.every.paths)} parameters adjusted to these days {floor:.3f} {unit} "
-            f"would remain: {why}."
+            f"{unit}. With all {len(sources.all_adjusted.paths)} parameters adjusted to these days "
+            f"{floor:.3f} {unit} would remain: {why}."
         )
     return sentences
 
@@ -248,7 +251,7 @@ class _NormalEquations:
         weight: float,
     ) -> None:
         error = np.stack([np.asarray(r, dtype=np.float64) for r in residuals.values()], axis=-1)
-        self.known: Flags = np.isfinite(error)
+        self.finite: Flags = np.isfinite(error)
         self.error: Floats = self._centred(error)
         self.paths = tuple(effects)
         self.effects: list[Floats] = []
@@ -261,7 +264,7 @@ class _NormalEquations:
                 )
             self.effects.append(self._centred(values))
         self.allowed = np.array([allowed[path] for path in self.paths]).reshape(-1, 2)
-        piece = (np.asarray(days) // _PIECE) % 2
+        piece = (np.asarray(days) // _BLOCK_DAYS) % 2
         # A record shorter than two pieces is divided in the middle.
         if np.ptp(piece) == 0:
             piece = (np.arange(len(error)) >= len(error) // 2).astype(np.int64)
@@ -271,9 +274,9 @@ class _NormalEquations:
 
     def _centred(self, values: Floats) -> Floats:
         """Subtract the mean where something is measured, zero elsewhere, shape (n, S)."""
-        count = np.maximum(self.known.sum(axis=0), 1)
-        mean = np.where(self.known, values, 0.0).sum(axis=0) / count
-        centred: Floats = np.where(self.known, values - mean, 0.0)
+        count = np.maximum(self.finite.sum(axis=0), 1)
+        mean = np.where(self.finite, values, 0.0).sum(axis=0) / count
+        centred: Floats = np.where(self.finite, values - mean, 0.0)
         return centred
 
     def _normal(self, use: Flags, scale: Floats) -> tuple[Floats, Floats]:
@@ -282,9 +285,9 @@ class _NormalEquations:
         )
         return rows @ rows.T, -rows @ (self.error[use] * scale).ravel()
 
-    def _whole(self) -> tuple[Floats, Floats]:
-        (first, right), (second, left) = self.normal
-        return first + second, right + left
+    def _total(self) -> tuple[Floats, Floats]:
+        (first, first_right), (second, second_right) = self.normal
+        return first + second, first_right + second_right
 
     def _changes(self, normal: tuple[Floats, Floats], chosen: list[int]) -> Floats:
         """Return the most probable changes inside the ranges, shape (chosen,)."""
@@ -293,7 +296,7 @@ class _NormalEquations:
 
     def gain(self, chosen: list[int]) -> float:
         """Return by how much the changes lower the cost. [-]"""
-        matrix, right = self._whole()
+        matrix, right = self._total()
         c = self._changes((matrix, right), chosen)
         within = matrix[np.ix_(chosen, chosen)] + np.eye(len(chosen)) / PRIOR**2
         return float(2.0 * right[chosen] @ c - c @ within @ c)
@@ -305,7 +308,7 @@ class _NormalEquations:
             remaining[tested] = self.error[tested]
             for k, change in zip(chosen, self._changes(normal, chosen), strict=True):
                 remaining[tested] += change * self.effects[k][tested]
-        changes = self._changes(self._whole(), chosen)
+        changes = self._changes(self._total(), chosen)
         return Correction(
             tuple(self.paths[k] for k in chosen), tuple(map(float, changes)), tuple(self.scatter(remaining))
         )
@@ -314,11 +317,11 @@ class _NormalEquations:
         """Sum the squares of standard deviations over the uncertainties of the sensors. [-]"""
         return float(np.sum((np.asarray(sd) * self.scale) ** 2))
 
-    def scatter(self, left: Floats) -> list[float]:
+    def scatter(self, errors: Floats) -> list[float]:
         """Return the standard deviation of each sensor. [unit of each]"""
-        count = np.maximum(self.known.sum(axis=0), 1)
-        mean = np.where(self.known, left, 0.0).sum(axis=0) / count
-        square = np.where(self.known, (left - mean) ** 2, 0.0).sum(axis=0) / count
+        count = np.maximum(self.finite.sum(axis=0), 1)
+        mean = np.where(self.finite, errors, 0.0).sum(axis=0) / count
+        square = np.where(self.finite, (errors - mean) ** 2, 0.0).sum(axis=0) / count
         return [float(value) for value in np.sqrt(square)]
 
 
@@ -326,7 +329,7 @@ def _lowest(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
     """Minimize c A c - 2 b c inside a box by coordinate descent; A is positive definite."""
     c = np.zeros(len(right))
     slope = right.copy()  # b - A c
-    for _ in range(_SWEEPS):
+    for _ in range(_MAX_SWEEPS):
         largest = 0.0
         for k in range(len(c)):
             moved = min(max(c[k] + slope[k] / matrix[k, k], low[k]), high[k]) - c[k]
@@ -334,6 +337,6 @@ def _lowest(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
                 c[k] += moved
                 slope -= moved * matrix[k]
                 largest = max(largest, abs(moved))
-        if largest < _CONVERGED:
+        if largest < _MAX_CHANGE:
             break
     return c

@@ -76,11 +76,13 @@ class Observation:
         ndarray, shape (..., n, S)
             Instants by linear interpolation, means by integration; NaN outside the run. [unit of each]
         """
-        seconds, at = epoch_seconds(index), epoch_seconds(self.times)
-        place = (at - seconds[0]) / (seconds[1] - seconds[0])
+        seconds, instants_of_comparison = epoch_seconds(index), epoch_seconds(self.times)
+        position = (instants_of_comparison - seconds[0]) / (seconds[1] - seconds[0])
         length = self.interval / (seconds[1] - seconds[0])
         columns = [
-            instants(records[..., s], place) if kind == "instant" else means(records[..., s], place, length)
+            instants(records[..., s], position)
+            if kind == "instant"
+            else means(records[..., s], position, length)
             for s, kind in enumerate(self.kinds)
         ]
         return np.stack(columns, axis=-1)
@@ -100,8 +102,8 @@ class Observation:
         ndarray, shape (n,)
             NaN outside the run. [unit]
         """
-        seconds, at = epoch_seconds(index), epoch_seconds(self.times)
-        return instants(values, (at - seconds[0]) / (seconds[1] - seconds[0]))
+        seconds, instants_of_comparison = epoch_seconds(index), epoch_seconds(self.times)
+        return instants(values, (instants_of_comparison - seconds[0]) / (seconds[1] - seconds[0]))
 
     def during(self, start: pd.Timestamp, end: pd.Timestamp) -> Flags:
         """Mark the instants of a period, shape (n,); the start belongs to it and the end does not."""
@@ -172,20 +174,20 @@ def _measured(
 ) -> Array:
     """Mean of the columns of a sensor over those that have a value."""
     parts = np.stack([measurements.at(column, times, interval) for column in sensor.columns])
-    known = np.isfinite(parts)
-    count = known.sum(axis=0)
-    total = np.where(known, parts, 0.0).sum(axis=0)
+    finite = np.isfinite(parts)
+    count = finite.sum(axis=0)
+    total = np.where(finite, parts, 0.0).sum(axis=0)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def instants(records: Array, place: Array) -> Array:
+def instants(records: Array, position: Array) -> Array:
     """Interpolate records linearly.
 
     Parameters
     ----------
     records : ndarray, shape (..., rows)
         Values at regular times. [unit]
-    place : ndarray, shape (n,)
+    position : ndarray, shape (n,)
         Where to interpolate, counted in rows from the first. [-]
 
     Returns
@@ -200,24 +202,24 @@ def instants(records: Array, place: Array) -> Array:
     array([ 3.,  6., nan])
     """
     rows = records.shape[-1]
-    near = np.round(place)
-    place = np.where(np.abs(place - near) < 1e-6, near, place)
-    inside = (place >= 0.0) & (place <= rows - 1)
-    left = np.clip(np.floor(place).astype(np.int64), 0, rows - 1)
-    right = np.minimum(left + 1, rows - 1)
-    weight = place - left
-    mixed = records[..., left] * (1.0 - weight) + records[..., right] * weight
+    nearest = np.round(position)
+    position = np.where(np.abs(position - nearest) < 1e-6, nearest, position)
+    inside = (position >= 0.0) & (position <= rows - 1)
+    lower = np.clip(np.floor(position).astype(np.int64), 0, rows - 1)
+    upper = np.minimum(lower + 1, rows - 1)
+    weight = position - lower
+    mixed = records[..., lower] * (1.0 - weight) + records[..., upper] * weight
     return np.where(inside, mixed, np.nan)
 
 
-def means(records: Array, place: Array, length: float) -> Array:
+def means(records: Array, position: Array, length: float) -> Array:
     """Average piecewise linear records over intervals of one length.
 
     Parameters
     ----------
     records : ndarray, shape (..., rows)
         Values at regular times. [unit]
-    place : ndarray, shape (n,)
+    position : ndarray, shape (n,)
         Where the intervals start, counted in rows from the first. [-]
     length : float
         Length of the intervals. [rows]
@@ -237,18 +239,18 @@ def means(records: Array, place: Array, length: float) -> Array:
     steps = 0.5 * (records[..., 1:] + records[..., :-1])
     zero = np.zeros((*records.shape[:-1], 1))
     integral = np.concatenate([zero, np.cumsum(steps, axis=-1)], axis=-1)
-    high, low = (_integral(records, integral, p) for p in (place + length, place))
-    inside = (place >= -1e-6) & (place + length <= rows - 1 + 1e-6)
+    high, low = (_integral(records, integral, p) for p in (position + length, position))
+    inside = (position >= -1e-6) & (position + length <= rows - 1 + 1e-6)
     return np.where(inside, (high - low) / length, np.nan)
 
 
-def _integral(records: Array, integral: Array, place: Array) -> Array:
+def _integral(records: Array, integral: Array, position: Array) -> Array:
     """Integral from the first row up to a place."""
     rows = records.shape[-1]
-    left = np.clip(np.floor(place + 1e-9).astype(np.int64), 0, rows - 2)
-    weight = place - left
-    value, following = records[..., left], records[..., left + 1]
-    return np.asarray(integral[..., left] + weight * value + 0.5 * weight**2 * (following - value))
+    lower = np.clip(np.floor(position + 1e-9).astype(np.int64), 0, rows - 2)
+    weight = position - lower
+    value, following = records[..., lower], records[..., lower + 1]
+    return np.asarray(integral[..., lower] + weight * value + 0.5 * weight**2 * (following - value))
 
 
 def require_comparable(observation: Observation, use: Flags, what: str, sensors: Sequence[str]) -> None:

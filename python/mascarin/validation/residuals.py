@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-_FEWEST: Final = 24  # samples that an analysis needs
-_LONGEST_LAG: Final = 48.0  # h, of the autocorrelation
+_MIN_SAMPLES: Final = 24  # samples that an analysis needs
+_MAX_LAG: Final = 48.0  # h, of the autocorrelation
 _DRIVER_LAG: Final = 6.0  # h, longest delay between a driver and the residual
 _KOLMOGOROV: Final = 1.358  # Kolmogorov-Smirnov statistic at 95 %
 _SEVERAL_LAGS: Final = 1.5  # widens the 95 % limit, because the strongest of several lags is taken
@@ -190,15 +190,15 @@ class ResidualAnalysis:
             rows.append(("phase lag", f"{self.delay:+.0f} min"))
         return rows + [
             (
-                f"correlation with {one.driver}",
-                f"{one.correlation:+.2f} at {one.lag:g} h{'' if one.significant else ', not significant'}",
+                f"correlation with {link.driver}",
+                f"{link.correlation:+.2f} at {link.lag:g} h{'' if link.significant else ', not significant'}",
             )
-            for one in self.correlations
+            for link in self.correlations
         ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the analysis for a JSON file; what could not be computed is None."""
-        limits = [one.limit for one in self.correlations if math.isfinite(one.limit)]
+        limits = [link.limit for link in self.correlations if math.isfinite(link.limit)]
         cycle = None
         if self.measured is not None and self.simulated is not None:
             cycle = {
@@ -222,12 +222,12 @@ class ResidualAnalysis:
             "hour_mean": [_number(v) for v in self.hour_mean],
             "hour_sd": [_number(v) for v in self.hour_sd],
             "hour_share": self.hour_share,
-            "correlation": {one.driver: _number(one.correlation) for one in self.correlations},
-            "correlation_lag": {one.driver: one.lag for one in self.correlations},
+            "correlation": {link.driver: _number(link.correlation) for link in self.correlations},
+            "correlation_lag": {link.driver: link.lag for link in self.correlations},
             "correlation_band": max(limits, default=None),
             "cross_lags": list(self.correlations[0].lags) if self.correlations else [],
             "cross_correlation": {
-                one.driver: [_number(value) for value in one.correlations] for one in self.correlations
+                link.driver: [_number(value) for value in link.correlations] for link in self.correlations
             },
             "daily_cycle": cycle,
         }
@@ -289,9 +289,10 @@ def analyze_residuals(
     _require_length(sensor, m, {"simulated": s, "hour": hours, "use": keep, **dict(drivers or {})})
     keep &= np.isfinite(m) & np.isfinite(s)
     n = int(keep.sum())
-    if n < _FEWEST:
+    if n < _MIN_SAMPLES:
         msg = (
-            f"sensor '{sensor}': {n} samples to analyze, expected at least {_FEWEST}: compare a longer period"
+            f"sensor '{sensor}': {n} samples to analyze, expected at least {_MIN_SAMPLES}: compare a longer "
+            "period"
         )
         raise InputError(msg)
     if not step > 0.0:
@@ -299,7 +300,7 @@ def analyze_residuals(
         raise InputError(msg)
     r = np.where(keep, s - m, np.nan)
     per_day = 86400.0 / step
-    lags = np.arange(min(int(_LONGEST_LAG * 3600.0 / step), r.size - 1) + 1)
+    lags = np.arange(min(int(_MAX_LAG * 3600.0 / step), r.size - 1) + 1)
     frequency, cumulative = _cumulative_periodogram(r, per_day)
     effective = fit_autoregression(r).effective_samples
     mean, spread, share, limit = _by_hour(r, hours, effective, r.size / per_day)
@@ -321,7 +322,7 @@ def analyze_residuals(
         frequency=frequency,
         cumulative=cumulative,
         cumulative_limit=_KOLMOGOROV / math.sqrt(max(cumulative.size, 1)),
-        correlations=tuple(sorted(correlations, key=lambda one: -_size(one.correlation))),
+        correlations=tuple(sorted(correlations, key=lambda link: -_size(link.correlation))),
         hour_mean=mean,
         hour_sd=spread,
         hour_share=share,
@@ -345,8 +346,8 @@ def _clock(sensor: str, measured: object) -> tuple[float, Floats]:
     return (index[1] - index[0]).total_seconds(), np.asarray(hours, dtype=np.float64)
 
 
-def _require_length(sensor: str, measured: Floats, others: Mapping[str, ArrayLike]) -> None:
-    for name, values in others.items():
+def _require_length(sensor: str, measured: Floats, companions: Mapping[str, ArrayLike]) -> None:
+    for name, values in companions.items():
         if measured.ndim != 1 or np.shape(values) != measured.shape:
             msg = (
                 f"sensor '{sensor}': measured has shape {measured.shape} and {name} {np.shape(values)}; "
@@ -377,35 +378,35 @@ def _by_hour(r: Floats, hours: Floats, effective: float, days: float) -> tuple[F
         spread = np.sqrt(
             np.maximum(np.bincount(bins, weights=values**2, minlength=24) / count - mean**2, 0.0)
         )
-    whole = float(np.var(values))
-    if whole <= 0.0:
+    total_variance = float(np.var(values))
+    if total_variance <= 0.0:
         return mean, spread, 0.0, 1.0
-    there = count > 0
-    between = float(np.sum(count[there] * (mean[there] - values.mean()) ** 2) / values.size)
+    populated = count > 0
+    between = float(np.sum(count[populated] * (mean[populated] - values.mean()) ** 2) / values.size)
     # Without a daily pattern the means of k independent pieces of a day, over d days, still differ: they
     # explain about 1 / d of the variance. Twice that, and the scatter of a sum of k squares, is the limit.
     pieces = max(1.0, min(23.0, effective / max(days, 1.0)))
     chance = (1.0 + 2.0 * math.sqrt(2.0 / pieces)) / max(days, 1.0)
-    return mean, spread, between / whole, min(chance, 1.0)
+    return mean, spread, between / total_variance, min(chance, 1.0)
 
 
 def _correlation_with(name: str, r: Floats, driver: Floats, step: float) -> DriverCorrelation:
     """Correlate with a driver at the lag, up to some hours, where the correlation is strongest."""
     most = min(int(_DRIVER_LAG * 3600.0 / step), r.size // 4)
-    every = max(1, round(900.0 / step))
+    stride = max(1, round(900.0 / step))
     best, best_lag = math.nan, 0
-    tried = range(0, most + 1, every)
-    found = dict.fromkeys(tried, math.nan)
+    tried = range(0, most + 1, stride)
+    correlation_of_lag = dict.fromkeys(tried, math.nan)
     for lag in tried:
         a, b = r[lag:], driver[: r.size - lag]
         both = np.isfinite(a) & np.isfinite(b)
-        if both.sum() < _FEWEST or np.ptp(a[both]) == 0.0 or np.ptp(b[both]) == 0.0:
+        if both.sum() < _MIN_SAMPLES or np.ptp(a[both]) == 0.0 or np.ptp(b[both]) == 0.0:
             continue
         value = float(np.corrcoef(a[both], b[both])[0, 1])
-        found[lag] = value
+        correlation_of_lag[lag] = value
         if math.isnan(best) or abs(value) > abs(best):
             best, best_lag = value, lag
-    lags, values = tuple(lag * step / 3600.0 for lag in tried), tuple(found.values())
+    lags, values = tuple(lag * step / 3600.0 for lag in tried), tuple(correlation_of_lag.values())
     if math.isnan(best):
         return DriverCorrelation(name, math.nan, 0.0, math.inf, math.nan, lags, values)
     a, b = r[best_lag:], driver[: r.size - best_lag]

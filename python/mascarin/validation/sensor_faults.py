@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.validation.joint import Extra, Joint, Solution
+from mascarin.validation.whitened_regression import Extra, Solution, WhitenedRegression
 
 Floats = NDArray[np.float64]
 Objective = Callable[[dict[int, Floats]], float]
@@ -29,16 +29,16 @@ NORMAL_95: Final = 1.96
 #: Halvings of the step of the search for a shift.
 _HALVINGS: Final = 5
 #: A shift of this size that makes the objective worse by so much on both sides is not looked for. [s], [-]
-_NEAR: Final = 600.0
-_NEARLY: Final = 4.0
+_NEAR_DELAY: Final = 600.0
+_NEAR_DEVIANCE: Final = 4.0
 #: Parts of the day of which the quietest quarter gives the white noise.
 _PARTS: Final = 8
 #: Mean of the two lowest of eight normal variables, below their mean. [standard deviations]
-_LOWEST: Final = 1.14
+_QUIET_SCORE: Final = 1.14
 #: Smaller errors of a gain cannot be distinguished from the form of a model. [-]
-_LEAST_GAIN: Final = 0.03
+_MIN_GAIN_ERROR: Final = 0.03
 #: Largest number of pairs of columns that are tried, the most similar ones.
-_MOST_PAIRS: Final = 8
+_MAX_PAIRS: Final = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,17 +137,19 @@ def shifted(series: Floats, seconds: float, interval: float) -> Floats:
 
     if seconds == 0.0:
         return series
-    place = np.arange(len(series), dtype=np.float64)
-    spline = CubicSpline(place, series)
-    return np.asarray(spline(np.clip(place - seconds / interval, 0.0, len(series) - 1.0)))
+    sample = np.arange(len(series), dtype=np.float64)
+    spline = CubicSpline(sample, series)
+    return np.asarray(spline(np.clip(sample - seconds / interval, 0.0, len(series) - 1.0)))
 
 
-def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+def sensor_faults(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series
+) -> list[Fault]:
     """Fit every fault of every sensor by itself.
 
     Parameters
     ----------
-    joint : Joint
+    regression : WhitenedRegression
         Residuals of the model and the effects of its parameters; its last S columns are the offsets of the
         sensors within their stated uncertainty.
     active : sequence of int
@@ -162,23 +164,25 @@ def sensor_faults(joint: Joint, active: Sequence[int], null: Solution, series: S
     list of Fault
         Those whose effect is larger than the stated uncertainty, the largest fall of the deviance first.
     """
-    found: list[Fault] = []
-    objective = joint.screen(active, null)
-    for s in range(joint.sensors):
-        if joint.count[s] < 3:
+    faults: list[Fault] = []
+    objective = regression.screen(active, null)
+    for s in range(regression.sensors):
+        if regression.count[s] < 3:
             continue
-        found += [*_columns(joint, active, null, series, s)]
-        clock = _clock(joint, active, null, series, s, objective)
-        found += [clock] if clock is not None else []
-    found += _swaps(joint, active, null, series)
-    return sorted(found, key=lambda fault: -fault.deviance)
+        faults += [*_columns(regression, active, null, series, s)]
+        clock = _clock(regression, active, null, series, s, objective)
+        faults += [clock] if clock is not None else []
+    faults += _swaps(regression, active, null, series)
+    return sorted(faults, key=lambda fault: -fault.deviance)
 
 
-def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series, s: int) -> list[Fault]:
+def _columns(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series, s: int
+) -> list[Fault]:
     """Faults of one sensor that are a column."""
     simulated, u = series.simulated[:, s], series.uncertainty[s]
     n = simulated.size
-    offset = len(joint.columns) - joint.sensors + s
+    offset = len(regression.columns) - regression.sensors + s
     centred = simulated - simulated.mean()
     tried: list[tuple[str, str, Floats, tuple[float, float]]] = [
         ("offset", "", np.ones(n), (-np.inf, np.inf)),
@@ -188,12 +192,12 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
     ]
     for name, other in series.neighbours.get(s, {}).items():
         tried.append(("place", name, other - simulated, (0.0, 1.0)))
-    found = []
+    faults = []
     for what, name, column, limits in tried:
         if not np.any(column) or (what == "gain" and np.ptp(simulated) == 0.0):
             continue
         extra = Extra(s, column, limits=limits)
-        fit = joint.solve(active, [extra], start=null)
+        fit = regression.solve(active, [extra], start=null)
         value = float(fit.values[-1])
         effect = abs(value) * float(np.sqrt(np.mean(column**2)))
         limit = u
@@ -201,21 +205,26 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
             # What the fit leaves to the offset within its stated uncertainty belongs to it as well.
             value += float(fit.values[list(active).index(offset)]) if offset in active else 0.0
             effect, limit = abs(value), NORMAL_95 * u
-        if what in ("gain", "scale") and abs(value) < _LEAST_GAIN:
+        if what in ("gain", "scale") and abs(value) < _MIN_GAIN_ERROR:
             continue
         if effect > limit:
             error = fit.standard_error(fit.values.size - 1)
-            found.append(
+            faults.append(
                 Fault(
                     what, (s,), value, error, null.deviance - fit.deviance, effect, name, (extra,),
                     solution=fit,
                 )
             )  # fmt: skip
-    return found
+    return faults
 
 
 def _clock(
-    joint: Joint, active: Sequence[int], null: Solution, series: Series, s: int, objective: Objective
+    regression: WhitenedRegression,
+    active: Sequence[int],
+    null: Solution,
+    series: Series,
+    s: int,
+    objective: Objective,
 ) -> Fault | None:
     """The delay of one series with the largest likelihood."""
     measured, simulated, interval = series.measured[:, s], series.simulated[:, s], series.interval
@@ -232,7 +241,7 @@ def _clock(
     def fit_of(delay: float) -> Solution:
         if delay not in fits:
             moved = measured - shifted(simulated, delay, interval)
-            fits[delay] = joint.with_residual({s: moved}).solve(active, start=null)
+            fits[delay] = regression.with_residual({s: moved}).solve(active, start=null)
         return fits[delay]
 
     longest = 0.25 * measured.size * interval
@@ -240,7 +249,7 @@ def _clock(
         if abs(hours) * 3600.0 <= longest:
             score(3600.0 * hours)
     best = min(scores, key=lambda delay: scores[delay])
-    if best == 0.0 and min(score(-_NEAR), score(_NEAR)) > score(0.0) + _NEARLY:
+    if best == 0.0 and min(score(-_NEAR_DELAY), score(_NEAR_DELAY)) > score(0.0) + _NEAR_DEVIANCE:
         return None
     best = _refined(best, lambda delay: fit_of(delay).deviance)
     moved = measured - shifted(simulated, best, interval)
@@ -248,7 +257,7 @@ def _clock(
     if abs(best) < series.shortest or effect <= series.uncertainty[s]:
         return None
     # A small further delay changes the series by its slope: standard error with the parameters free.
-    changed = joint.with_residual({s: moved})
+    changed = regression.with_residual({s: moved})
     fit = fit_of(best)
     further = Extra(s, -shifted(slope, best, interval))
     local = changed.solve(active, [further], start=fit)
@@ -269,19 +278,19 @@ def _refined(start: float, objective: Callable[[float], float]) -> float:
         low, middle, high = values[best - step], values[best], values[best + step]
         bend = low + high - 2.0 * middle
         if bend > 0.0:
-            there = best + float(np.clip(0.5 * step * (low - high) / bend, -step, step))
-            values.setdefault(there, objective(there))
+            vertex = best + float(np.clip(0.5 * step * (low - high) / bend, -step, step))
+            values.setdefault(vertex, objective(vertex))
         best = min(values, key=lambda delay: values[delay])
         step *= 0.5
     return best
 
 
-def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
+def pairs_alike(regression: WhitenedRegression, series: Series) -> list[tuple[int, int]]:
     """Pairs of sensors of one unit whose columns may be exchanged, those that fit best exchanged first.
 
     Parameters
     ----------
-    joint : Joint
+    regression : WhitenedRegression
         Gives the number of values.
     series : Series
         Measured and simulated.
@@ -292,9 +301,9 @@ def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
     """
     y, m = series.measured, series.simulated
     pairs = []
-    for i in range(joint.sensors):
-        for j in range(i + 1, joint.sensors):
-            if series.units[i] != series.units[j] or min(joint.count[i], joint.count[j]) < 3:
+    for i in range(regression.sensors):
+        for j in range(i + 1, regression.sensors):
+            if series.units[i] != series.units[j] or min(regression.count[i], regression.count[j]) < 3:
                 continue
             both = np.isfinite(y[:, i]) & np.isfinite(y[:, j])
             if not both.any():
@@ -302,28 +311,30 @@ def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
             straight = float(np.mean((y - m)[both][:, [i, j]] ** 2))
             crossed = float(np.mean((y[:, [j, i]] - m[:, [i, j]])[both] ** 2))
             pairs.append((crossed / max(straight, 1e-300), i, j))
-    return [(i, j) for _, i, j in sorted(pairs)[:_MOST_PAIRS]]
+    return [(i, j) for _, i, j in sorted(pairs)[:_MAX_PAIRS]]
 
 
-def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+def _swaps(
+    regression: WhitenedRegression, active: Sequence[int], null: Solution, series: Series
+) -> list[Fault]:
     """Pairs of sensors of one unit whose columns are exchanged."""
     y, m = series.measured, series.simulated
-    found = []
-    for i, j in pairs_alike(joint, series):
+    faults = []
+    for i, j in pairs_alike(regression, series):
         residual = {i: y[:, j] - m[:, i], j: y[:, i] - m[:, j]}
         same = np.isfinite(y[:, i]) == np.isfinite(y[:, j])
         if not same.all():
             residual = {k: np.where(same, r, np.nan) for k, r in residual.items()}
-        fit = joint.with_residual(residual).solve(active, start=null)
+        fit = regression.with_residual(residual).solve(active, start=null)
         effect = float(np.sqrt(np.nanmean((y[:, i] - y[:, j]) ** 2)))
         if effect > max(series.uncertainty[i], series.uncertainty[j]) and fit.deviance < null.deviance:
-            found.append(
+            faults.append(
                 Fault(
                     "swapped", (i, j), math.nan, math.nan, null.deviance - fit.deviance, effect,
                     residual=residual, solution=fit,
                 )
             )  # fmt: skip
-    return found
+    return faults
 
 
 def white_noise(errors: Floats, interval: float) -> tuple[float, float]:
@@ -354,16 +365,16 @@ def white_noise(errors: Floats, interval: float) -> tuple[float, float]:
     """
     second = errors[:-2] - 2.0 * errors[1:-1] + errors[2:]
     hour = ((np.arange(second.size) * interval / 3600.0) % 24.0).astype(np.int64) * _PARTS // 24
-    known = np.isfinite(second)
-    if known.sum() < 24:
+    finite = np.isfinite(second)
+    if finite.sum() < 24:
         return math.nan, math.nan
-    count = np.bincount(hour[known], minlength=_PARTS)
-    power = np.bincount(hour[known], weights=second[known] ** 2 / 6.0, minlength=_PARTS)
+    count = np.bincount(hour[finite], minlength=_PARTS)
+    power = np.bincount(hour[finite], weights=second[finite] ** 2 / 6.0, minlength=_PARTS)
     mean = power[count > 0] / count[count > 0]
     quiet = np.sort(mean)[: max(1, mean.size // 4)]
     # Relative standard deviation of a mean square of overlapping second differences of white noise, whose
     # autocorrelations are -2/3 and 1/6; and the expected place of the lowest quarter among such means.
     spread = math.sqrt(2.0 * (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)) / float(np.mean(count[count > 0])))
-    lowest = _LOWEST if mean.size == _PARTS else 0.0
+    lowest = _QUIET_SCORE if mean.size == _PARTS else 0.0
     sd = math.sqrt(float(np.mean(quiet)) / max(1.0 - lowest * spread, 0.5))
     return sd, 0.5 * sd * spread / math.sqrt(quiet.size)

@@ -21,7 +21,7 @@ from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
 
-_LONGEST_ORDER = 60
+_MAX_ORDER = 60
 
 
 def autocovariance(x: ArrayLike, lags: int) -> Floats:
@@ -61,10 +61,10 @@ def autocovariance(x: ArrayLike, lags: int) -> Floats:
 
 def _autocovariances(x: Floats, lags: int) -> Floats:
     """Estimate those of series (B, n), shape (B, lags + 1); zero where there are fewer than two samples."""
-    there = np.isfinite(x)
-    count = there.sum(axis=1)
-    mean = np.where(there, x, 0.0).sum(axis=1) / np.maximum(count, 1)
-    centred = np.where(there & (count > 1)[:, None], x - mean[:, None], 0.0)
+    finite = np.isfinite(x)
+    count = finite.sum(axis=1)
+    mean = np.where(finite, x, 0.0).sum(axis=1) / np.maximum(count, 1)
+    centred = np.where(finite & (count > 1)[:, None], x - mean[:, None], 0.0)
     n = x.shape[1]
     most = min(lags, n - 1)
 
@@ -72,7 +72,7 @@ def _autocovariances(x: Floats, lags: int) -> Floats:
         spectrum = np.abs(np.fft.rfft(values, 2 * n)) ** 2
         return np.asarray(np.fft.irfft(spectrum, 2 * n)[:, : most + 1])
 
-    sums, pairs = products(centred), np.round(products(there.astype(np.float64)))
+    sums, pairs = products(centred), np.round(products(finite.astype(np.float64)))
     gamma = np.zeros((len(x), lags + 1))
     taper = 1.0 - np.arange(most + 1) / n
     gamma[:, : most + 1] = np.where(pairs > 0, sums / np.maximum(pairs, 1.0), 0.0) * taper
@@ -203,7 +203,7 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
     """
     count = np.isfinite(x).sum(axis=1)
     if longest is None:
-        tried = np.minimum(np.minimum(10.0 * np.log10(np.maximum(count, 2)), count / 10), _LONGEST_ORDER)
+        tried = np.minimum(np.minimum(10.0 * np.log10(np.maximum(count, 2)), count / 10), _MAX_ORDER)
         most = tried.astype(np.int64)
     else:
         most = np.full(len(x), longest)
@@ -230,8 +230,10 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
         for k in np.flatnonzero(better):
             best[k] = (coefficients[k, :p].copy(), float(innovation[k]))
     return [
-        Autoregression(found, float(variance), own, int(number))
-        for (found, own), variance, number in zip(best, gamma[:, 0], count, strict=True)
+        Autoregression(best_coefficients, float(variance), best_innovation, int(number))
+        for (best_coefficients, best_innovation), variance, number in zip(
+            best, gamma[:, 0], count, strict=True
+        )
     ]
 
 

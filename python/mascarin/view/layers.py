@@ -10,7 +10,7 @@ import numpy as np
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
 from mascarin.report import text
-from mascarin.report.drawing import fill_of
+from mascarin.report.building_drawings import fill_of
 from mascarin.report.svg import Svg
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: Width of the thickest construction of a building, and height of the drawings [px].
 _WIDTH, _HEIGHT = 300.0, 84.0
 #: Lengths of a scale bar [m].
-_BARS: Final = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
-_AIR: Final = 0.02  # drawn thickness of a resistance without one [m]
+_SCALE_LENGTHS: Final = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+_RESISTANCE_THICKNESS: Final = 0.02  # drawn thickness of a resistance without one [m]
 
 
 def constructions(building: Building) -> list[dict[str, Any]]:
@@ -40,17 +40,19 @@ def constructions(building: Building) -> list[dict[str, Any]]:
     >>> constructions(box())[0]["layers"][0]["number"]
     1
     """
-    every = {name: [_layer(building, one) for one in built.layers] for name, built in _built(building)}
-    widest = max((sum(one["drawn"] for one in layers) for layers in every.values()), default=1.0)
+    layers_by_name = {
+        name: [_layer(building, layer) for layer in built.layers] for name, built in _built(building)
+    }
+    widest = max((sum(layer["drawn"] for layer in layers) for layers in layers_by_name.values()), default=1.0)
     return [
         {
             "name": name,
-            "layers": [_row(number, one) for number, one in enumerate(layers, start=1)],
+            "layers": [_row(number, layer) for number, layer in enumerate(layers, start=1)],
             "drawing": drawing(name, layers, _WIDTH / widest),
-            "thickness": text.significant(1e3 * sum(one["thickness"] or 0.0 for one in layers)),
-            "surfaces": [key for key, one in building.surfaces.items() if one.construction == name],
+            "thickness": text.significant(1e3 * sum(layer["thickness"] or 0.0 for layer in layers)),
+            "surfaces": [key for key, surface in building.surfaces.items() if surface.construction == name],
         }
-        for name, layers in every.items()
+        for name, layers in layers_by_name.items()
     ]
 
 
@@ -60,11 +62,11 @@ def _built(building: Building) -> list[tuple[str, Any]]:
 
 def _layer(building: Building, layer: Layer) -> dict[str, Any]:
     material = building.materials[layer.material]
-    found: dict[str, Any] = {"name": layer.name, "material": layer.material, "kind": material.kind}
-    found["thickness"] = None if layer.thickness is None else float(layer.thickness)
-    found["drawn"] = found["thickness"] or _AIR
+    row: dict[str, Any] = {"name": layer.name, "material": layer.material, "kind": material.kind}
+    row["thickness"] = None if layer.thickness is None else float(layer.thickness)
+    row["drawn"] = row["thickness"] or _RESISTANCE_THICKNESS
     if isinstance(material, Resistance):
-        return found | {"resistance": float(material.resistance), "melting": None}
+        return row | {"resistance": float(material.resistance), "melting": None}
     values = {
         key: tuple(phase(getattr(material, key), state) for state in ("solid", "liquid"))
         for key in ("conductivity", "density", "specific_heat")
@@ -72,8 +74,8 @@ def _layer(building: Building, layer: Layer) -> dict[str, Any]:
     melting = None
     if isinstance(material, PhaseChangeMaterial):
         melting = tuple(float(end) for end in material.melting)
-    resistance = found["drawn"] / values["conductivity"][0]
-    return found | values | {"resistance": resistance, "melting": melting}
+    resistance = row["drawn"] / values["conductivity"][0]
+    return row | values | {"resistance": resistance, "melting": melting}
 
 
 def _row(number: int, layer: Mapping[str, Any]) -> dict[str, str | int]:
@@ -113,7 +115,7 @@ def drawing(name: str, layers: Sequence[Mapping[str, Any]], scale: float) -> Mar
         Width of a metre. [px]
     """
     svg = Svg(_WIDTH + 110.0, _HEIGHT + 46.0)
-    widths = np.maximum([scale * one["drawn"] for one in layers], 1.2)
+    widths = np.maximum([scale * layer_row["drawn"] for layer_row in layers], 1.2)
     edges = 55.0 + np.concatenate([[0.0], np.cumsum(widths)])
     top, bottom = 14.0, 14.0 + _HEIGHT
     last = -99.0
@@ -134,7 +136,9 @@ def drawing(name: str, layers: Sequence[Mapping[str, Any]], scale: float) -> Mar
         svg.label(middle, bottom + 14.0, str(number), "tick", "middle")
     svg.label(50.0, top + 0.5 * _HEIGHT, "outside", "small", "end")
     svg.label(float(edges[-1]) + 6.0, top + 0.5 * _HEIGHT, "inside", "small")
-    length = next((one for one in _BARS if one * scale <= 90.0), _BARS[-1])
+    length = next(
+        (bar_length for bar_length in _SCALE_LENGTHS if bar_length * scale <= 90.0), _SCALE_LENGTHS[-1]
+    )
     y = bottom + 30.0
     svg.line(55.0, y, 55.0 + length * scale, y, "scale-bar")
     svg.line(55.0, y - 3.0, 55.0, y + 3.0, "scale-bar")

@@ -23,7 +23,7 @@ THREE: Final = Library(
 )
 _WARNING, _ASSUMED = "warning: ", "assumed: "
 #: Rows up to which a table is open.
-_OPEN: Final = 30
+_MAX_OPEN_ROWS: Final = 30
 
 
 def write(building: Building, path: Path, step_seconds: float = 900.0) -> Path:
@@ -95,7 +95,9 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
                     **shown,
                     "sun": positions(building.site),
                     "palette": PALETTE,
-                    "constructions": {one["name"]: number for number, one in enumerate(built)},
+                    "constructions": {
+                        construction["name"]: number for number, construction in enumerate(built)
+                    },
                 },
             ),
             title=building.name,
@@ -104,14 +106,14 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
             facts=_facts(building, warnings),
             schematic=shown["schematic"],
             site=_site(building),
-            most=_OPEN,
+            most=_MAX_OPEN_ROWS,
         )
     )
 
 
 def _facts(building: Building, warnings: list[str]) -> list[dict[str, Any]]:
-    area = sum(float(one.area or 0.0) for one in building.surfaces.values())
-    glazed = sum(float(one.area or 0.0) for one in building.windows.values())
+    area = sum(float(surface.area or 0.0) for surface in building.surfaces.values())
+    glazed = sum(float(window.area or 0.0) for window in building.windows.values())
     facts = [
         ("Zones", str(len(building.zones)), f"{_volume(building)} of air", ""),
         ("Surfaces", str(len(building.surfaces)), text.with_unit(area, "m2"), ""),

@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 #: Height of a storey where nothing gives one [m].
-_STOREY: Final = 2.7
+_STOREY_HEIGHT: Final = 2.7
 #: Distance of the rectangles from the outline of a zone, over its shorter side [-].
-_GAP: Final = 0.15
+_PANEL_GAP: Final = 0.15
 #: Directions within this angle count as one [deg].
-_ALIKE: Final = 15.0
+_DIRECTION_BIN: Final = 15.0
 #: Distance between the outlines of two zones, over the shorter side of each [-].
-_BETWEEN: Final = 0.6
+_ROOM_DISTANCE: Final = 0.6
 #: Longest side of a zone in the plan [m].
-_LONGEST: Final = 30.0
-_SQUARE: Final = 4
+_MAX_LENGTH: Final = 30.0
+_RECTANGLE_CORNERS: Final = 4
 
 
 class _Room(NamedTuple):
@@ -43,7 +43,7 @@ class _Room(NamedTuple):
     @property
     def gap(self) -> float:
         """Distance of the rectangles from it. [m]"""
-        return _GAP * min(self.width, self.depth)
+        return _PANEL_GAP * min(self.width, self.depth)
 
 
 def panels(building: Building) -> dict[str, Array]:
@@ -72,13 +72,17 @@ def panels(building: Building) -> dict[str, Array]:
     if not groups:
         return {}
     rooms = {zone: _room(building, zone, names) for zone, names in groups.items()}
-    drawn = [vertex for one in building.surfaces.values() for vertex in one.vertices or ()]
-    left = max((float(vertex[0]) for vertex in drawn), default=-2.0) + 2.0
-    found: dict[str, Array] = {}
-    for zone, place in _places(rooms).items():
+    vertices = [
+        vertex
+        for surface_with_vertices in building.surfaces.values()
+        for vertex in surface_with_vertices.vertices or ()
+    ]
+    west = max((float(vertex[0]) for vertex in vertices), default=-2.0) + 2.0
+    corners_of: dict[str, Array] = {}
+    for zone, floor_middle in _places(rooms).items():
         for name, corners in _around(building, zone, groups[zone], rooms[zone]).items():
-            found[name] = corners + place + np.array([left, 0.0, 0.0])
-    return {name: found[name] for name in building.surfaces if name in found}
+            corners_of[name] = corners + floor_middle + np.array([west, 0.0, 0.0])
+    return {name: corners_of[name] for name in building.surfaces if name in corners_of}
 
 
 def home(surface: Surface) -> str:
@@ -89,7 +93,7 @@ def home(surface: Surface) -> str:
 def _places(rooms: Mapping[str, _Room]) -> dict[str, Array]:
     """Middle of the floor of each zone: row by row, from the west and from the north [m]."""
     columns = math.ceil(math.sqrt(len(rooms)))
-    found: dict[str, Array] = {}
+    floor_middles: dict[str, Array] = {}
     zones, y = list(rooms), 0.0
     for first in range(0, len(zones), columns):
         row = zones[first : first + columns]
@@ -97,40 +101,42 @@ def _places(rooms: Mapping[str, _Room]) -> dict[str, Array]:
         x = 0.0
         for zone in row:
             wide = rooms[zone].width + _between(rooms[zone])
-            found[zone] = np.array([x + 0.5 * wide, y - 0.5 * deep, 0.0])
+            floor_middles[zone] = np.array([x + 0.5 * wide, y - 0.5 * deep, 0.0])
             x += wide
         y -= deep
-    return found
+    return floor_middles
 
 
 def _between(room: _Room) -> float:
-    return _BETWEEN * min(room.width, room.depth)
+    return _ROOM_DISTANCE * min(room.width, room.depth)
 
 
 def _room(building: Building, zone: str, names: Sequence[str]) -> _Room:
     surfaces = [building.surfaces[name] for name in names]
-    flat = [float(one.area or 0.0) for one in surfaces if not 30.0 < float(one.tilt or 0.0) < 150.0]
+    flat = [
+        float(surface.area or 0.0) for surface in surfaces if not 30.0 < float(surface.tilt or 0.0) < 150.0
+    ]
     volume = float(building.zones[zone].volume or 0.0) if zone else 0.0
-    height = _STOREY
+    height = _STOREY_HEIGHT
     if flat and volume:
-        height = min(max(volume / max(flat), 0.5 * _STOREY), 2.0 * _STOREY)
+        height = min(max(volume / max(flat), 0.5 * _STOREY_HEIGHT), 2.0 * _STOREY_HEIGHT)
     lengths: dict[tuple[float, float], float] = {}
     for surface in surfaces:
         if not surface.internal_mass and 30.0 <= float(surface.tilt or 0.0) <= 150.0:
-            place = _bin(_outward(surface, zone))
-            lengths[place] = lengths.get(place, 0.0) + float(surface.area or 0.0) / height
+            direction = _bin(_outward(surface, zone))
+            lengths[direction] = lengths.get(direction, 0.0) + float(surface.area or 0.0) / height
     floor = max(flat, default=0.0)
     # Walls that face north or south give the width, those that face east or west the depth.
-    width = max((one for place, one in lengths.items() if _along_north(place)), default=0.0)
-    depth = max((one for place, one in lengths.items() if not _along_north(place)), default=0.0)
+    width = max((length for direction, length in lengths.items() if _along_north(direction)), default=0.0)
+    depth = max((length for direction, length in lengths.items() if not _along_north(direction)), default=0.0)
     width = width or (floor / depth if depth else math.sqrt(floor))
     depth = depth or (floor / width if width and floor else width)
-    return _Room(height, *(min(max(one, 1.0), _LONGEST) for one in (width, depth)))
+    return _Room(height, *(min(max(extent, 1.0), _MAX_LENGTH) for extent in (width, depth)))
 
 
-def _along_north(place: tuple[float, float]) -> bool:
+def _along_north(direction: tuple[float, float]) -> bool:
     """Whether a direction is nearer to north or south than to east or west."""
-    return abs(math.cos(math.radians(place[1] * _ALIKE))) > math.sqrt(0.5)
+    return abs(math.cos(math.radians(direction[1] * _DIRECTION_BIN))) > math.sqrt(0.5)
 
 
 def _normal(surface: Surface) -> Array:
@@ -146,11 +152,11 @@ def _outward(surface: Surface, zone: str) -> Array:
 
 
 def _bin(direction: Array) -> tuple[float, float]:
-    tilt = round(math.degrees(math.acos(min(1.0, max(-1.0, float(direction[2]))))) / _ALIKE)
-    if tilt in (0, round(180.0 / _ALIKE)):
+    tilt = round(math.degrees(math.acos(min(1.0, max(-1.0, float(direction[2]))))) / _DIRECTION_BIN)
+    if tilt in (0, round(180.0 / _DIRECTION_BIN)):
         return tilt, 0.0
     azimuth = math.degrees(math.atan2(float(direction[0]), float(direction[1])))
-    return tilt, round((azimuth % 360.0) / _ALIKE) % round(360.0 / _ALIKE)
+    return tilt, round((azimuth % 360.0) / _DIRECTION_BIN) % round(360.0 / _DIRECTION_BIN)
 
 
 def _around(building: Building, zone: str, names: Sequence[str], room: _Room) -> dict[str, Array]:
@@ -158,10 +164,10 @@ def _around(building: Building, zone: str, names: Sequence[str], room: _Room) ->
     sides: dict[tuple[float, float] | None, list[str]] = {}
     for name in names:
         surface = building.surfaces[name]
-        place = None if surface.internal_mass else _bin(_outward(surface, zone))
-        sides.setdefault(place, []).append(name)
-    found: dict[str, Array] = {}
-    for place, side in sides.items():
+        direction = None if surface.internal_mass else _bin(_outward(surface, zone))
+        sides.setdefault(direction, []).append(name)
+    corners_of: dict[str, Array] = {}
+    for direction, side in sides.items():
         sizes = [_size(building.surfaces[name], room, alone=len(side) == 1) for name in side]
         gap = 0.04 * min(room.width, room.depth)
         start = -0.5 * (sum(wide for wide, _ in sizes) + gap * (len(side) - 1))
@@ -170,14 +176,14 @@ def _around(building: Building, zone: str, names: Sequence[str], room: _Room) ->
             normal, out = _normal(surface), _outward(surface, zone)
             along, up = _axes(normal)
             reach = 0.5 * np.array([room.width, room.depth, room.height]) + room.gap
-            centre = np.zeros(3) if place is None else out * reach
+            centre = np.zeros(3) if direction is None else out * reach
             centre = centre + np.array([0.0, 0.0, 0.5 * room.height]) + along * (start + 0.5 * wide)
             half = (0.5 * wide * along, 0.5 * high * up)
-            found[name] = np.stack(
+            corners_of[name] = np.stack(
                 [centre + a * half[0] + b * half[1] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             )
             start += wide + gap
-    return found
+    return corners_of
 
 
 def _size(surface: Surface, room: _Room, *, alone: bool) -> tuple[float, float]:
@@ -224,20 +230,20 @@ def window_panels(wall: Array, windows: Mapping[str, Window], area: float) -> di
     [1.0, 0.0, 0.75]
     """
     sizes = {name: min(float(window.area or 0.0) / area, 1.0) for name, window in windows.items()}
-    if len(wall) != _SQUARE:
+    if len(wall) != _RECTANGLE_CORNERS:
         middle = wall.mean(axis=0)
         return {name: middle + math.sqrt(0.9 * size) * (wall - middle) for name, size in sizes.items()}
     share = min(sum(sizes.values()), 0.98)
     high = math.sqrt(share) if share else 1.0
     gap = (1.0 - high) / (len(sizes) + 1)
-    found, at = {}, gap
+    outlines, edge = {}, gap
     for name, size in sizes.items():
         wide = size / high
         low, top = 0.5 * (1.0 - high), 0.5 * (1.0 + high)
-        ends = ((at, low), (at + wide, low), (at + wide, top), (at, top))
-        found[name] = np.stack([_inside(wall, u, v) for u, v in ends])
-        at += wide + gap
-    return found
+        ends = ((edge, low), (edge + wide, low), (edge + wide, top), (edge, top))
+        outlines[name] = np.stack([_inside(wall, u, v) for u, v in ends])
+        edge += wide + gap
+    return outlines
 
 
 def _inside(wall: Array, u: float, v: float) -> Array:

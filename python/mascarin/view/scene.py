@@ -86,15 +86,17 @@ def _in(building: Building, wall: str) -> list[str]:
 
 
 def _windows(building: Building, walls: Mapping[str, Array]) -> dict[str, Array]:
-    found: dict[str, Array] = {}
+    outlines: dict[str, Array] = {}
     for wall, corners in walls.items():
-        own = {name: building.windows[name] for name in _in(building, wall)}
-        bare = {name: one for name, one in own.items() if one.vertices is None}
+        wall_windows = {name: building.windows[name] for name in _in(building, wall)}
+        bare = {name: window for name, window in wall_windows.items() if window.vertices is None}
         area = float(building.surfaces[wall].area or 1.0)
-        found |= {
-            name: _points(one.vertices) for name, one in own.items() if one.vertices is not None
+        outlines |= {
+            name: _points(window.vertices)
+            for name, window in wall_windows.items()
+            if window.vertices is not None
         } | window_panels(corners, bare, area)
-    return {name: found[name] for name in building.windows}
+    return {name: outlines[name] for name in building.windows}
 
 
 def _rounded(corners: Array) -> list[list[float]]:
@@ -255,15 +257,17 @@ def _shade(name: str, corners: Array, warnings: list[str]) -> dict[str, Any]:
 
 
 def _zones(building: Building, walls: Mapping[str, Array]) -> list[dict[str, Any]]:
-    found = []
+    rows = []
     for name, zone in building.zones.items():
         sides = [surface for surface, _ in building.connections.sides(name)]
         # Of surfaces between two zones that have no vertices only one zone has the drawing.
-        own = [
-            one for one in sides if building.surfaces[one].vertices or home(building.surfaces[one]) == name
+        own_surfaces = [
+            surface_name
+            for surface_name in sides
+            if building.surfaces[surface_name].vertices or home(building.surfaces[surface_name]) == name
         ]
-        middles = [walls[one].mean(axis=0) for one in own]
-        found.append(
+        middles = [walls[surface_name].mean(axis=0) for surface_name in own_surfaces]
+        rows.append(
             {
                 "name": name,
                 "volume": text.with_unit(float(zone.volume or 0.0), "m3"),
@@ -274,7 +278,7 @@ def _zones(building: Building, walls: Mapping[str, Array]) -> list[dict[str, Any
                 "infiltration": text.with_unit(float(zone.infiltration.constant), "1/h"),
             }
         )
-    return found
+    return rows
 
 
 def _loads(loads: Any) -> str:
@@ -283,7 +287,7 @@ def _loads(loads: Any) -> str:
 
 def _about(building: Building, warnings: Sequence[str]) -> Said:
     """Warnings by the parts that they name."""
-    found: dict[tuple[str, str], list[str]] = {}
+    lines_by_part: dict[tuple[str, str], list[str]] = {}
     for line in warnings:
         named = {(section, name) for section, name in _PART.findall(line)}
         words = set(re.findall(r"[\w-]+", line))
@@ -292,5 +296,5 @@ def _about(building: Building, warnings: Sequence[str]) -> Said:
             if not named and (section[:-1] in line or section == "constructions"):
                 named |= {(section, name) for name in getattr(building, section) if name in words}
         for key in named:
-            found.setdefault(key, []).append(line)
-    return found
+            lines_by_part.setdefault(key, []).append(line)
+    return lines_by_part

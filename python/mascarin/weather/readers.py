@@ -16,10 +16,10 @@ import numpy as np
 
 from mascarin._io.cache import Cached, cached
 from mascarin.errors import InputError
+from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.timezones import fixed_zone, zone_name
-from mascarin.weather.moisture import dew_point
 from mascarin.weather.shipped import COMPRESSED, PACKED, content
 
 _HEADER = 8

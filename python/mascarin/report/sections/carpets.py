@@ -18,10 +18,10 @@ TITLE = "Error by date and hour"
 
 def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    found = carpets(study, series)
-    if not found:
+    sensors = carpets(study, series)
+    if not sensors:
         return None
-    return {"sensors": found, "scale": legend()}
+    return {"sensors": sensors, "scale": legend()}
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
     series : Series
         Curves.
     """
-    found = []
+    sensors = []
     model = main_model(study)
     for sensor in study.get("sensor_info", {}):
         observed = series.columns.get(f"observed/{sensor}")
@@ -60,8 +60,8 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
                 label = str(study.get("models", {}).get(key, {}).get("label", key))
                 pictures.append((key, label, _own_carpet(series, column.values - observed.values)))
         unit = units.difference(unit_of(study, sensor))
-        found.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
-    return found
+        sensors.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
+    return sensors
 
 
 def _own_carpet(series: Series, error: Array) -> Carpet:

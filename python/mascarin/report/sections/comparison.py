@@ -68,14 +68,14 @@ def _period_table(
                 "mean_percent_paper": text.fixed(paper.get("mean_error_percent"), 1),
             }
         )
-    found = list(dict.fromkeys(row["unit"] for row in rows))
+    distinct_units = list(dict.fromkeys(row["unit"] for row in rows))
     return {
         "label": period_label(study, period),
         "key": period.replace("_", "-"),
         "rows": rows,
         "layout": layout(study, period) if published else "",
         "published": published,
-        "unit": found[0] if len(found) == 1 else "",
+        "unit": distinct_units[0] if len(distinct_units) == 1 else "",
     }
 
 

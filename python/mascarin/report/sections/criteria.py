@@ -20,15 +20,15 @@ def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] |
         key = (str(criterion.get("model", "")), str(criterion.get("period", "")))
         unit = str(criterion.get("unit", ""))
         value, limit = criterion.get("value"), criterion.get("limit")
-        found, wanted = text.beside_limit(value, limit)
+        value_text, limit_text = text.beside_limit(value, limit)
         groups.setdefault(key, []).append(
             {
                 "name": text.typeset(str(criterion.get("name", ""))),
                 "sensor": label_of(study, str(criterion.get("sensor", "")))
                 if criterion.get("sensor")
                 else "",
-                "value": found,
-                "limit": wanted,
+                "value": value_text,
+                "limit": limit_text,
                 "unit": units.difference(unit),
                 "passed": bool(criterion.get("passed")),
                 "fill": _fill(value, limit),

@@ -11,8 +11,8 @@ from markupsafe import Markup
 
 from mascarin._io.units import bracketed, shown
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
-from mascarin.report import embedding, text
-from mascarin.report.compared import (
+from mascarin.report import html_figures, text
+from mascarin.report.comparison_data import (
     by_unit,
     compared_sensors,
     error_unit,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 TITLE = "Time series"
 #: Largest number of points of a curve in a figure of the page.
-_MOST_POINTS: Final = 420
+_MAX_POINTS: Final = 420
 
 
 def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
@@ -65,14 +65,14 @@ def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
 
 def _printed(study: Mapping[str, Any], curves: Series) -> list[dict[str, Any]]:
     """Figures of the short periods: all sensors together, and each by itself."""
-    found = []
+    printed_periods = []
     looks = sensor_looks(study)
     for period in short_periods(study):
         times, sensors = _of_period(study, curves, period)
         if not sensors:
             continue
         start, end = study["periods"][period]["spans"][0]
-        found.append(
+        printed_periods.append(
             {
                 "key": period.replace("_", "-"),
                 "label": period_label(study, period),
@@ -80,13 +80,15 @@ def _printed(study: Mapping[str, Any], curves: Series) -> list[dict[str, Any]]:
                 "together": [_together(study, times, unit, sensors, names, period)
                              for unit, names in by_unit(study, sensors).items()],
                 "keys": [
-                    {"label": one.label, "color": looks[name].color, "dash": looks[name].round}
-                    for name, one in sensors.items()
+                    {"label": compared.label, "color": looks[name].color, "dash": looks[name].round}
+                    for name, compared in sensors.items()
                 ],
-                "curves": [_single(study, times, name, one, period) for name, one in sensors.items()],
+                "curves": [
+                    _single(study, times, name, compared, period) for name, compared in sensors.items()
+                ],
             }
         )  # fmt: skip
-    return found
+    return printed_periods
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,8 @@ def headline(study: Mapping[str, Any], curves: Series) -> Panels | None:
     if not periods:
         return None
     times, sensors = _of_period(study, curves, periods[-1])
-    for name, one in sensors.items():
-        return _single(study, times, name, one, "headline")
+    for name, compared in sensors.items():
+        return _single(study, times, name, compared, "headline")
     return None
 
 
@@ -121,32 +123,32 @@ def _of_period(
     study: Mapping[str, Any], curves: Series, period: str
 ) -> tuple[list[datetime], dict[str, Compared]]:
     start, end = study["periods"][period]["spans"][0]
-    return compared_sensors(study, curves, curves.slice_of(start, end), _MOST_POINTS)
+    return compared_sensors(study, curves, curves.slice_of(start, end), _MAX_POINTS)
 
 
 def _single(
-    study: Mapping[str, Any], times: list[datetime], sensor: str, one: Compared, place: str
+    study: Mapping[str, Any], times: list[datetime], sensor: str, compared: Compared, key: str
 ) -> Panels:
     """One sensor with the prediction interval."""
-    upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 110.0)
-    main = replace(one, models={one.main: one.models[one.main]})
-    named, only = _named(study, one), _named(study, main)
+    upper, lower = html_figures.axes(340.0, 170.0), html_figures.axes(340.0, 110.0)
+    main = replace(compared, models={compared.main: compared.models[compared.main]})
+    named, only = _named(study, compared), _named(study, main)
     looks = model_looks(study)
     series(upper, times, named, looks=looks)
     errors(lower, times, only, looks=looks)
     _finish(upper, times, bracketed("", shown(unit_of(study, sensor))))
     _finish(lower, times, bracketed("error", error_unit(study, sensor)))
     return Panels(
-        one.label,
-        embedding.drawn(upper, f"{one.label}: measured and simulated", place),
-        embedding.drawn(lower, f"{one.label}: simulated minus measured", place),
+        compared.label,
+        html_figures.markup_of(upper, f"{compared.label}: measured and simulated", key),
+        html_figures.markup_of(lower, f"{compared.label}: simulated minus measured", key),
     )
 
 
-def _named(study: Mapping[str, Any], one: Compared) -> Compared:
+def _named(study: Mapping[str, Any], compared: Compared) -> Compared:
     """The same with the names of models for readers."""
-    models = {model_label(study, model): values for model, values in one.models.items()}
-    return replace(one, models=models, main=model_label(study, one.main))
+    models = {model_label(study, model): values for model, values in compared.models.items()}
+    return replace(compared, models=models, main=model_label(study, compared.main))
 
 
 def _together(
@@ -155,24 +157,24 @@ def _together(
     unit: str,
     sensors: Mapping[str, Compared],
     names: list[str],
-    place: str,
+    key: str,
 ) -> Panels:
     """All sensors of one unit."""
     looks = sensor_looks(study)
     chosen = [(sensors[name], looks[name]) for name in names]
-    upper, lower = embedding.axes(700.0, 290.0), embedding.axes(700.0, 170.0)
+    upper, lower = html_figures.axes(700.0, 290.0), html_figures.axes(700.0, 170.0)
     together(upper, times, chosen)
     errors_together(lower, times, chosen)
     _finish(upper, times, bracketed("", shown(unit)))
     _finish(lower, times, bracketed("error", error_unit(study, names[0])))
-    words = ", ".join(one.label for one, _ in chosen)
+    words = ", ".join(compared.label for compared, _ in chosen)
     return Panels(
         shown(unit),
-        embedding.drawn(upper, f"Measured and simulated: {words}", place),
-        embedding.drawn(lower, f"Simulated minus measured: {words}", place),
+        html_figures.markup_of(upper, f"Measured and simulated: {words}", key),
+        html_figures.markup_of(lower, f"Simulated minus measured: {words}", key),
     )
 
 
 def _finish(ax: Axes, times: list[datetime], name: str) -> None:
-    embedding.titled(ax, name)
-    embedding.days(ax, times)
+    html_figures.titled(ax, name)
+    html_figures.days(ax, times)

@@ -17,26 +17,28 @@ MISSED = "Aims that are not met"
 
 def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     """Aims, and the parameters that would lead to them."""
-    aims, found = study.get("aims", []), study.get("shortfall", {})
-    if not aims and not found:
+    aims, shortfall = study.get("aims", []), study.get("shortfall", {})
+    if not aims and not shortfall:
         return None
-    sensors = list(found.get("sd", {}))
-    changes = found["steps"][-1]["changes"] if found.get("steps") else {}
-    rows = [{"label": "fitted model", "change": "", "cells": _scatter(found.get("sd", {}), sensors)}]
+    sensors = list(shortfall.get("sd", {}))
+    changes = shortfall["steps"][-1]["changes"] if shortfall.get("steps") else {}
+    rows = [{"label": "fitted model", "change": "", "cells": _scatter(shortfall.get("sd", {}), sensors)}]
     rows += [
         {
             "label": f"{'with changed' if number == 0 else 'and'} {parameter_label(study, step['path'])}",
             "change": text.fixed(100.0 * changes[step["path"]], 0, sign=True),
             "cells": _scatter(step["sd"], sensors),
         }
-        for number, step in enumerate(found.get("steps", []))
+        for number, step in enumerate(shortfall.get("steps", []))
     ]
-    if "every" in found:
-        label = f"all {found['every']['parameters']} parameters"
-        rows.append({"label": label, "change": "", "cells": _scatter(found["every"]["sd"], sensors)})
-    wished = _aimed_scatter(aims, str(found.get("period", "")), sensors)
-    found_units = {units.difference(unit_of(study, sensor)) for sensor in sensors}
-    common = found_units.pop() if len(found_units) == 1 else ""
+    if "all_parameters" in shortfall:
+        label = f"all {shortfall['all_parameters']['parameters']} parameters"
+        rows.append(
+            {"label": label, "change": "", "cells": _scatter(shortfall["all_parameters"]["sd"], sensors)}
+        )
+    wished = _aimed_scatter(aims, str(shortfall.get("period", "")), sensors)
+    distinct_units = {units.difference(unit_of(study, sensor)) for sensor in sensors}
+    common = distinct_units.pop() if len(distinct_units) == 1 else ""
     return {
         "aims": _aims(study, aims),
         "met": sum(1 for aim in aims if aim.get("passed")),
@@ -47,14 +49,14 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         ],
         "rows": rows if sensors else [],
         "wished": wished,
-        "named": bool(found.get("steps")),
+        "named": bool(shortfall.get("steps")),
         "notes": [
             words
             for note in study.get("notes", [])
             if note.get("title") == MISSED
             for words in note_words(study, note)
         ],
-        "period": period_label(study, str(found.get("period", ""))).lower(),
+        "period": period_label(study, str(shortfall.get("period", ""))).lower(),
         "unit": common,
     }
 

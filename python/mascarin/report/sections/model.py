@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin._io import units
-from mascarin.report import drawing, rooms, text
+from mascarin.report import building_drawings, rooms, text
 from mascarin.report.labels import label_of
 from mascarin.report.series import Series
 
@@ -25,14 +25,14 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     ]
     return {
         "name": building.get("name", ""),
-        "view": drawing.view(building),
+        "view": building_drawings.view(building),
         "rooms": _rooms(study),
-        "section": drawing.section(building, sensors),
+        "section": building_drawings.section(building, sensors),
         "sensors": numbered,
         "layers": [
             {
                 "name": text.plain_path(str(c.get("name"))),
-                "drawing": drawing.layers(building, c, sensors),
+                "drawing": building_drawings.layers(building, c, sensors),
                 "surfaces": _built_so(building, str(c.get("name"))),
             }
             for c in building.get("constructions", [])
@@ -53,10 +53,10 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 
 def _rooms(study: Mapping[str, Any]) -> dict[str, Any] | None:
     """The plan of the rooms, and what its caption says."""
-    found = rooms.drawn(study)
-    if found is None:
+    room_drawing = rooms.plan_drawing(study)
+    if room_drawing is None:
         return None
-    drawing_of_rooms, plan, period = found
+    drawing_of_rooms, plan, period = room_drawing
     return {"drawing": drawing_of_rooms, "exact": plan.exact, "period": period}
 
 

@@ -14,10 +14,12 @@ TITLE = "Remarks"
 
 def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] | None:
     """Notes under their titles, those of one title together."""
-    found: dict[str, list[str]] = {}
+    paragraphs_by_title: dict[str, list[str]] = {}
     if study.get("warnings"):
-        found["Warnings of the runs"] = [str(line) for line in study["warnings"]]
+        paragraphs_by_title["Warnings of the runs"] = [str(line) for line in study["warnings"]]
     for note in study.get("notes", []):
         if note.get("title") != MISSED:
-            found.setdefault(str(note.get("title", "")), []).extend(note_words(study, note))
-    return [{"title": title, "paragraphs": paragraphs} for title, paragraphs in found.items()] or None
+            paragraphs_by_title.setdefault(str(note.get("title", "")), []).extend(note_words(study, note))
+    return [
+        {"title": title, "paragraphs": paragraphs} for title, paragraphs in paragraphs_by_title.items()
+    ] or None

@@ -27,7 +27,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     referenced = any("reference_fitted" in e or "reference_nominal" in e for e in entries.values())
     reference = study.get("reference", {})
     return {
-        "rows": [_row(study, path, entry, drawn=True) for path, entry in entries.items()],
+        "rows": [_row(study, path, entry, with_range=True) for path, entry in entries.items()],
         "referenced": referenced and not paper,
         "layout": layout(study, "parameters"),
         "reference": reference.get("label", "Publication"),
@@ -41,7 +41,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 
 
 def _row(
-    study: Mapping[str, Any], path: str, entry: Mapping[str, Any], *, drawn: bool = False
+    study: Mapping[str, Any], path: str, entry: Mapping[str, Any], *, with_range: bool = False
 ) -> dict[str, Any]:
     """One parameter of a table."""
     fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
@@ -52,7 +52,7 @@ def _row(
         "nominal": text.significant(entry.get("nominal")),
         "fitted": fitted,
         "interval": interval,
-        "drawing": parameter_range(entry) if drawn and entry.get("range") else "",
+        "drawing": parameter_range(entry) if with_range and entry.get("range") else "",
         "reference_nominal": text.significant(entry.get("reference_nominal")),
         "reference_fitted": text.significant(entry.get("reference_fitted")),
         "at_bound": bool(entry.get("at_bound")),
@@ -63,30 +63,30 @@ def _row(
 
 def _coefficients(study: Mapping[str, Any]) -> dict[str, str] | None:
     """Period and unit of the effective mean coefficients, if the study has any."""
-    found = study.get("coefficients", {})
-    if not found.get("models"):
+    coefficients = study.get("coefficients", {})
+    if not coefficients.get("models"):
         return None
-    period = period_label(study, str(found.get("period", "")))
-    return {"period": period, "unit": units.shown(str(found.get("unit", "W/(m2 K)")))}
+    period = period_label(study, str(coefficients.get("period", "")))
+    return {"period": period, "unit": units.shown(str(coefficients.get("unit", "W/(m2 K)")))}
 
 
 def _means(study: Mapping[str, Any], path: str) -> tuple[str, str] | None:
     """Effective mean coefficient before and after, for a parameter of a convection law."""
     models = study.get("coefficients", {}).get("models", {})
-    law, found, _ = path.partition(".convection")
-    if not found or not any(law + found in means for means in models.values()):
+    law, convection, _ = path.partition(".convection")
+    if not convection or not any(law + convection in means for means in models.values()):
         return None
-    before, after = (models.get(model, {}).get(law + found) for model in ("nominal", "fitted"))
+    before, after = (models.get(model, {}).get(law + convection) for model in ("nominal", "fitted"))
     return text.fixed(before), text.fixed(after)
 
 
 def _paper(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     """The parameters of a publication in its form, beside those of the study."""
-    known = study.get("parameters", {})
+    parameters = study.get("parameters", {})
     rows = []
     for line in study.get("reference", {}).get("parameters", []):
         path = str(line.get("parameter", ""))
-        entry = known.get(path) or _fixed(study, path)
+        entry = parameters.get(path) or _fixed(study, path)
         if line.get("delta_t") is not None:
             entry = _as_gamma(entry, float(line["delta_t"]))
         row = _row(study, path, entry)
@@ -109,9 +109,15 @@ def _paper(study: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def _fixed(study: Mapping[str, Any], path: str) -> dict[str, Any]:
     """A parameter that was not calibrated: its value is the same before and after."""
-    given = study.get("reference_values", {}).get(path)
+    reference_value = study.get("reference_values", {}).get(path)
     return (
-        {} if given is None else {"nominal": given["value"], "fitted": given["value"], "unit": given["unit"]}
+        {}
+        if reference_value is None
+        else {
+            "nominal": reference_value["value"],
+            "fitted": reference_value["value"],
+            "unit": reference_value["unit"],
+        }
     )
 
 

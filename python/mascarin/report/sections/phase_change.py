@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mascarin.figures import colors
-from mascarin.report.drawn import Figure, hours_of, time_axis
+from mascarin.report.axes import Figure, hours_of, time_axis
 from mascarin.report.labels import period_label, short_periods
 from mascarin.report.series import Series
 from mascarin.report.svg import Axis, Chart
@@ -19,16 +19,16 @@ TITLE = "Phase change"
 
 def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | None:
     """Values of the template."""
-    found: list[dict[str, Any]] = []
+    materials: list[dict[str, Any]] = []
     short = short_periods(study)
     spans = study["periods"][short[-1]]["spans"] if short else []
     for entry in study.get("phase_change", []):
-        drawn = [enthalpy_loop(entry), liquid_fraction(series, entry, spans)]
-        found.append(
+        figures = [enthalpy_loop(entry), liquid_fraction(series, entry, spans)]
+        materials.append(
             {
                 "label": entry.get("label", ""),
-                "key": f"phase-change-{len(found) + 1}",
-                "figures": [f for f in drawn if f is not None],
+                "key": f"phase-change-{len(materials) + 1}",
+                "figures": [f for f in figures if f is not None],
                 "rows": entry.get("rows", []),
                 "days": [
                     {"color": colors.look(number).color, "label": str(day.get("label", ""))}
@@ -39,7 +39,7 @@ def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | 
                 "period": period_label(study, short[-1]) if short else "",
             }
         )
-    return found or None
+    return materials or None
 
 
 def enthalpy_loop(entry: Mapping[str, Any]) -> Figure | None:
@@ -67,8 +67,8 @@ def enthalpy_loop(entry: Mapping[str, Any]) -> Figure | None:
     if law_t.size:
         chart.curve(law_t, law_h, "law")
     days = entry.get("days", [])
-    every = max(1, path_t.size // 1500)
-    chart.curve(path_t[::every], path_h[::every], "path faint" if days else "path")
+    stride = max(1, path_t.size // 1500)
+    chart.curve(path_t[::stride], path_h[::stride], "path faint" if days else "path")
     for number, day in enumerate(days):
         chart.curve(np.asarray(day["temperature"]), np.asarray(day["enthalpy"]), f"d{number % 4}")
     label = str(entry.get("label", "phase-change layer"))
@@ -95,7 +95,7 @@ def liquid_fraction(
     part = series.slice_of(spans[0][0], spans[0][1])
     values = column.values[part]
     hours = hours_of(len(values), series.step)
-    every = max(1, math.ceil(len(values) / 700))
+    stride = max(1, math.ceil(len(values) / 700))
     axis = Axis(0.0, 1.0, (0.0, 0.25, 0.5, 0.75, 1.0), ("0", "0.25", "0.5", "0.75", "1"))
     chart = Chart(
         time_axis(series.time(part.start), hours[-1] if len(hours) else 1.0),
@@ -104,6 +104,6 @@ def liquid_fraction(
         height=260.0,
         y_label="liquid fraction",
     )
-    chart.band(hours[::every], np.zeros(len(hours[::every])), values[::every], "liquid")
-    chart.curve(hours[::every], values[::every], "path")
+    chart.band(hours[::stride], np.zeros(len(hours[::stride])), values[::stride], "liquid")
+    chart.curve(hours[::stride], values[::stride], "path")
     return Figure("Liquid fraction", chart.markup("Liquid fraction over time"))

@@ -30,10 +30,10 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 def _source(source: Mapping[str, str]) -> Markup:
     """Text of a source; its DOI, given or found in the text, becomes a link."""
     words, doi = str(source.get("text", "")), str(source.get("doi", ""))
-    found = text.DOI.search(words)
-    if not doi.startswith("10.") and found:
-        doi = found.group(1)
-        words = words[: found.start()] + words[found.end() :]
+    doi_match = text.DOI.search(words)
+    if not doi.startswith("10.") and doi_match:
+        doi = doi_match.group(1)
+        words = words[: doi_match.start()] + words[doi_match.end() :]
     if not doi.startswith("10."):
         return Markup("{}").format(words)
     return Markup('{} <a href="https://doi.org/{}" rel="noopener noreferrer">doi:{}</a>').format(

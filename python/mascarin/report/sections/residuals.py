@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.report import text
-from mascarin.report.drawn import Figure, hour_marks
+from mascarin.report.axes import Figure, hour_marks
 from mascarin.report.labels import label_of, period_label, unit_of
 from mascarin.report.series import Series
 from mascarin.report.svg import Axis, Chart
@@ -21,25 +21,25 @@ TITLE = "Analysis of the residuals"
 
 def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    found = []
+    sensors = []
     drivers: list[str] = []
     for sensor, entry in study.get("residuals", {}).items():
-        drawn = residual_figures(study, sensor, entry)
-        if drawn:
+        figures = residual_figures(study, sensor, entry)
+        if figures:
             period = entry.get("period")
             drivers = drivers or sorted(entry.get("cross_correlation", {}))
-            found.append(
+            sensors.append(
                 {
                     "label": label_of(study, sensor),
                     "key": f"residuals-{sensor}",
-                    "figures": drawn,
+                    "figures": figures,
                     "period": period_label(study, str(period)) if period else "",
                 }
             )
-    if not found:
+    if not sensors:
         return None
     keys = [{"color": colors.look(number).color, "label": name} for number, name in enumerate(drivers)]
-    return {"sensors": found, "keys": keys, "rows": _statistics(study)}
+    return {"sensors": sensors, "keys": keys, "rows": _statistics(study)}
 
 
 def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -71,7 +71,7 @@ def _strongest_link(entry: Mapping[str, Any]) -> str:
     links = {name: value for name, value in entry.get("correlation", {}).items() if value is not None}
     if not links:
         return text.NONE
-    name = max(links, key=lambda one: abs(links[one]))
+    name = max(links, key=lambda driver: abs(links[driver]))
     lag = entry.get("correlation_lag", {}).get(name, 0.0)
     later = f", {lag:.2g}\u00a0h later" if lag else ""
     return f"{name} {text.fixed(links[name], sign=True)}{later}"
@@ -90,21 +90,21 @@ def residual_figures(study: Mapping[str, Any], sensor: str, entry: Mapping[str, 
         As in :class:`~mascarin.report.schema.Residuals`.
     """
     label = label_of(study, sensor)
-    found = []
+    figures = []
     if entry.get("acf"):
-        found.append(
+        figures.append(
             Figure("Autocorrelation", _acf(entry).markup(f"Autocorrelation of the residual, {label}"))
         )
     if entry.get("periodogram_cumulative"):
-        drawn = _periodogram(entry).markup(f"Cumulative periodogram of the residual, {label}")
-        found.append(Figure("Cumulative periodogram", drawn))
+        markup = _periodogram(entry).markup(f"Cumulative periodogram of the residual, {label}")
+        figures.append(Figure("Cumulative periodogram", markup))
     if entry.get("hour_mean"):
-        drawn = _by_hour(study, sensor, entry).markup(f"Residual by hour of day, {label}")
-        found.append(Figure("Hour of day", drawn))
+        markup = _by_hour(study, sensor, entry).markup(f"Residual by hour of day, {label}")
+        figures.append(Figure("Hour of day", markup))
     if entry.get("cross_correlation"):
-        drawn = _cross(entry).markup(f"Correlation of the residual with the climate over the lag, {label}")
-        found.append(Figure("Cross-correlation", drawn))
-    return found
+        markup = _cross(entry).markup(f"Correlation of the residual with the climate over the lag, {label}")
+        figures.append(Figure("Cross-correlation", markup))
+    return figures
 
 
 def _cross(entry: Mapping[str, Any]) -> Chart:
@@ -124,12 +124,12 @@ def _cross(entry: Mapping[str, Any]) -> Chart:
 
 
 def _small(x: Axis, y: Axis, x_label: str, y_label: str = "") -> Chart:
-    return Chart(x, y, width=250.0, height=150.0, left=34.0, x_label=x_label, y_label=y_label)
+    return Chart(x, y, width=250.0, height=150.0, margin_left=34.0, x_label=x_label, y_label=y_label)
 
 
 def _acf(entry: Mapping[str, Any]) -> Chart:
-    every = max(1, len(entry["acf"]) // 400)
-    lags, values = np.asarray(entry["acf_lags"])[::every], np.asarray(entry["acf"])[::every]
+    stride = max(1, len(entry["acf"]) // 400)
+    lags, values = np.asarray(entry["acf_lags"])[::stride], np.asarray(entry["acf"])[::stride]
     low = -1.0 if float(values.min()) < -0.5 else -0.5
     ticks = [t for t in (-1.0, -0.5, 0.0, 0.5, 1.0) if t >= low]
     y = Axis(low, 1.0, ticks, [text.fixed(t, 1) for t in ticks])
@@ -150,18 +150,20 @@ def _periodogram(entry: Mapping[str, Any]) -> Chart:
     cumulative = np.asarray(entry["periodogram_cumulative"], dtype=np.float64)
     y = Axis(0.0, 1.0, (0.0, 0.5, 1.0), ("0", "0.5", "1"))
     # Logarithmic: what happens in a day and slower is what matters.
-    place = np.log10(np.maximum(frequency, 1e-3))
-    low, high = float(place.min()), float(place.max())
+    log_frequency = np.log10(np.maximum(frequency, 1e-3))
+    low, high = float(log_frequency.min()), float(log_frequency.max())
     marks = [m for m in (0.1, 1.0, 2.0, 10.0, 48.0) if low <= math.log10(m) <= high]
     x = Axis(low, high, [math.log10(m) for m in marks], [f"{m:g}" for m in marks])
     chart = _small(x, y, "frequency, 1/day")
     # As many points as there are pixels, equally far apart on the logarithmic axis.
-    _, kept = np.unique(np.round((place - low) / max(high - low, 1e-9) * 200.0), return_index=True)
-    white = frequency[kept] / float(frequency.max())
+    _, samples = np.unique(np.round((log_frequency - low) / max(high - low, 1e-9) * 200.0), return_index=True)
+    white = frequency[samples] / float(frequency.max())
     band = float(entry.get("periodogram_band", 0.0))
     if band > 0.0:
-        chart.band(place[kept], np.maximum(white - band, 0.0), np.minimum(white + band, 1.0), "null-band")
-    chart.curve(place[kept], cumulative[kept], "error")
+        chart.band(
+            log_frequency[samples], np.maximum(white - band, 0.0), np.minimum(white + band, 1.0), "null-band"
+        )
+    chart.curve(log_frequency[samples], cumulative[samples], "error")
     return chart
 
 

@@ -11,18 +11,18 @@ import numpy as np
 from mascarin._io import units
 from mascarin.figures import colors
 from mascarin.figures.sensitivity import indices_over_time, time_axis
-from mascarin.report import embedding, text
-from mascarin.report.drawn import Figure
+from mascarin.report import html_figures, text
+from mascarin.report.axes import Figure
 from mascarin.report.labels import label_of, layout, parameter_label, unit_of
 from mascarin.report.series import Array, Series
 from mascarin.report.svg import Axis, Chart
 
 TITLE = "Sensitivity analysis"
-_STRONGEST = 14
+_MAX_LISTED = 14
 #: Parameters that a figure over the day names.
-_NAMED = 8
+_MAX_NAMED = 8
 #: Lowest part of the variance that a spectrum shows.
-_FLOOR = 1e-4
+_MIN_POWER = 1e-4
 
 
 def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
@@ -50,7 +50,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         "spectra": [_spectrum(study, key, entry) for key, entry in study.get("spectra", {}).items()],
         "days": [day_shares(study, key, entry) for key, entry in study.get("day_shares", {}).items()],
         "day_keys": _day_keys(study),
-        "rest": colors.REST,
+        "rest": colors.REMAINDER,
         "influential": _influential(study, shares),
         "reference": study.get("reference", {}).get("label", ""),
         "layout": layout(study, "influential"),
@@ -94,7 +94,7 @@ def _strongest(shares: Mapping[str, Mapping[str, Any]]) -> list[str]:
     for entries in shares.values():
         for path, entry in entries.items():
             largest[path] = max(largest.get(path, 0.0), float(entry.get("share", 0.0)))
-    return sorted(largest, key=lambda path: -largest[path])[:_STRONGEST]
+    return sorted(largest, key=lambda path: -largest[path])[:_MAX_LISTED]
 
 
 def _share(entry: Mapping[str, Any] | None, study: Mapping[str, Any], output: str) -> dict[str, Any]:
@@ -132,11 +132,13 @@ def _spectrum(study: Mapping[str, Any], key: str, entry: Mapping[str, Any]) -> d
 def _looks(study: Mapping[str, Any]) -> dict[str, colors.Look]:
     """How each parameter is drawn that a figure over the day names."""
     shares = {
-        output: {path: math.nan if e.get("share") is None else float(e["share"]) for path, e in found.items()}
-        for output, found in study.get("sensitivity", {}).items()
+        output: {
+            path: math.nan if e.get("share") is None else float(e["share"]) for path, e in entries.items()
+        }
+        for output, entries in study.get("sensitivity", {}).items()
     }
-    looks = colors.parameters(shares, _NAMED)
-    named = [p for entry in study.get("day_shares", {}).values() for p in entry.get("paths", [])[:_NAMED]]
+    looks = colors.parameters(shares, _MAX_NAMED)
+    named = [p for entry in study.get("day_shares", {}).values() for p in entry.get("paths", [])[:_MAX_NAMED]]
     for path in dict.fromkeys(named):
         looks.setdefault(path, colors.look(len(looks)))
     return looks
@@ -147,7 +149,7 @@ def _day_keys(study: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
     return [
         [
             {"color": looks[path].color, "round": looks[path].round, "label": parameter_label(study, path)}
-            for path in entry.get("paths", [])[:_NAMED]
+            for path in entry.get("paths", [])[:_MAX_NAMED]
         ]
         for entry in study.get("day_shares", {}).values()
     ]
@@ -168,7 +170,7 @@ def draw_spectrum(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any
     frequency = np.asarray(entry.get("frequencies", []), dtype=np.float64)
     power = np.asarray(entry.get("power", []), dtype=np.float64)
     threshold = float(entry.get("threshold", 0.0))
-    floor = _FLOOR
+    floor = _MIN_POWER
     marks = [m for m in (1e-4, 1e-3, 1e-2, 1e-1, 1.0) if m >= floor]
     y = Axis(math.log10(floor), 0.25, [math.log10(m) for m in marks], [f"{100 * m:g}" for m in marks])
     x = Axis.over(frequency, around=0.0, count=6)
@@ -185,23 +187,24 @@ def draw_spectrum(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any
 def _stems(chart: Chart, frequency: Array, power: Array, threshold: float) -> None:
     """Ordinates as vertical lines, the highest of each pixel, in two paths: below and above the threshold."""
     high: dict[int, tuple[float, float]] = {}
-    for place, value in zip(frequency, power, strict=True):
-        pixel = round(chart.px(float(place)))
-        if value > _FLOOR and value > high.get(pixel, (0.0, 0.0))[1]:
-            high[pixel] = (float(place), float(value))
-    for class_, wanted in (("stem", False), ("stem high", True)):
+    for number, value in zip(frequency, power, strict=True):
+        pixel = round(chart.px(float(number)))
+        if value > _MIN_POWER and value > high.get(pixel, (0.0, 0.0))[1]:
+            high[pixel] = (float(number), float(value))
+    for class_, is_high in (("stem", False), ("stem high", True)):
         path = "".join(
-            f"M{chart.px(place):.1f} {chart.py(math.log10(_FLOOR)):.1f}V{chart.py(math.log10(value)):.1f}"
-            for place, value in high.values()
-            if (value > threshold) == wanted
+            f"M{chart.px(number):.1f} {chart.py(math.log10(_MIN_POWER)):.1f}"
+            f"V{chart.py(math.log10(value)):.1f}"
+            for number, value in high.values()
+            if (value > threshold) == is_high
         )
         if path:
             chart.svg.add("path", d=path, class_=class_)
 
 
 def _within(axis: Axis, high: float) -> tuple[list[float], list[str]]:
-    kept = [(t, n) for t, n in zip(axis.ticks, axis.names, strict=True) if 0.0 <= t <= high]
-    return [t for t, _ in kept], [n for _, n in kept]
+    ticks = [(t, n) for t, n in zip(axis.ticks, axis.names, strict=True) if 0.0 <= t <= high]
+    return [t for t, _ in ticks], [n for _, n in ticks]
 
 
 def _name_peaks(chart: Chart, peaks: Sequence[Mapping[str, Any]]) -> None:
@@ -209,7 +212,7 @@ def _name_peaks(chart: Chart, peaks: Sequence[Mapping[str, Any]]) -> None:
     taken: list[tuple[float, float]] = []
     for number, peak in enumerate(sorted(peaks, key=lambda p: -float(p["power"])), start=1):
         x = chart.px(float(peak["frequency"]))
-        y = chart.py(math.log10(max(float(peak["power"]), _FLOOR))) - 4.0
+        y = chart.py(math.log10(max(float(peak["power"]), _MIN_POWER))) - 4.0
         while any(abs(x - a) < 8.0 and abs(y - b) < 9.0 for a, b in taken) and y > 14.0:
             y -= 9.0
         taken.append((x, y))
@@ -229,12 +232,12 @@ def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) 
         As in :class:`~mascarin.report.schema.DayShares`.
     """
     hours = np.asarray(entry.get("hours", []), dtype=np.float64)
-    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:_NAMED]
+    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:_MAX_NAMED]
     looks = _looks(study)
     named = [("", looks[path]) for path in entry.get("paths", [])[: len(index)]]
-    ax = embedding.axes(340.0, 190.0, bottom=32.0)
-    indices_over_time(ax, hours, index, named, rest="")
+    ax = html_figures.axes(340.0, 190.0, bottom=32.0)
+    indices_over_time(ax, hours, index, named, remainder="")
     time_axis(ax, hours=True)
-    embedding.titled(ax, "first-order index S1 [%]")
+    html_figures.titled(ax, "first-order index S1 [%]")
     label = label_of(study, sensor)
-    return Figure(label, embedding.drawn(ax, f"First-order indices over the day, {label}"))
+    return Figure(label, html_figures.markup_of(ax, f"First-order indices over the day, {label}"))

@@ -188,7 +188,9 @@ class SpectralSensitivity(Sensitivity):
             x, index, _ = self.indices_by_hour(output, hours)
             order = self.strongest(output, top)
             named = [(self.names[i], self.looks(top)[self.names[i]]) for i in order]
-            legend = figures.indices_over_time(ax, x, index[order], named, rest="others and interactions")
+            legend = figures.indices_over_time(
+                ax, x, index[order], named, remainder="others and interactions"
+            )
             figures.time_axis(ax, hours=hours is not None)
             ax.set_title(output, loc="left", fontsize=10)
             ax.legend(*legend, fontsize=7)

@@ -120,7 +120,7 @@ _PARTS: Final = {
 
 def _of_model(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
     best = found.forms[0]
-    sizes, limit = best.joint.sizes, statement(study, best.fit).limit
+    sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
     columns = {
         "repeating": np.sqrt(np.diag(sizes.hour)),
         "day": np.sqrt(np.diag(sizes.day)),
@@ -192,8 +192,8 @@ def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
         "caption": (
             "Standard deviation of what no values of the parameters explain, estimated by marginal "
             "likelihood in the identification period, with a correlation time of "
-            f"{found.forms[0].joint.sizes.correlation_hours:g} h within a day. The limit is what each part "
-            "may absorb at most."
+            f"{found.forms[0].joint.error_covariances.correlation_hours:g} h within a day. The limit is what "
+            "each part may absorb at most."
         ),
         "columns": ["sensor", "unit", *_PARTS.values(), "limit"],
         "rows": [

@@ -15,13 +15,13 @@ from mascarin.study.document.header import header
 from mascarin.study.document.phase_change import phase_change
 from mascarin.study.document.sensitivity import importance
 from mascarin.study.prediction_intervals import interval_table
-from mascarin.validation.causes import WORDS
 from mascarin.validation.error_sources import explain_missed_aims
+from mascarin.validation.hypotheses import WORDS
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.study.findings import Findings
-    from mascarin.validation.causes import Diagnosis
+    from mascarin.validation.hypotheses import Diagnosis
 
 
 #: Title of the notes on the calibration.

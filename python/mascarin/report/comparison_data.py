@@ -16,8 +16,8 @@ from mascarin.report.series import Array, Series
 
 def model_looks(study: Mapping[str, Any]) -> dict[str, str]:
     """Color of each model of a study, by its name for readers."""
-    found = colors.models(study.get("models", {}))
-    return {model_label(study, model): color for model, color in found.items()}
+    color_of = colors.models(study.get("models", {}))
+    return {model_label(study, model): color for model, color in color_of.items()}
 
 
 def sensor_looks(study: Mapping[str, Any]) -> dict[str, colors.Look]:
@@ -49,11 +49,11 @@ def compared_sensors(
         By name; the nominal model comes before the main one.
     """
     stop = min(part.stop, len(series))
-    every = max(1, math.ceil((stop - part.start) / most))
-    pick = slice(part.start, stop, every)
-    times = [series.time(k) for k in range(part.start, stop, every)]
+    stride = max(1, math.ceil((stop - part.start) / most))
+    pick = slice(part.start, stop, stride)
+    times = [series.time(k) for k in range(part.start, stop, stride)]
     main = main_model(study)
-    found = {}
+    compared = {}
     for sensor in study.get("sensor_info", {}):
         observed, simulated = _values(series, "observed", sensor), _values(series, main, sensor)
         if main is None or observed is None or simulated is None:
@@ -63,7 +63,7 @@ def compared_sensors(
         if nominal is not None and main != "nominal":
             models = {"nominal": nominal[pick], **models}
         half, middle = _values(series, "band", sensor), _values(series, "expected", sensor)
-        found[sensor] = Compared(
+        compared[sensor] = Compared(
             label_of(study, sensor),
             observed[pick],
             models,
@@ -72,7 +72,7 @@ def compared_sensors(
             center=None if middle is None else (middle - simulated)[pick],
             uncertainty=float(study["sensor_info"][sensor].get("uncertainty", 0.0)),
         )
-    return times, found
+    return times, compared
 
 
 def by_unit(study: Mapping[str, Any], sensors: Mapping[str, Compared]) -> dict[str, list[str]]:

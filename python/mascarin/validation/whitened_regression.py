@@ -27,19 +27,19 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 #: Highest order of the autoregressive models: gaps cost as many samples.
-_ORDER: Final = 6
+_MAX_ORDER: Final = 6
 #: A series of which less than this part remains after whitening keeps one coefficient only.
-_KEPT: Final = 0.7
+_MIN_KEPT_SHARE: Final = 0.7
 #: Iterations of the variances.
-_SWEEPS: Final = 12
+_MAX_SWEEPS: Final = 12
 #: The iteration ends when no variance changes by more than this part.
-_SETTLED: Final = 1e-3
+_MAX_VARIANCE_CHANGE: Final = 1e-3
 #: Largest number of active sets that are tried.
-_SETS: Final = 60
+_MAX_ACTIVE_SETS: Final = 60
 #: Information, in units of the prior, from which a combination of columns is told from zero. [-]
-_TOLD: Final = 1e-3
+_MIN_INFORMATION: Final = 1e-3
 #: Smallest variance of a whitened series, as a part of that of the measured values (rounding).
-_FLOOR: Final = 1e-12
+_MIN_VARIANCE_SHARE: Final = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,31 +69,31 @@ class Whitening:
         errors : ndarray, shape (n, S)
             NaN where nothing was measured. [unit of each]
         """
-        found = []
+        coefficients = []
         for x in errors.T:
-            known = np.isfinite(x)
-            if known.sum() < 50 or np.ptp(x[known]) == 0.0:
-                found.append(np.empty(0))
+            finite = np.isfinite(x)
+            if finite.sum() < 50 or np.ptp(x[finite]) == 0.0:
+                coefficients.append(np.empty(0))
                 continue
-            model = fit_autoregression(x, longest=_ORDER)
-            if cls._kept(known, model.order) < _KEPT * known.sum():
+            model = fit_autoregression(x, longest=_MAX_ORDER)
+            if cls._usable_rows(finite, model.order) < _MIN_KEPT_SHARE * finite.sum():
                 model = fit_autoregression(x, longest=1)
-            found.append(model.coefficients)
-        return cls(tuple(found))
+            coefficients.append(model.coefficients)
+        return cls(tuple(coefficients))
 
     @staticmethod
-    def _kept(known: Flags, order: int) -> int:
-        valid = known.copy()
+    def _usable_rows(finite: Flags, order: int) -> int:
+        valid = finite.copy()
         for lag in range(1, order + 1):
-            valid[lag:] &= known[:-lag]
+            valid[lag:] &= finite[:-lag]
             valid[:lag] = False
         return int(valid.sum())
 
-    def rows(self, known: Flags, s: int) -> Flags:
+    def rows(self, finite: Flags, s: int) -> Flags:
         """Samples of a series whose predecessors are known, shape (n,)."""
-        valid = known.copy()
+        valid = finite.copy()
         for lag in range(1, self.coefficients[s].size + 1):
-            valid[lag:] &= known[:-lag]
+            valid[lag:] &= finite[:-lag]
             valid[:lag] = False
         return valid
 
@@ -161,7 +161,7 @@ class Extra:
     limits: tuple[float, float] = (-np.inf, np.inf)
 
 
-class Joint:
+class WhitenedRegression:
     """Residuals of several series, and columns that may explain them.
 
     Parameters
@@ -191,8 +191,8 @@ class Joint:
         self.center, self.precision, self.limits = center, precision, limits
         self.whitening = whitening
         self.sensors = residual.shape[1]
-        known = np.isfinite(residual)
-        self.rows = [whitening.rows(known[:, s], s) for s in range(self.sensors)]
+        finite = np.isfinite(residual)
+        self.rows = [whitening.rows(finite[:, s], s) for s in range(self.sensors)]
         self.count = np.array([rows.sum() for rows in self.rows], dtype=np.float64)
         self.white = [whitening.series(columns[:, :, s].T, s)[self.rows[s]] for s in range(self.sensors)]
         self.gram = [a.T @ a for a in self.white]
@@ -202,31 +202,31 @@ class Joint:
         self.total = np.array([r @ r for r in self.left])
         self.right = [a.T @ r for a, r in zip(self.white, self.left, strict=True)]
         scale = np.array(
-            [np.nanvar(residual[:, s]) if known[:, s].any() else 1.0 for s in range(self.sensors)]
+            [np.nanvar(residual[:, s]) if finite[:, s].any() else 1.0 for s in range(self.sensors)]
         )
-        self.floor = np.maximum(_FLOOR * scale, np.finfo(float).tiny)
+        self.floor = np.maximum(_MIN_VARIANCE_SHARE * scale, np.finfo(float).tiny)
 
     def remaining(
         self, solution: Solution, active: Sequence[int], extra: Sequence[Extra] = ()
     ) -> list[Floats]:
         """Whitened series without what the columns of a solution explain, (N,) for each sensor."""
         index = np.asarray(active, dtype=np.int64)
-        left = [
+        unexplained = [
             r - a[:, index] @ solution.values[: index.size]
             for r, a in zip(self.left, self.white, strict=True)
         ]
         for value, e in zip(solution.values[index.size :], extra, strict=True):
-            left[e.sensor] = left[e.sensor] - value * self.whitened(e.column, e.sensor)
-        return left
+            unexplained[e.sensor] = unexplained[e.sensor] - value * self.whitened(e.column, e.sensor)
+        return unexplained
 
     def whitened(self, series: Floats, s: int) -> Floats:
         """Whiten a series of sensor s at the samples that are used, shape (N,)."""
         filled = np.where(np.isfinite(series), series, 0.0)
         return self.whitening.series(filled, s)[self.rows[s]]
 
-    def with_residual(self, changed: dict[int, Floats]) -> Joint:
+    def with_residual(self, changed: dict[int, Floats]) -> WhitenedRegression:
         """The same with other residuals of some sensors, measured at the same instants."""
-        other = object.__new__(Joint)
+        other = object.__new__(WhitenedRegression)
         other.__dict__.update(self.__dict__)
         other.left, other.right, other.total = list(self.left), list(self.right), self.total.copy()
         other.residual = self.residual.copy()
@@ -237,7 +237,7 @@ class Joint:
             other.total[s] = other.left[s] @ other.left[s]
         return other
 
-    def in_directions(self, kept: Sequence[int]) -> Joint:
+    def in_directions(self, unchanged: Sequence[int]) -> WhitenedRegression:
         """The same problem with few columns in place of many.
 
         Columns with a prior about zero are replaced by those combinations of them that the measurements can
@@ -247,17 +247,17 @@ class Joint:
 
         Parameters
         ----------
-        kept : sequence of int
+        unchanged : sequence of int
             Columns that stay as they are, as do those without a prior about zero and those that act on one
             series.
 
         Returns
         -------
-        Joint
+        WhitenedRegression
             Columns in the same order, the combinations where the first of the replaced ones was.
         """
         replaced = (self.precision > 0.0) & (self.center == 0.0)
-        replaced[list(kept)] = False
+        replaced[list(unchanged)] = False
         replaced &= np.sum([np.diag(gram) > 0.0 for gram in self.gram], axis=0) > 1
         of = np.flatnonzero(replaced)
         if of.size == 0:
@@ -266,12 +266,12 @@ class Joint:
         sd = self.precision[of] ** -0.5
         information = np.tensordot(1.0 / variance, np.stack([g[np.ix_(of, of)] for g in self.gram]), 1)
         eigenvalues, vectors = np.linalg.eigh(sd[:, None] * information * sd)
-        told = vectors[:, eigenvalues > _TOLD]
-        rest = np.flatnonzero(~replaced)
-        before, after = rest[rest < of[0]], rest[rest > of[0]]
-        combined = np.tensordot((sd[:, None] * told).T, self.columns[of], 1)
+        directions = vectors[:, eigenvalues > _MIN_INFORMATION]
+        unreplaced = np.flatnonzero(~replaced)
+        before, after = unreplaced[unreplaced < of[0]], unreplaced[unreplaced > of[0]]
+        combined = np.tensordot((sd[:, None] * directions).T, self.columns[of], 1)
         none = np.tile([-np.inf, np.inf], (len(combined), 1))
-        return Joint(
+        return WhitenedRegression(
             self.residual,
             np.concatenate([self.columns[before], combined, self.columns[after]]),
             np.concatenate([self.center[before], np.zeros(len(combined)), self.center[after]]),
@@ -355,13 +355,13 @@ class Joint:
         def objective(changed: dict[int, Floats]) -> float:
             right, total = base.copy(), 0.0
             for s, series in changed.items():
-                left = self.whitened(series, s)
-                right = right + ((self.white[s].T @ left) - self.right[s])[index] / null.variance[s]
+                whitened = self.whitened(series, s)
+                right = right + ((self.white[s].T @ whitened) - self.right[s])[index] / null.variance[s]
                 fixed = self.white[s][:, index[held]] @ value[held] if held.size else 0.0
-                rest = left - fixed
-                total += float(rest @ rest) / null.variance[s]
-            wanted = right[free] - shift
-            return total - float(wanted @ linalg.cho_solve(factor, wanted, check_finite=False))
+                reduced = whitened - fixed
+                total += float(reduced @ reduced) / null.variance[s]
+            target = right[free] - shift
+            return total - float(target @ linalg.cho_solve(factor, target, check_finite=False))
 
         return objective
 
@@ -382,14 +382,14 @@ class Joint:
             shared = min(free.size, start.free.size)
             free[:shared], values[:shared] = start.free[:shared], start.values[:shared]
         weighted = np.zeros_like(gram[0])
-        for _ in range(_SWEEPS):
+        for _ in range(_MAX_SWEEPS):
             weighted = np.tensordot(1.0 / variance, gram, 1) + np.diag(precision)
-            wanted = right.T @ (1.0 / variance) + precision * center
-            values, free = _inside(weighted, wanted, limits, values, free)
+            target = right.T @ (1.0 / variance) + precision * center
+            values, free = _inside(weighted, target, limits, values, free)
             squares = self.total - 2.0 * right @ values + (gram @ values) @ values
-            found = np.maximum(squares / np.maximum(self.count, 1.0), self.floor)
-            done = np.all(np.abs(found / variance - 1.0) < _SETTLED)
-            variance = found
+            updated = np.maximum(squares / np.maximum(self.count, 1.0), self.floor)
+            done = np.all(np.abs(updated / variance - 1.0) < _MAX_VARIANCE_CHANGE)
+            variance = updated
             if done:
                 break
         penalty = float(np.sum(precision * (values - center) ** 2))
@@ -414,11 +414,11 @@ def _inside(
     low, high = limits.T
     held = ~loose
     values = np.clip(start, low, high)
-    for _ in range(_SETS):
+    for _ in range(_MAX_ACTIVE_SETS):
         free = np.flatnonzero(~held)
         fixed = np.flatnonzero(held)
-        wanted = right[free] - matrix[np.ix_(free, fixed)] @ values[fixed]
-        values[free] = linalg.cho_solve(_factor(matrix[np.ix_(free, free)]), wanted, check_finite=False)
+        target = right[free] - matrix[np.ix_(free, fixed)] @ values[fixed]
+        values[free] = linalg.cho_solve(_factor(matrix[np.ix_(free, free)]), target, check_finite=False)
         out = ~held & ((values < low) | (values > high))
         if out.any():
             values = np.clip(values, low, high)

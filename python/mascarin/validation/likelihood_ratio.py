@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.validation.joint import Extra, Joint, Solution, Whitening
+from mascarin.validation.whitened_regression import Extra, Solution, WhitenedRegression, Whitening
 
 Floats = NDArray[np.float64]
 
@@ -18,9 +18,9 @@ _BLOCKS: Final = 8
 _DAY: Final = 86400.0
 
 
-def chance(
-    before: tuple[Joint, Solution, Sequence[int]],
-    after: tuple[Joint, Solution, Sequence[int], Sequence[Extra]],
+def p_value(
+    before: tuple[WhitenedRegression, Solution, Sequence[int]],
+    after: tuple[WhitenedRegression, Solution, Sequence[int], Sequence[Extra]],
     *,
     interval: float,
     tried: int,
@@ -56,15 +56,15 @@ def chance(
     improvement = np.zeros(int(block[-1]) + 1)
     first = before[0].remaining(before[1], before[2])
     second = after[0].remaining(after[1], after[2], after[3])
-    for s, (one, other) in enumerate(zip(first, second, strict=True)):
+    for s, (before_series, after_series) in enumerate(zip(first, second, strict=True)):
         v, w = before[1].variance[s], after[1].variance[s]
         with np.errstate(divide="ignore", invalid="ignore"):
             logs = math.log(v / w)
-        for rows, left, sign, variance in (
-            (before[0].rows[s], one, 1.0, v),
-            (after[0].rows[s], other, -1.0, w),
+        for rows, whitened, sign, variance in (
+            (before[0].rows[s], before_series, 1.0, v),
+            (after[0].rows[s], after_series, -1.0, w),
         ):
-            improvement += sign * np.bincount(block[rows], left**2 / variance, improvement.size)
+            improvement += sign * np.bincount(block[rows], whitened**2 / variance, improvement.size)
         improvement += logs * np.bincount(block[before[0].rows[s]], minlength=improvement.size)
     used = improvement[improvement != 0.0]
     if used.size < 3:
@@ -74,7 +74,7 @@ def chance(
     return min(1.0, max(tried * ratio, float(stats.t.sf(t, used.size - 1))))
 
 
-def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> float:
+def step_change_p_value(errors: Floats, rows: tuple[int, int], *, interval: float) -> float:
     """Probability that the level of errors differs by chance between a part of the record and the rest.
 
     From means over days, whose correlation from one day to the next is accounted for: a jump that does not
@@ -97,9 +97,9 @@ def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> f
     Examples
     --------
     >>> noise = np.random.default_rng(1).normal(size=480)
-    >>> level_chance(noise + (np.arange(480) >= 240), (240, 480), interval=3600.0) < 1e-6
+    >>> step_change_p_value(noise + (np.arange(480) >= 240), (240, 480), interval=3600.0) < 1e-6
     True
-    >>> level_chance(noise, (240, 480), interval=3600.0) > 0.05
+    >>> step_change_p_value(noise, (240, 480), interval=3600.0) > 0.05
     True
     """
     from scipy import stats
@@ -108,14 +108,14 @@ def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> f
     inside = (np.arange(errors.size) >= rows[0]) & (np.arange(errors.size) < rows[1])
     means, parts = [], []
     for part in (inside, ~inside):
-        there = errors[part]
-        day = np.arange(there.size) // length
-        known = np.isfinite(there)
-        count = np.bincount(day[known])
-        total = np.bincount(day[known], weights=there[known])
+        part_errors = errors[part]
+        day = np.arange(part_errors.size) // length
+        finite = np.isfinite(part_errors)
+        count = np.bincount(day[finite])
+        total = np.bincount(day[finite], weights=part_errors[finite])
         means.append(total[count > 0] / count[count > 0])
         parts.append(means[-1] - means[-1].mean() if means[-1].size else means[-1])
-    size = np.array([one.size for one in means], dtype=np.float64)
+    size = np.array([day_means.size for day_means in means], dtype=np.float64)
     if size.min() < 2:
         return 1.0
     square = sum(float(part @ part) for part in parts)
@@ -129,14 +129,14 @@ def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> f
     return 2.0 * float(stats.t.sf(t, freedom))
 
 
-class Squares:
+class SquareSums:
     """Sums of squares over the stated uncertainties, before and after a cause; nothing is whitened.
 
     Offsets within the stated uncertainty help to fit the other columns, and are not taken away themselves.
 
     Parameters
     ----------
-    joint : Joint
+    regression : WhitenedRegression
         The problem.
     active : sequence of int
         Columns that are fitted with and without the cause.
@@ -144,12 +144,19 @@ class Squares:
         Standard uncertainty of each sensor. [unit of each]
     """
 
-    def __init__(self, joint: Joint, active: Sequence[int], uncertainty: Floats) -> None:
-        plain = Whitening(tuple(np.empty(0) for _ in range(joint.sensors)))
-        self._joint = Joint(joint.residual, joint.columns, joint.center, joint.precision, joint.limits, plain)
+    def __init__(self, regression: WhitenedRegression, active: Sequence[int], uncertainty: Floats) -> None:
+        plain = Whitening(tuple(np.empty(0) for _ in range(regression.sensors)))
+        self._regression = WhitenedRegression(
+            regression.residual,
+            regression.columns,
+            regression.center,
+            regression.precision,
+            regression.limits,
+            plain,
+        )
         self._active, self._u = list(active), uncertainty
-        self._null = self._joint.solve(self._active)
-        self.before = self._of(self._joint, self._null, self._active, (), None)
+        self._null = self._regression.solve(self._active)
+        self.before = self._of(self._regression, self._null, self._active, (), None)
 
     def after(
         self,
@@ -160,28 +167,28 @@ class Squares:
         offset: int | None = None,
     ) -> Floats:
         """Sums with a cause: a column, a column of one sensor, or other residuals; shape (S,). [-]"""
-        joint = self._joint if residual is None else self._joint.with_residual(residual)
+        regression = self._regression if residual is None else self._regression.with_residual(residual)
         active = self._active if column is None else [*self._active, column]
-        solution = joint.solve(active, extra)
-        return self._of(joint, solution, active, extra, offset)
+        solution = regression.solve(active, extra)
+        return self._of(regression, solution, active, extra, offset)
 
     def share(self, after: Floats) -> tuple[float, float]:
         """Part taken away over all sensors, and of the sensor where it is largest. [-]"""
-        whole = 1.0 - float(after.sum()) / max(float(self.before.sum()), 1e-300)
+        share_of_all = 1.0 - float(after.sum()) / max(float(self.before.sum()), 1e-300)
         each = 1.0 - after / np.maximum(self.before, 1e-300)
-        return whole, float(each.max(initial=0.0))
+        return share_of_all, float(each.max(initial=0.0))
 
     def _of(
         self,
-        joint: Joint,
+        regression: WhitenedRegression,
         solution: Solution,
         active: Sequence[int],
         extra: Sequence[Extra],
-        gone: int | None,
+        excluded_offset: int | None,
     ) -> Floats:
-        left = joint.remaining(solution, active, extra)
-        first = len(joint.columns) - joint.sensors
+        remaining = regression.remaining(solution, active, extra)
+        first = len(regression.columns) - regression.sensors
         for value, k in zip(solution.values, active, strict=False):
-            if k >= first and k - first != gone:
-                left[k - first] = left[k - first] + value
-        return np.array([float(r @ r) for r in left]) / self._u**2
+            if k >= first and k - first != excluded_offset:
+                remaining[k - first] = remaining[k - first] + value
+        return np.array([float(r @ r) for r in remaining]) / self._u**2

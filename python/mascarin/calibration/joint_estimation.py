@@ -1,4 +1,7 @@
-"""A calibration refined with the errors of the sensors and of the model; see `mascarin.calibration.joint`."""
+"""A calibration refined with the errors of the sensors and of the model.
+
+The method: `mascarin.calibration.joint_posterior`.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,18 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.joint import ErrorStatement, Joint, Linear, best_positions, joint, objective
+from mascarin.calibration.joint_posterior import (
+    ErrorStatement,
+    JointPosterior,
+    Linear,
+    best_positions,
+    joint_posterior,
+    objective,
+)
 from mascarin.calibration.least_squares import residuals_and_derivatives
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Calibration
-from mascarin.calibration.rules import Rules
+from mascarin.calibration.search_options import SearchOptions
 from mascarin.calibration.sensor_errors import sensor_columns
 from mascarin.calibration.uncertainty import AT_BOUND
 from mascarin.calibration.warnings import on_bounds, warnings
@@ -29,24 +39,24 @@ METHOD: Final = (
 )
 """How the intervals are computed, for reports."""
 
-_STEPS: Final = 6
+_MAX_STEPS: Final = 6
 #: Linearizations at which the sizes of the errors are estimated anew.
-_ESTIMATED: Final = 2
-_HALVINGS: Final = 3
+_ESTIMATED_STEPS: Final = 2
+_MAX_HALVINGS: Final = 3
 #: With which an estimate is said to lie beyond the end of its range. [-]
 _CONFIDENCE: Final = 0.95
 #: Decrease of minus the log density below which the estimates stay. [-]
-_ENOUGH: Final = 0.05
+_MIN_DECREASE: Final = 0.05
 
 
-def refined(
+def estimate_jointly(
     fit: Calibration,
     stated: ErrorStatement,
-    rules: Rules,
+    options: SearchOptions,
     further: Floats | None = None,
     *,
     keep: Keep | None = None,
-) -> tuple[Calibration, Joint]:
+) -> tuple[Calibration, JointPosterior]:
     """Estimate the parameters again, together with the errors of the sensors and of the model.
 
     Parameters
@@ -55,7 +65,7 @@ def refined(
         From `solve`; where the first linearization is made.
     stated : ErrorStatement
         What is known of the errors.
-    rules : Rules
+    options : SearchOptions
         Kind of derivatives.
     further : ndarray, shape (T, S, K), optional
         Effects of numbers that are not estimated, for one standard uncertainty. [unit]
@@ -66,7 +76,7 @@ def refined(
     -------
     Calibration
         With the estimates and intervals of the joint distribution.
-    Joint
+    JointPosterior
         The joint distribution.
 
     Raises
@@ -76,67 +86,79 @@ def refined(
     """
     problem = fit.problem
     evaluator = Evaluator(Cost(problem, fit.cost_name))
-    kept: Keep = keep or (lambda key, make: make())
+    compute: Keep = keep or (lambda key, make: make())
 
     def linear(z: Floats) -> Linear:
-        residuals, jacobian = kept(
-            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, rules)
+        residuals, jacobian = compute(
+            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, options)
         )
         simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
         return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
 
     # The estimates are those of the model as it will be used, with all other numbers as described.
-    here = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
-    effects = here.further if further is None else further
-    found = joint(problem, replace(here, further=effects), stated)
-    return _reported(fit, problem, replace(here, further=effects), found, stated), found
+    linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
+    effects = linearization.further if further is None else further
+    distribution = joint_posterior(problem, replace(linearization, further=effects), stated)
+    return _reported(
+        fit, problem, replace(linearization, further=effects), distribution, stated
+    ), distribution
 
 
 def _searched(
     problem: CalibrationProblem, linear: Callable[[Floats], Linear], stated: ErrorStatement, first: Floats
 ) -> Linear:
     """Linearize about better and better estimates, until the density no longer rises."""
-    here = linear(first)
-    sizes = None
-    for step in range(_STEPS):
-        goal, sizes = best_positions(problem, here, stated, sizes if step >= _ESTIMATED else None)
-        before = objective(problem, here, stated, sizes)
-        for _ in range(_HALVINGS):
-            there = linear(goal)
-            after = objective(problem, there, stated, sizes)
+    linearization = linear(first)
+    covariances = None
+    for step in range(_MAX_STEPS):
+        goal, covariances = best_positions(
+            problem, linearization, stated, covariances if step >= _ESTIMATED_STEPS else None
+        )
+        before = objective(problem, linearization, stated, covariances)
+        for _ in range(_MAX_HALVINGS):
+            trial = linear(goal)
+            after = objective(problem, trial, stated, covariances)
             if after <= before:
                 break
-            goal = 0.5 * (goal + here.z)
+            goal = 0.5 * (goal + linearization.z)
         if after <= before:
-            here = there
-        if before - after < _ENOUGH and step + 1 >= _ESTIMATED:
+            linearization = trial
+        if before - after < _MIN_DECREASE and step + 1 >= _ESTIMATED_STEPS:
             break
-    return here
+    return linearization
 
 
 def _reported(
-    fit: Calibration, problem: CalibrationProblem, here: Linear, found: Joint, stated: ErrorStatement
+    fit: Calibration,
+    problem: CalibrationProblem,
+    linearization: Linear,
+    distribution: JointPosterior,
+    stated: ErrorStatement,
 ) -> Calibration:
     """The calibration with the estimates of the joint distribution."""
-    z = np.where(here.z < AT_BOUND, 0.0, np.where(here.z > 1.0 - AT_BOUND, 1.0, here.z))
+    z = np.where(
+        linearization.z < AT_BOUND, 0.0, np.where(linearization.z > 1.0 - AT_BOUND, 1.0, linearization.z)
+    )
     x = problem.values(z[None])[0]
     tail = 0.5 * (1.0 - fit.confidence)
-    low, high = np.quantile(found.widened(), [tail, 1.0 - tail], axis=0)
+    low, high = np.quantile(distribution.widened(), [tail, 1.0 - tail], axis=0)
     # An estimate on the end of its range is in no interval with equal tails.
     low, high = np.minimum(low, z), np.maximum(high, z)
-    covariance = found.covariance[: z.size, : z.size]
+    covariance = distribution.covariance[: z.size, : z.size]
     sd = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(sd, sd)
-    residuals = np.where(problem.mask, here.simulated - np.where(problem.mask, problem.measured, 0.0), 0.0)
+    residuals = np.where(
+        problem.mask, linearization.simulated - np.where(problem.mask, problem.measured, 0.0), 0.0
+    )
     uncertainty = replace(
         fit.uncertainty, low=low, high=high, sd=sd, correlation=correlation, covariance=covariance,
-        error=tuple(found.sizes.spread.tolist()),
+        error=tuple(distribution.error_covariances.spread.tolist()),
     )  # fmt: skip
-    of_sensors = sensor_columns(problem, stated.sensors, here.simulated, stated.step)[0]
-    known = np.concatenate([of_sensors, here.further], axis=2)
-    columns = found.effects(here.jacobian, known, stated.hours)
-    expected, _ = found.predicted(columns, here.z)
-    left = np.where(problem.mask, residuals + expected, 0.0)
+    of_sensors = sensor_columns(problem, stated.sensors, linearization.simulated, stated.step)[0]
+    error_columns = np.concatenate([of_sensors, linearization.further], axis=2)
+    columns = distribution.effects(linearization.jacobian, error_columns, stated.hours)
+    expected, _ = distribution.predicted(columns, linearization.z)
+    remaining = np.where(problem.mask, residuals + expected, 0.0)
     cost = Cost(problem, fit.cost_name)
     each = cost.of_sensors(residuals[None])
     return replace(
@@ -149,16 +171,16 @@ def _reported(
         of_sensors=each[0],
         residuals=np.where(problem.mask, residuals, np.nan),
         uncertainty=uncertainty,
-        on_bound=on_bounds(problem, z, _outward(z, found), uncertainty),
-        warnings=tuple(warnings(problem, z, uncertainty, left, here.jacobian)),
+        on_bound=on_bounds(problem, z, _outward(z, distribution), uncertainty),
+        warnings=tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian)),
         uncertainty_method=METHOD,
         reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
     )
 
 
-def _outward(z: Floats, found: Joint) -> Floats:
+def _outward(z: Floats, distribution: JointPosterior) -> Floats:
     """Sign of the derivative of the cost by positions (P,) on an end of their range, 0 if not significant."""
     from scipy import stats
 
-    significant = found.beyond > float(stats.chi2.ppf(_CONFIDENCE, 1))
+    significant = distribution.beyond > float(stats.chi2.ppf(_CONFIDENCE, 1))
     return np.where(significant, np.where(z < 0.5, 1.0, -1.0), 0.0)

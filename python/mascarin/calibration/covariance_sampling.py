@@ -41,17 +41,17 @@ _FREEDOM: Final = 2.0
 #: Moves before the sample, moves of the sample, and every which of them is kept.
 _BURN_IN: Final = 100
 _MOVES: Final = 300
-_EVERY: Final = 3
+_THINNING: Final = 3
 _SEED: Final = 21
 
 
 @dataclass(frozen=True, eq=False)
-class SizeSample:
+class CovarianceSample:
     """Sizes of the errors, and the coefficients of the shared effects given each of them.
 
     Attributes
     ----------
-    sizes : tuple of Discrepancy, length K
+    covariances : tuple of Discrepancy, length K
         Drawn sizes.
     mean : ndarray, shape (K, q)
         Mean of the coefficients given them: known effects in standard deviations of their priors [-], then
@@ -60,35 +60,42 @@ class SizeSample:
         Their covariance.
     """
 
-    sizes: tuple[Discrepancy, ...]
+    covariances: tuple[Discrepancy, ...]
     mean: Floats
     covariance: Floats
 
     @classmethod
-    def known(cls, data: DayData, sizes: Discrepancy) -> SizeSample:
+    def of_covariances(cls, data: DayData, covariances: Discrepancy) -> CovarianceSample:
         """Sizes that are known."""
         from scipy import linalg
 
-        gaussian = data.gaussian(sizes)
-        parts = [np.eye(data.known.shape[2]), np.kron(np.eye(data.basis.shape[2]), root_of(sizes.hour))]
-        if sizes.alike:
-            parts.append(root_of(sizes.alike * sizes.day))
+        gaussian = data.gaussian(covariances)
+        parts = [
+            np.eye(data.effects.shape[2]),
+            np.kron(np.eye(data.basis.shape[2]), root_of(covariances.hour)),
+        ]
+        if covariances.alike:
+            parts.append(root_of(covariances.alike * covariances.day))
         turn = linalg.block_diag(*parts)
         mean = turn @ gaussian.coefficients(data.error)
-        return cls((sizes,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
+        return cls((covariances,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
 
     @property
     def typical(self) -> Discrepancy:
         """Sizes with the mean of every variance."""
-        found = {name: np.mean([getattr(one, name) for one in self.sizes], axis=0) for name in _PARTS}
-        hours = [one.correlation_hours for one in self.sizes]
-        return replace(self.sizes[0], **found, correlation_hours=max(set(hours), key=hours.count))
+        mean_of = {
+            name: np.mean([getattr(draw, name) for draw in self.covariances], axis=0) for name in _PARTS
+        }
+        hours = [draw.correlation_hours for draw in self.covariances]
+        return replace(self.covariances[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
 
 
 _PARTS: Final = ("hour", "day", "drift", "white")
 
 
-def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats) -> SizeSample:
+def sample_covariances(
+    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats
+) -> CovarianceSample:
     """Draw sizes of the errors, the same numbers in every call.
 
     Parameters
@@ -104,7 +111,7 @@ def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Flo
 
     Returns
     -------
-    SizeSample
+    CovarianceSample
 
     Examples
     --------
@@ -123,15 +130,15 @@ def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Flo
     True
     """
     chain = _Chain(data, first, scale, limit)
-    sizes, mean, covariance = [], [], []
+    covariances, mean, covariance = [], [], []
     for move in range(_BURN_IN + _MOVES):
-        now = chain.sizes
+        now = chain.covariances
         middle, root = chain.move()
-        if move >= _BURN_IN and (move - _BURN_IN) % _EVERY == 0:
-            sizes.append(now)
+        if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
+            covariances.append(now)
             mean.append(middle)
             covariance.append(root @ root.T)
-    return SizeSample(tuple(sizes), np.array(mean), np.array(covariance))
+    return CovarianceSample(tuple(covariances), np.array(mean), np.array(covariance))
 
 
 class _Chain:
@@ -141,19 +148,19 @@ class _Chain:
     """
 
     def __init__(self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats) -> None:
-        self.sizes, self.scale, self.limit = first, scale, limit
+        self.covariances, self.scale, self.limit = first, scale, limit
         self.rng = np.random.default_rng(_SEED)
         grid, self.sensors = data.grid, data.sensors
         self.shape = (grid.days, grid.slots, self.sensors)
         self.there = data.present.reshape(self.shape)
         self.value = np.where(self.there, data.error.reshape(self.shape), 0.0)
-        self.known = data.known.shape[2]
+        self.effect_count = data.effects.shape[2]
         self.functions = data.basis.shape[2]
         eye = np.eye(self.sensors)
         level = np.broadcast_to(
             np.tile(eye, (grid.slots, 1)), (grid.days, grid.slots * self.sensors, self.sensors)
         )
-        columns = [data.known, data.repeating(eye), *([level] if first.alike else [])]
+        columns = [data.effects, data.repeating(eye), *([level] if first.alike else [])]
         self.columns = np.concatenate(columns, axis=2).reshape(*self.shape, -1)
         # Eigenvectors of the correlation within a day, and the columns in them, by correlation time.
         self.kernels = {h: drift_kernel(grid, h) for h in CORRELATION_HOURS}
@@ -170,33 +177,35 @@ class _Chain:
         ndarray, shape (q, q)
             A root of their covariance.
         """
-        sizes = self.sizes
-        value, vector = self.spectra[sizes.correlation_hours]
-        noise = np.sqrt(sizes.white)
-        strength, turn = np.linalg.eigh(sizes.drift / np.outer(noise, noise))
+        covariances = self.covariances
+        value, vector = self.spectra[covariances.correlation_hours]
+        noise = np.sqrt(covariances.white)
+        strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
         to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
         slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
         weight = 1.0 / (1.0 + slow_part)
-        columns = np.einsum("js,dhsq->dhjq", to_sensor, self.turned[sizes.correlation_hours], optimize=True)
+        columns = np.einsum(
+            "js,dhsq->dhjq", to_sensor, self.turned[covariances.correlation_hours], optimize=True
+        )
         values = _along_slots(vector.T, self.value) @ to_sensor.T
         ones = vector.T.sum(axis=1)[:, None, None] * to_sensor[None]  # (H, S, S): a constant of a day
-        middle, root, days = self._shared(sizes, columns, values, ones, weight)
+        middle, root, days = self._shared(covariances, columns, values, ones, weight)
         shared = middle + root @ self.rng.standard_normal(middle.size)
-        rest = values - columns @ shared
-        of_day = days(rest)
-        rest = rest - np.einsum("hjs,ds->dhj", ones, of_day, optimize=True)
-        drawn = self.rng.standard_normal(rest.shape) * np.sqrt(slow_part * weight)
-        slow = slow_part * weight * rest + drawn
+        remaining = values - columns @ shared
+        of_day = days(remaining)
+        remaining = remaining - np.einsum("hjs,ds->dhj", ones, of_day, optimize=True)
+        noise_of_slow = self.rng.standard_normal(remaining.shape) * np.sqrt(slow_part * weight)
+        slow = slow_part * weight * remaining + noise_of_slow
         back = turn * noise[:, None]
         slow = _along_slots(vector, slow) @ back.T
-        rest = _along_slots(vector, rest) @ back.T
-        white = np.where(self.there, rest - slow, self.rng.standard_normal(rest.shape) * noise)
-        self.value = np.where(self.there, self.value, self.value - rest + slow + white)
+        remaining = _along_slots(vector, remaining) @ back.T
+        white = np.where(self.there, remaining - slow, self.rng.standard_normal(remaining.shape) * noise)
+        self.value = np.where(self.there, self.value, self.value - remaining + slow + white)
         self._draw_sizes(shared, of_day, slow, white)
         return middle, root
 
     def _shared(
-        self, sizes: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
+        self, covariances: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
     ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
         """Mean and root of the covariance of the coefficients, and a function that draws errors of days.
 
@@ -204,55 +213,57 @@ class _Chain:
         precision `weight` (H, S).
         """
         precision = np.zeros((columns.shape[3],) * 2)
-        at = self.known + self.functions * self.sensors
-        precision[: self.known, : self.known] = np.eye(self.known)
-        precision[self.known : at, self.known : at] = np.kron(
-            np.eye(self.functions), np.linalg.inv(sizes.hour)
+        end = self.effect_count + self.functions * self.sensors
+        precision[: self.effect_count, : self.effect_count] = np.eye(self.effect_count)
+        precision[self.effect_count : end, self.effect_count : end] = np.kron(
+            np.eye(self.functions), np.linalg.inv(covariances.hour)
         )
-        if sizes.alike:
-            precision[at:, at:] = np.linalg.inv(sizes.alike * sizes.day)
+        if covariances.alike:
+            precision[end:, end:] = np.linalg.inv(covariances.alike * covariances.day)
         flat = columns.reshape(-1, columns.shape[3])
         heavy = (columns * weight[None, :, :, None]).reshape(flat.shape)
         precision += flat.T @ heavy
         right = heavy.T @ values.ravel()
         # Constants of days: their own precision is the same on all days.
-        one = (ones * weight[:, :, None]).reshape(-1, self.sensors)
-        own = np.linalg.inv(np.linalg.inv(sizes.day) + ones.reshape(-1, self.sensors).T @ one)
+        weighted_ones = (ones * weight[:, :, None]).reshape(-1, self.sensors)
+        day_covariance = np.linalg.inv(
+            np.linalg.inv(covariances.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
+        )
         with_columns = (
-            np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ one
+            np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ weighted_ones
         )  # (D, q, S)
-        with_values = values.reshape(len(values), -1) @ one
+        with_values = values.reshape(len(values), -1) @ weighted_ones
         tall = np.swapaxes(with_columns, 1, 2).reshape(-1, columns.shape[3])  # (D * S, q)
-        lifted = (own @ np.swapaxes(with_columns, 1, 2)).reshape(tall.shape)
+        lifted = (day_covariance @ np.swapaxes(with_columns, 1, 2)).reshape(tall.shape)
         precision -= tall.T @ lifted
         right -= lifted.T @ with_values.ravel()
         lower = np.linalg.cholesky(0.5 * (precision + precision.T))
         root = np.linalg.inv(lower).T
         middle = root @ (root.T @ right)
-        spread = root_of(np.asarray(own, dtype=np.float64))
+        spread = root_of(np.asarray(day_covariance, dtype=np.float64))
 
-        def days(rest: Floats) -> Floats:
-            found = rest.reshape(len(rest), -1) @ one @ own
-            return np.asarray(found + self.rng.standard_normal(found.shape) @ spread.T)
+        def days(residual: Floats) -> Floats:
+            day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
+            return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
 
         return middle, root, days
 
     def _draw_sizes(self, shared: Floats, of_day: Floats, slow: Floats, white: Floats) -> None:
-        sizes, at = self.sizes, self.known + self.functions * self.sensors
-        repeating = shared[self.known : at].reshape(self.functions, self.sensors)
+        covariances, end = self.covariances, self.effect_count + self.functions * self.sensors
+        repeating = shared[self.effect_count : end].reshape(self.functions, self.sensors)
         of_days, days = of_day.T @ of_day, len(of_day)
-        if sizes.alike:
-            level = shared[at:]
-            of_days, days = of_days + np.outer(level, level) / sizes.alike, days + 1
+        if covariances.alike:
+            level = shared[end:]
+            of_days, days = of_days + np.outer(level, level) / covariances.alike, days + 1
         hours = self._correlation(slow)
         value, vector = self.spectra[hours]
         turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]
         squares = np.einsum("dhs,dht->st", turned, turned, optimize=True)
-        self.sizes = replace(
-            sizes,
-            hour=self._covariance(sizes.hour, repeating.T @ repeating, self.functions),
-            day=self._covariance(sizes.day, of_days, days),
-            drift=self._covariance(sizes.drift, squares, slow.shape[0] * slow.shape[1]),
+        self.covariances = replace(
+            covariances,
+            hour=self._covariance(covariances.hour, repeating.T @ repeating, self.functions),
+            day=self._covariance(covariances.day, of_days, days),
+            drift=self._covariance(covariances.drift, squares, slow.shape[0] * slow.shape[1]),
             white=self._variance(white),
             correlation_hours=hours,
         )
@@ -262,22 +273,22 @@ class _Chain:
         rate = _FREEDOM * np.diag(np.linalg.inv(now)) + self.scale**-2
         inverse = self.rng.gamma(0.5 * (_FREEDOM + len(now)), 1.0, len(now)) / rate
         total = squares + 2.0 * _FREEDOM * np.diag(inverse)
-        found = inverse_wishart(self.rng, total, _FREEDOM + len(now) - 1.0 + count)
-        shrink = np.minimum(1.0, self.limit / np.sqrt(np.diag(found)))
-        return np.asarray(found * np.outer(shrink, shrink))
+        draw = inverse_wishart(self.rng, total, _FREEDOM + len(now) - 1.0 + count)
+        shrink = np.minimum(1.0, self.limit / np.sqrt(np.diag(draw)))
+        return np.asarray(draw * np.outer(shrink, shrink))
 
     def _variance(self, white: Floats) -> Floats:
         """Draw the variances of independent errors."""
-        rate = _FREEDOM / self.sizes.white + self.scale**-2
+        rate = _FREEDOM / self.covariances.white + self.scale**-2
         inverse = self.rng.gamma(0.5 * (_FREEDOM + 1.0), 1.0, rate.size) / rate
         count = white.shape[0] * white.shape[1]
         total = 0.5 * np.sum(white**2, axis=(0, 1)) + _FREEDOM * inverse
-        drawn = total / self.rng.gamma(0.5 * (_FREEDOM + count), 1.0, rate.size)
-        return np.asarray(np.minimum(drawn, self.limit**2))
+        draw = total / self.rng.gamma(0.5 * (_FREEDOM + count), 1.0, rate.size)
+        return np.asarray(np.minimum(draw, self.limit**2))
 
     def _correlation(self, slow: Floats) -> float:
         """Draw the correlation time given the slow errors."""
-        inverse = np.linalg.inv(self.sizes.drift)
+        inverse = np.linalg.inv(self.covariances.drift)
         logs = []
         for value, vector in self.spectra.values():
             turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]
@@ -314,8 +325,8 @@ def inverse_wishart(rng: np.random.Generator, total: Floats, freedom: float) -> 
     lower = np.tril(rng.standard_normal((size, size)), -1)
     lower[np.diag_indices(size)] = np.sqrt(rng.chisquare(freedom - np.arange(size)))
     part = np.linalg.solve(lower, np.linalg.cholesky(0.5 * (total + total.T)).T)
-    found = part.T @ part
-    return np.asarray(0.5 * (found + found.T))
+    draw = part.T @ part
+    return np.asarray(0.5 * (draw + draw.T))
 
 
 def _along_slots(matrix: Floats, values: Floats) -> Floats:

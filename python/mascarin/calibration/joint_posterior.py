@@ -25,6 +25,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.calibration.covariance_sampling import CovarianceSample, sample_covariances
 from mascarin.calibration.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.discrepancy import (
     DayData,
@@ -34,8 +35,7 @@ from mascarin.calibration.discrepancy import (
 )
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.size_sample import SizeSample, sample_sizes
-from mascarin.calibration.truncated import within_bounds
+from mascarin.calibration.truncated_normal import within_bounds
 from mascarin.calibration.uncertainty import AT_BOUND
 
 Floats = NDArray[np.float64]
@@ -96,7 +96,7 @@ class ErrorStatement:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class JointPosterior:
     """Parameters and errors given the measurements.
 
     Attributes
@@ -110,7 +110,7 @@ class Joint:
         Of the coefficients, with the doubt about the sizes of the errors.
     sample : ndarray, shape (n, P)
         Sample of the positions. [-]
-    sizes : Discrepancy
+    error_covariances : Discrepancy
         Sizes of the errors of the model: the mean of every variance.
     names : tuple of str
         Of the errors of sensors.
@@ -129,7 +129,7 @@ class Joint:
     mean: Floats
     covariance: Floats
     sample: Floats
-    sizes: Discrepancy
+    error_covariances: Discrepancy
     names: tuple[str, ...]
     by_day: Floats
     density: float
@@ -155,9 +155,9 @@ class Joint:
 
         factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
         count = self.sample.shape[1]
-        own = 1.0 / np.diag(self.covariance)[:count]
-        prior = np.minimum(1.0 / self.prior**2, own)
-        wider = np.sqrt(own / (prior + (own - prior) / factor**2))
+        curvature = 1.0 / np.diag(self.covariance)[:count]
+        prior = np.minimum(1.0 / self.prior**2, curvature)
+        wider = np.sqrt(curvature / (prior + (curvature - prior) / factor**2))
         middle = np.median(self.sample, axis=0)
         return np.asarray(np.clip(middle + wider * (self.sample - middle), 0.0, 1.0))
 
@@ -183,14 +183,14 @@ class Joint:
         variance = np.einsum("tsq,qr,tsr->ts", columns, self.covariance, columns, optimize=True)
         return columns @ about, np.maximum(variance, 0.0)
 
-    def effects(self, jacobian: Floats, known: Floats, hours: Floats) -> Floats:
+    def effects(self, jacobian: Floats, effects_of_errors: Floats, hours: Floats) -> Floats:
         """Columns of all coefficients at any instants.
 
         Parameters
         ----------
         jacobian : ndarray, shape (n, S, P)
             Derivative of the series by the positions. [unit]
-        known : ndarray, shape (n, S, k)
+        effects_of_errors : ndarray, shape (n, S, k)
             Effects of the sensors. [unit]
         hours : ndarray, shape (n,)
             Local time. [h]
@@ -202,15 +202,15 @@ class Joint:
         sensors = jacobian.shape[1]
         repeating = hour_basis(hours)[:, None, :, None] * np.eye(sensors)[None, :, None, :]
         shape = (*jacobian.shape[:2], -1)
-        return np.concatenate([jacobian, known, repeating.reshape(shape)], axis=2)
+        return np.concatenate([jacobian, effects_of_errors, repeating.reshape(shape)], axis=2)
 
 
-def joint(
+def joint_posterior(
     problem: CalibrationProblem,
     linear: Linear,
     stated: ErrorStatement,
-    sizes: Discrepancy | None = None,
-) -> Joint:
+    covariances: Discrepancy | None = None,
+) -> JointPosterior:
     """Estimate parameters and errors together from one linearization.
 
     Parameters
@@ -221,25 +221,25 @@ def joint(
         The model.
     stated : ErrorStatement
         What is known of the errors.
-    sizes : Discrepancy, optional
+    covariances : Discrepancy, optional
         Sizes of the errors of the model; drawn from their distribution when absent.
 
     Returns
     -------
-    Joint
+    JointPosterior
     """
-    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, sizes)
-    if sizes is None:
-        drawn = sample_sizes(data, most_probable, scale=_scale(problem), limit=stated.limit)
+    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, covariances)
+    if covariances is None:
+        draws = sample_covariances(data, most_probable, scale=_scale(problem), limit=stated.limit)
     else:
-        drawn = SizeSample.known(data, sizes)
-    count, known = len(problem.parameters), data.known.shape[2]
-    kept = known + data.basis.shape[2] * data.sensors
+        draws = CovarianceSample.of_covariances(data, covariances)
+    count, stated_count = len(problem.parameters), data.effects.shape[2]
+    shared_count = stated_count + data.basis.shape[2] * data.sensors
     # The level that the days of the identification have in common says nothing of other days.
-    mean, covariance = drawn.mean[:, :kept].copy(), drawn.covariance[:, :kept, :kept]
+    mean, covariance = draws.mean[:, :shared_count].copy(), draws.covariance[:, :shared_count, :shared_count]
     mean[:, :count] *= scale[:count]
     mean[:, :count] += _priors(problem)[0]
-    covariance = covariance * np.outer(scale[:kept], scale[:kept])
+    covariance = covariance * np.outer(scale[:shared_count], scale[:shared_count])
     sample = within_bounds(mean[:, :count], covariance[:, :count, :count], np.zeros(count), np.ones(count))
     middle = mean.mean(axis=0)
     away = mean - middle
@@ -247,12 +247,12 @@ def joint(
     bounded_mean, bounded = _bounded(middle, together, sample)
     names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
     z, beyond = _most_probable(gaussian, likely, scale, count)
-    return Joint(
+    return JointPosterior(
         z,
         bounded_mean,
         bounded,
         sample,
-        drawn.typical,
+        draws.typical,
         names,
         gaussian.left_out(data.error),
         gaussian.log_density(data.error),
@@ -262,9 +262,12 @@ def joint(
 
 
 def best_positions(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None = None
+    problem: CalibrationProblem,
+    linear: Linear,
+    stated: ErrorStatement,
+    covariances: Discrepancy | None = None,
 ) -> tuple[Floats, Discrepancy]:
-    """Find the most probable positions alone, with the sizes of the errors; arguments as for `joint`.
+    """Find the most probable positions alone, with the covariances of the errors.
 
     Returns
     -------
@@ -273,38 +276,38 @@ def best_positions(
     Discrepancy
         Sizes of the errors of the model.
     """
-    gaussian, _, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
-    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], sizes
+    gaussian, _, mean, scale, covariances = _estimated(problem, linear, stated, covariances)
+    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], covariances
 
 
 def _estimated(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy | None
 ) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
     """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
     center, spread = _priors(problem)
     data = _data(problem, linear, stated, center, spread)
-    if sizes is None:
-        sizes = estimate_discrepancy(
+    if covariances is None:
+        covariances = estimate_discrepancy(
             data, scale=0.25 * _scale(problem), limit=stated.limit, persistence=stated.persistence
         )
-    gaussian = data.gaussian(sizes)
+    gaussian = data.gaussian(covariances)
     unit = gaussian.coefficients(data.error)
     scale = np.ones(unit.size)
     scale[: center.size] = spread
     mean = unit * scale
     mean[: center.size] += center
-    return gaussian, data, mean, scale, sizes
+    return gaussian, data, mean, scale, covariances
 
 
 def objective(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy
 ) -> float:
     """Compute minus the log density of parameters and measurements at the positions of a linearization.
 
     Parameters
     ----------
-    problem, linear, stated, sizes
-        As for `joint`; only the series of the linearization is used.
+    problem, linear, stated, covariances
+        As for `joint_posterior`; only the series of the linearization is used.
 
     Returns
     -------
@@ -315,26 +318,26 @@ def objective(
     empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
     data = _data(problem, empty, stated, center[:0], spread[:0])
     prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
-    return prior - data.gaussian(sizes).log_density(data.error)
+    return prior - data.gaussian(covariances).log_density(data.error)
 
 
 def _data(
     problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, center: Floats, spread: Floats
 ) -> DayData:
-    mask, count = problem.mask, center.size
+    mask, parameter_count = problem.mask, center.size
     error = np.where(mask, problem.measured, 0.0) - np.where(mask, linear.simulated, 0.0)
-    shift = linear.jacobian @ (linear.z[:count] - center) if count else 0.0
+    shift = linear.jacobian @ (linear.z[:parameter_count] - center) if parameter_count else 0.0
     of_sensors, _ = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)
-    known = np.concatenate([linear.jacobian * spread, of_sensors, linear.further], axis=2)
+    stated_columns = np.concatenate([linear.jacobian * spread, of_sensors, linear.further], axis=2)
     grid = DayGrid.of(stated.hours, interval=stated.step / 3600.0, sensors=mask.shape[1])
     basis = np.repeat(hour_basis(stated.hours)[:, None, :], mask.shape[1], axis=1)
-    mean, found = grid.means(error + shift, mask)
+    mean, count_of_slot = grid.means(error + shift, mask)
     return DayData(
         grid,
         mean,
-        grid.means(known, mask)[0],
+        grid.means(stated_columns, mask)[0],
         grid.means(basis, mask)[0],
-        found > 0,
+        count_of_slot > 0,
         grid.within(error, mask),
     )
 
@@ -356,7 +359,7 @@ def _scale(problem: CalibrationProblem) -> Floats:
 
 
 def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> tuple[Floats, Floats]:
-    """Positions (P,) of the largest density within the ranges, and `Joint.beyond`."""
+    """Positions (P,) of the largest density within the ranges, and `JointPosterior.beyond`."""
     from scipy import optimize
 
     precision = gaussian.precision / np.outer(scale, scale)
@@ -368,8 +371,8 @@ def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: in
         ends = low.copy(), high.copy()
         if free is not None:
             ends[0][free], ends[1][free] = -math.inf, math.inf
-        found = optimize.lsq_linear(root, root @ mean, bounds=ends, method="bvls")
-        return found.x, 2.0 * float(found.cost)
+        solution = optimize.lsq_linear(root, root @ mean, bounds=ends, method="bvls")
+        return solution.x, 2.0 * float(solution.cost)
 
     x, deviance = best()
     z = np.asarray(np.clip(x[:count], 0.0, 1.0))
@@ -381,14 +384,14 @@ def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: in
 def _bounded(mean: Floats, covariance: Floats, sample: Floats) -> tuple[Floats, Floats]:
     """Mean and covariance of all coefficients when the parameters have those of a sample within bounds."""
     count = sample.shape[1]
-    middle, own = sample.mean(axis=0), np.atleast_2d(np.cov(sample, rowvar=False))
+    middle, sample_covariance = sample.mean(axis=0), np.atleast_2d(np.cov(sample, rowvar=False))
     gain = np.linalg.solve(covariance[:count, :count], covariance[:count, count:]).T
-    found_mean, found = mean.copy(), covariance.copy()
-    found_mean[:count] = middle
-    found_mean[count:] += gain @ (middle - mean[:count])
-    change = own - covariance[:count, :count]
-    found[:count, :count] = own
-    found[count:, :count] = gain @ own
-    found[:count, count:] = found[count:, :count].T
-    found[count:, count:] += gain @ change @ gain.T
-    return found_mean, found
+    conditional_mean, conditional = mean.copy(), covariance.copy()
+    conditional_mean[:count] = middle
+    conditional_mean[count:] += gain @ (middle - mean[:count])
+    change = sample_covariance - covariance[:count, :count]
+    conditional[:count, :count] = sample_covariance
+    conditional[count:, :count] = gain @ sample_covariance
+    conditional[:count, count:] = conditional[count:, :count].T
+    conditional[count:, count:] += gain @ change @ gain.T
+    return conditional_mean, conditional

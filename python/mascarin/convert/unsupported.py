@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
 
 #: Beginnings of classes without effect on heat, with the reason.
 _IDLE: Final = {
@@ -99,16 +99,16 @@ _SYSTEM_GROUPS: Final = (
 )  # fmt: skip
 
 
-def note_unread(work: Work) -> None:
+def note_unsupported(context: Context) -> None:
     """Note every object that was not read.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     """
-    _beside(work)
-    for kind, items in work.model.unread():
+    _beside(context)
+    for kind, items in context.model.unread():
         low = kind.casefold()
         missing = _longest(low, _MISSING)
         idle = _longest(low, _IDLE)
@@ -116,39 +116,41 @@ def note_unread(work: Work) -> None:
             if _MISSING[missing] == "read":
                 continue
             for item in items:
-                work.findings.left_out(item, "not carried over", _MISSING[missing])
+                context.findings.left_out(item, "not carried over", _MISSING[missing])
         elif idle:
             if _IDLE[idle] != "read":
-                work.findings.no_effect(items, "not needed", _IDLE[idle])
+                context.findings.no_effect(items, "not needed", _IDLE[idle])
         elif low.startswith(_NAMED):
-            work.findings.no_effect(items, "not needed", "nothing that is carried over uses it")
-        elif any(word in work.model.groups.get(kind, "").casefold() for word in _SYSTEM_GROUPS):
+            context.findings.no_effect(items, "not needed", "nothing that is carried over uses it")
+        elif any(word in context.model.groups.get(kind, "").casefold() for word in _SYSTEM_GROUPS):
             for item in items:
-                work.findings.left_out(item, "not carried over", "part of a system: the loads here are ideal")
+                context.findings.left_out(
+                    item, "not carried over", "part of a system: the loads here are ideal"
+                )
         else:
             for item in items:
-                work.findings.left_out(item, "not carried over", "its effect is missing in the results")
+                context.findings.left_out(item, "not carried over", "its effect is missing in the results")
 
 
 def _longest(kind: str, table: dict[str, str]) -> str:
     return max((start for start in table if kind.startswith(start)), key=len, default="")
 
 
-def _beside(work: Work) -> None:
+def _beside(context: Context) -> None:
     """What is read, and acts on more than what is carried over."""
-    for item in work.model.of("RunPeriodControl:SpecialDays"):
+    for item in context.model.of("RunPeriodControl:SpecialDays"):
         word = item.word("special_day_type")
         if word not in ("holiday", ""):
-            work.findings.approximated(item, f"special days of type {word}", "they are days as all others")
-    heights = work.model.one("Site:HeightVariation")
+            context.findings.approximated(item, f"special days of type {word}", "they are days as all others")
+    heights = context.model.one("Site:HeightVariation")
     if heights is not None and heights.fields.get("air_temperature_gradient_coefficient"):
-        work.findings.approximated(
+        context.findings.approximated(
             heights, "air that is colder high up", "the same air at all heights: 0.065 K for 10 m"
         )
-    days = work.model.one("RunPeriod")
+    days = context.model.one("RunPeriod")
     if days is not None:
         for key in ("use_weather_file_daylight_saving_period", "use_weather_file_holidays_and_special_days"):
             if days.word(key) == "yes" and days.fields.get(key):
-                work.findings.approximated(
+                context.findings.approximated(
                     days, key.replace("_", " "), "those of the weather file have no effect, if it has any"
                 )

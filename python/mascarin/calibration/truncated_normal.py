@@ -12,8 +12,8 @@ Floats = NDArray[np.float64]
 #: Chains side by side, moves of each before they are used, and moves that are kept, every fifth of them.
 _CHAINS: Final = 100
 _BURN_IN: Final = 60
-_KEPT: Final = 200
-_EVERY: Final = 5
+_SAMPLED_MOVES: Final = 200
+_THINNING: Final = 5
 _SEED: Final = 20
 
 
@@ -59,25 +59,28 @@ def within_bounds(mean: Floats, covariance: Floats, low: Floats, high: Floats) -
     covariance = np.tile(covariance.reshape(-1, size, size), (repeats, 1, 1))
     precision = np.linalg.inv(covariance)
     precision = 0.5 * (precision + np.swapaxes(precision, 1, 2))
-    own = 1.0 / np.einsum("kii->ki", precision)
-    sd = np.sqrt(own)
+    conditional_variance = 1.0 / np.einsum("kii->ki", precision)
+    sd = np.sqrt(conditional_variance)
     ridge = 1e-12 * np.einsum("kii->ki", covariance)[:, :, None] * np.eye(size)
     root = np.linalg.cholesky(covariance + ridge)
     x = np.clip(mean + np.einsum("kij,kj->ki", root, rng.standard_normal(mean.shape)), low, high)
-    kept = []
-    for move in range(_BURN_IN + _KEPT):
+    states = []
+    for move in range(_BURN_IN + _SAMPLED_MOVES):
         uniform = rng.random((size, len(mean)))
         for i in range(size):
-            away = np.einsum("kj,kj->k", x - mean, precision[:, i]) - (x[:, i] - mean[:, i]) / own[:, i]
-            middle = mean[:, i] - own[:, i] * away
+            away = (
+                np.einsum("kj,kj->k", x - mean, precision[:, i])
+                - (x[:, i] - mean[:, i]) / conditional_variance[:, i]
+            )
+            middle = mean[:, i] - conditional_variance[:, i] * away
             first, last = (low[i] - middle) / sd[:, i], (high[i] - middle) / sd[:, i]
             # The tail in which both ends are small numbers, so that none is rounded to one.
             flip = first > 0.0
             bottom, top = np.where(flip, -last, first), np.where(flip, -first, last)
             lowest, highest = ndtr(bottom), ndtr(top)
-            drawn = ndtri(np.clip(lowest + uniform[i] * (highest - lowest), 1e-300, 1.0 - 1e-16))
-            drawn = np.clip(np.where(flip, -drawn, drawn), first, last)
-            x[:, i] = np.clip(middle + sd[:, i] * drawn, low[i], high[i])
-        if move >= _BURN_IN and (move - _BURN_IN) % _EVERY == 0:
-            kept.append(x.copy())
-    return np.concatenate(kept)
+            draw = ndtri(np.clip(lowest + uniform[i] * (highest - lowest), 1e-300, 1.0 - 1e-16))
+            draw = np.clip(np.where(flip, -draw, draw), first, last)
+            x[:, i] = np.clip(middle + sd[:, i] * draw, low[i], high[i])
+        if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
+            states.append(x.copy())
+    return np.concatenate(states)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mascarin.convert.findings import Findings
-from mascarin.convert.source import Item, Model
+from mascarin.convert.idf import IdfModel, IdfObject
 
 Section = dict[str, Any]
 
@@ -18,23 +18,23 @@ class Names:
 
     Attributes
     ----------
-    given : dict of (str, str) to str
+    by_original : dict of (str, str) to str
         Name by section and name in the file, in small letters.
     original : dict of str to dict of str to str
         Name by name in the file, by section.
     """
 
-    given: dict[tuple[str, str], str] = field(default_factory=dict)
+    by_original: dict[tuple[str, str], str] = field(default_factory=dict)
     original: dict[str, dict[str, str]] = field(default_factory=dict)
     taken: set[tuple[str, str]] = field(default_factory=set)
 
     def of(self, section: str, name: str) -> str:
         """Name of a part: letters, digits and ``_``; the same for the same name without regard to case."""
         key = (section, name.strip().casefold())
-        if key not in self.given:
-            self.given[key] = self.new(section, name)
-            self.original.setdefault(section, {})[name.strip()] = self.given[key]
-        return self.given[key]
+        if key not in self.by_original:
+            self.by_original[key] = self.new(section, name)
+            self.original.setdefault(section, {})[name.strip()] = self.by_original[key]
+        return self.by_original[key]
 
     def new(self, section: str, name: str) -> str:
         """A name like this one that no other part has."""
@@ -42,21 +42,21 @@ class Names:
         room = "parts" if section in ("zones", "surfaces", "windows") else section
         plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
         plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
-        found, count = plain, 1
-        while (room, found.casefold()) in self.taken:
+        candidate, count = plain, 1
+        while (room, candidate.casefold()) in self.taken:
             count += 1
-            found = f"{plain}_{count}"
-        self.taken.add((room, found.casefold()))
-        return found
+            candidate = f"{plain}_{count}"
+        self.taken.add((room, candidate.casefold()))
+        return candidate
 
 
 @dataclass
-class Work:
+class Context:
     """A conversion in progress.
 
     Attributes
     ----------
-    model : Model
+    model : IdfModel
         The file.
     findings : Findings
         What is not carried over as it is.
@@ -66,7 +66,7 @@ class Work:
         The description, as far as it is made.
     """
 
-    model: Model
+    model: IdfModel
     findings: Findings = field(default_factory=Findings)
     names: Names = field(default_factory=Names)
     sections: dict[str, Section] = field(default_factory=dict)
@@ -75,11 +75,11 @@ class Work:
         """A section of the description."""
         return self.sections.setdefault(name, {})
 
-    def zone_items(self) -> list[Item]:
+    def zone_items(self) -> list[IdfObject]:
         """Zones of the file."""
         return self.model.of("Zone")
 
-    def zones_of(self, user: Item, *keys: str) -> list[Item]:
+    def zones_of(self, user: IdfObject, *keys: str) -> list[IdfObject]:
         """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
 
         Raises
@@ -87,21 +87,23 @@ class Work:
         InputError
             There is no such zone.
         """
-        model, wanted = self.model, user.text(*keys)
-        if (zone := model.named(wanted, "Zone")) is not None:
+        model, name_of_target = self.model, user.text(*keys)
+        if (zone := model.named(name_of_target, "Zone")) is not None:
             return [zone]
-        if (zones := model.named(wanted, "ZoneList")) is not None:
+        if (zones := model.named(name_of_target, "ZoneList")) is not None:
             return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
-        if (space := model.named(wanted, "Space")) is not None:
+        if (space := model.named(name_of_target, "Space")) is not None:
             return [model.require(space, "zone_name", "Zone")]
-        if (spaces := model.named(wanted, "SpaceList")) is not None:
-            every = [model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")]
-            return [model.require(space, "zone_name", "Zone") for space in every]
+        if (spaces := model.named(name_of_target, "SpaceList")) is not None:
+            space_objects = [
+                model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")
+            ]
+            return [model.require(space, "zone_name", "Zone") for space in space_objects]
         # Named so that the error lists the zones.
         key = next((key for key in keys if user.text(key)), keys[0])
-        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=wanted)]
+        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)]
 
 
-def listed(item: Item, wrapper: str) -> list[str]:
+def listed(item: IdfObject, wrapper: str) -> list[str]:
     """Names in the groups of a list."""
     return [str(value) for row in item.rows(wrapper) for value in row.values()]

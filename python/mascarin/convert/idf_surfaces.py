@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from mascarin.convert import geometry as g
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
 
 #: Class of the surfaces that one kind of object describes, and what they face unless the object says it.
 _DETAILED: Final = {
@@ -43,14 +43,14 @@ OPENINGS: Final = ("FenestrationSurface:Detailed", *_OPENINGS)
 
 
 @dataclass(frozen=True)
-class Face:
+class IdfSurface:
     """A surface of a zone.
 
     Attributes
     ----------
-    item : Item
+    item : IdfObject
         The object.
-    zone : Item
+    zone : IdfObject
         Its zone.
     shape : str
         ``wall``, ``floor``, ``roof`` or ``ceiling``.
@@ -62,8 +62,8 @@ class Face:
         Corners, counter-clockwise seen from outside. [m]
     """
 
-    item: Item
-    zone: Item
+    item: IdfObject
+    zone: IdfObject
     shape: str
     boundary: str
     beyond: str
@@ -73,14 +73,14 @@ class Face:
 
 
 @dataclass(frozen=True)
-class Opening:
+class IdfOpening:
     """A window or an opaque door in a surface.
 
     Attributes
     ----------
-    item : Item
+    item : IdfObject
         The object.
-    base : Face
+    base : IdfSurface
         The surface that it is in.
     shape : str
         ``window``, ``door`` or another class in small letters.
@@ -92,15 +92,15 @@ class Opening:
         How many of it there are.
     """
 
-    item: Item
-    base: Face
+    item: IdfObject
+    base: IdfSurface
     shape: str
     beyond: str
     points: g.Array
     copies: int
 
 
-def faces(work: Work) -> list[Face]:
+def read_surfaces(context: Context) -> list[IdfSurface]:
     """All surfaces of the zones.
 
     Raises
@@ -108,25 +108,25 @@ def faces(work: Work) -> list[Face]:
     InputError
         A surface without a zone, corners or a rectangle that cannot be used.
     """
-    rules = g.rules_of(work.model)
-    detailed = [_detailed(work, rules, item) for item in work.model.of(*_DETAILED)]
-    return detailed + [_simple(work, rules, item) for item in work.model.of(*_SIMPLE)]
+    rules = g.rules_of(context.model)
+    detailed = [_detailed(context, rules, item) for item in context.model.of(*_DETAILED)]
+    return detailed + [_simple(context, rules, item) for item in context.model.of(*_SIMPLE)]
 
 
-def _zone_of(work: Work, item: Item) -> Item:
+def _zone_of(context: Context, item: IdfObject) -> IdfObject:
     if not item.text("zone_name") and item.text("space_name"):
-        space = work.model.require(item, "space_name", "Space")
-        return work.model.require(space, "zone_name", "Zone")
+        space = context.model.require(item, "space_name", "Space")
+        return context.model.require(space, "zone_name", "Zone")
     if not item.text("zone_name"):
         raise item.error("found no zone", "the name of a Zone in zone_name", "Add it, or remove the surface")
-    return work.model.require(item, "zone_name", "Zone")
+    return context.model.require(item, "zone_name", "Zone")
 
 
-def _detailed(work: Work, rules: g.Rules, item: Item) -> Face:
-    zone = _zone_of(work, item)
+def _detailed(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
+    zone = _zone_of(context, item)
     points = g.frame_of(zone, rules, rules.relative).place(g.corners_of(item))
     shape = _DETAILED[item.kind] or item.word("surface_type")
-    return Face(
+    return IdfSurface(
         item=item,
         zone=zone,
         shape=shape or "wall",
@@ -138,8 +138,8 @@ def _detailed(work: Work, rules: g.Rules, item: Item) -> Face:
     )
 
 
-def _simple(work: Work, rules: g.Rules, item: Item) -> Face:
-    zone = _zone_of(work, item)
+def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
+    zone = _zone_of(context, item)
     frame = g.frame_of(zone, rules, rules.rectangles_relative)
     start = np.array([[item.number(f"starting_{axis}_coordinate") or 0.0 for axis in "xyz"]])
     azimuth = (item.number("azimuth_angle") or 0.0) + frame.rotation
@@ -149,16 +149,16 @@ def _simple(work: Work, rules: g.Rules, item: Item) -> Face:
     shape, boundary = _SIMPLE[item.kind]
     outdoors = boundary == "outdoors"
     beyond = item.text("outside_boundary_condition_object")
-    return Face(item, zone, shape, boundary, beyond, outdoors, outdoors, _checked(item, points))
+    return IdfSurface(item, zone, shape, boundary, beyond, outdoors, outdoors, _checked(item, points))
 
 
-def _checked(item: Item, points: g.Array) -> g.Array:
+def _checked(item: IdfObject, points: g.Array) -> g.Array:
     if len(points) < 3 or g.area_of(points) < 1e-6:
         raise item.error("vertices that enclose no area", "corners once around the surface", "Correct them")
     return points
 
 
-def openings(work: Work, every: list[Face]) -> list[Opening]:
+def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpening]:
     """All openings in the surfaces.
 
     Raises
@@ -166,19 +166,19 @@ def openings(work: Work, every: list[Face]) -> list[Opening]:
     InputError
         An opening in a surface that does not exist, or corners that cannot be used.
     """
-    by_name = {face.item.name.casefold(): face for face in every}
-    rules = g.rules_of(work.model)
-    found = []
-    for item in work.model.of(*OPENINGS):
+    by_name = {surface.item.name.casefold(): surface for surface in surfaces}
+    rules = g.rules_of(context.model)
+    all_openings = []
+    for item in context.model.of(*OPENINGS):
         base = by_name.get(item.word("building_surface_name"))
         if base is None:
-            work.model.require(item, "building_surface_name", *SURFACES)
+            context.model.require(item, "building_surface_name", *SURFACES)
             raise item.error("no surface", "a surface", "Correct building_surface_name")
-        found.append(_opening(work, rules, item, base))
-    return found
+        all_openings.append(_opening(context, rules, item, base))
+    return all_openings
 
 
-def _opening(work: Work, rules: g.Rules, item: Item, base: Face) -> Opening:
+def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface) -> IdfOpening:
     copies = max(1, round(item.number("multiplier") or 1.0))
     beyond = item.text("outside_boundary_condition_object")
     if item.kind == "FenestrationSurface:Detailed":
@@ -193,13 +193,13 @@ def _opening(work: Work, rules: g.Rules, item: Item, base: Face) -> Opening:
         shape = _OPENINGS[item.kind][0]
     if float(g.normal_of(points) @ g.normal_of(base.points)) < 0.0:
         points = points[::-1]
-    return Opening(item, base, shape, beyond, _checked(item, points), copies)
+    return IdfOpening(item, base, shape, beyond, _checked(item, points), copies)
 
 
-def floor_area(zone: Item, every: list[Face]) -> float:
+def floor_area(zone: IdfObject, surfaces: list[IdfSurface]) -> float:
     """Floor area of a zone: as given, else the sum of its floors. [m2]"""
-    given = zone.number("floor_area")
-    if given is not None and given > 0.0:
-        return given
-    floors = (face for face in every if face.zone is zone and face.shape == "floor")
-    return sum(g.area_of(face.points) for face in floors)
+    entered_area = zone.number("floor_area")
+    if entered_area is not None and entered_area > 0.0:
+        return entered_area
+    floors = (surface for surface in surfaces if surface.zone is zone and surface.shape == "floor")
+    return sum(g.area_of(surface.points) for surface in floors)

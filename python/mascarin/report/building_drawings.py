@@ -62,14 +62,14 @@ def view(building: Mapping[str, Any]) -> Markup | None:
     if up[2] < 0.0:
         up = -up
     frame = np.stack([right, -up])
-    every = np.vstack([v for _, v in polygons]) @ frame.T
-    low, high = every.min(axis=0), every.max(axis=0)
+    projected = np.vstack([v for _, v in polygons]) @ frame.T
+    low, high = projected.min(axis=0), projected.max(axis=0)
     width, height, margin = 420.0, 360.0, 46.0
     scale = min((width - 2 * margin) / (high[0] - low[0]), (height - 2 * margin) / (high[1] - low[1]))
     offset = 0.5 * (np.array([width, height]) - scale * (low + high))
     svg = Svg(width, height)
 
-    def place(points: Array) -> Array:
+    def on_page(points: Array) -> Array:
         placed: Array = scale * (points @ frame.T) + offset
         return placed
 
@@ -77,15 +77,15 @@ def view(building: Mapping[str, Any]) -> Markup | None:
     hidden: list[tuple[Mapping[str, Any], Array]] = []
     for surface, vertices in polygons:
         faces_out = surface.get("outside") == "outdoors"
-        seen = faces_out and float(_normal(vertices) @ to_eye) > 1e-9
-        (visible if seen else hidden).append((surface, vertices))
+        faces_viewer = faces_out and float(_normal(vertices) @ to_eye) > 1e-9
+        (visible if faces_viewer else hidden).append((surface, vertices))
     for surface, vertices in sorted(visible, key=lambda item: float((item[1] @ to_eye).mean())):
         kind = _construction_class(building, str(surface.get("construction")))
-        svg.polygon(place(vertices), f"face {kind}")
+        svg.polygon(on_page(vertices), f"face {kind}")
     for surface, vertices in hidden:
         inner = surface.get("outside") != "outdoors"
-        svg.polygon(place(vertices), "hidden-edge inner" if inner else "hidden-edge")
-    _name_surfaces(svg, [(surface, place(vertices)) for surface, vertices in visible])
+        svg.polygon(on_page(vertices), "hidden-edge inner" if inner else "hidden-edge")
+    _name_surfaces(svg, [(surface, on_page(vertices)) for surface, vertices in visible])
     _compass(svg, frame)
     _scale_bar(svg, scale, width, height)
     return svg.markup(f"Drawing of {building.get('name', 'the building')} seen from the north-east and above")
@@ -158,19 +158,19 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     polygons = _polygons(building)
     if not polygons:
         return None
-    every = np.vstack([v for _, v in polygons])
-    middle = 0.5 * float(every[:, 0].min() + every[:, 0].max()) + 1e-6
+    all_points = np.vstack([v for _, v in polygons])
+    middle = 0.5 * float(all_points[:, 0].min() + all_points[:, 0].max()) + 1e-6
     cuts = [(surface, cut) for surface, v in polygons if (cut := _cut(v, middle)) is not None]
     if len(cuts) < 3:
         return None
-    low, high = every[:, 1:].min(axis=0), every[:, 1:].max(axis=0)
+    low, high = all_points[:, 1:].min(axis=0), all_points[:, 1:].max(axis=0)
     longest = max((len(str(info.get("label", ""))) for info in sensors.values()), default=0)
     # Wide enough for the longest name beside the section, about 6.4 px for each letter.
     room = max(150.0, 46.0 + 6.4 * longest) if sensors else 46.0
     width, height, margin = 270.0 + room, 360.0, 46.0
     scale = min((width - margin - room) / (high[0] - low[0]), (height - 2 * margin) / (high[1] - low[1]))
 
-    def place(points: Array) -> Array:
+    def on_page(points: Array) -> Array:
         # Seen from the east: north to the right.
         shifted = (points - low) * scale
         x = margin + shifted[:, 0]
@@ -178,15 +178,15 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
         return np.column_stack([x, y])
 
     svg = Svg(width, height)
-    _zone_fills(svg, cuts, [str(zone.get("name")) for zone in building.get("zones", [])], place)
+    _zone_fills(svg, cuts, [str(zone.get("name")) for zone in building.get("zones", [])], on_page)
     for surface, cut in cuts:
-        (x1, y1), (x2, y2) = place(cut)
+        (x1, y1), (x2, y2) = on_page(cut)
         kind = _construction_class(building, str(surface.get("construction"))).replace("fill", "stroke")
         svg.line(float(x1), float(y1), float(x2), float(y2), f"cut {kind}")
-    bottom = float(place(low[None, :])[0][1])
+    bottom = float(on_page(low[None, :])[0][1])
     svg.label(margin, bottom + 22, "S", "small", "middle")
     svg.label(margin + scale * float(high[0] - low[0]), bottom + 22, "N", "small", "middle")
-    _sensor_marks(svg, cuts, sensors, place, width - room + 12.0)
+    _sensor_marks(svg, cuts, sensors, on_page, width - room + 12.0)
     return svg.markup("Section from south to north with the zones and the places of the sensors")
 
 
@@ -207,7 +207,7 @@ def _facing(surface: Mapping[str, Any], zone: str) -> bool:
 
 
 def _zone_fills(
-    svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], zones: Sequence[str], place: Any
+    svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], zones: Sequence[str], on_page: Any
 ) -> None:
     for number, zone in enumerate(zones):
         bounds = [cut for surface, cut in cuts if _facing(surface, zone)]
@@ -216,7 +216,7 @@ def _zone_fills(
         ends = np.vstack(bounds)
         centre = ends.mean(axis=0)
         order = np.argsort(np.arctan2(ends[:, 1] - centre[1], ends[:, 0] - centre[0]))
-        outline = place(ends[order])
+        outline = on_page(ends[order])
         svg.polygon(outline, f"zone zone-{number % 4}")
         x = 0.72 * float(outline[:, 0].min()) + 0.28 * float(outline[:, 0].max())
         y = _height_at(outline, x)
@@ -248,12 +248,12 @@ def _sensor_marks(
     svg: Svg,
     cuts: Sequence[tuple[Mapping[str, Any], Array]],
     sensors: Mapping[str, Any],
-    place: Any,
+    on_page: Any,
     x_text: float,
 ) -> None:
     spots = []
     for number, info in enumerate(sensors.values(), start=1):
-        spot = _spot(str(info.get("output", "")), cuts, place)
+        spot = _spot(str(info.get("output", "")), cuts, on_page)
         if spot is not None:
             spots.append((number, str(info.get("label", "")), spot))
     spots.sort(key=lambda item: item[2][1])
@@ -273,19 +273,19 @@ def _sensor_marks(
 
 
 def _spot(
-    output: str, cuts: Sequence[tuple[Mapping[str, Any], Array]], place: Any
+    output: str, cuts: Sequence[tuple[Mapping[str, Any], Array]], on_page: Any
 ) -> tuple[float, float] | None:
     """Position of an output in the section: the middle of a zone, or a position across a wall."""
     owner, _, what = output.partition(".")
     for surface, cut in cuts:
         if surface.get("name") == owner:
-            ends = place(cut)
+            ends = on_page(cut)
             x, y = (
                 ends[0] + 0.62 * (ends[1] - ends[0])
                 if ends[0][0] < ends[1][0]
                 else ends[1] + 0.62 * (ends[0] - ends[1])
             )
-            across = place(cut[:1] + np.array([[0.0, 1.0]])) - ends[:1]
+            across = on_page(cut[:1] + np.array([[0.0, 1.0]])) - ends[:1]
             up = across[0] / np.linalg.norm(across[0])
             shift = {"outside_temperature": 5.0, "inside_temperature": -5.0}.get(what, 0.0)
             outward = 1.0 if abs(ends[1][0] - ends[0][0]) > abs(ends[1][1] - ends[0][1]) else 0.0
@@ -293,7 +293,7 @@ def _spot(
     ends = [cut for surface, cut in cuts if _facing(surface, owner)]
     if not ends:
         return None
-    x, y = place(np.vstack(ends).mean(axis=0)[None, :])[0]
+    x, y = on_page(np.vstack(ends).mean(axis=0)[None, :])[0]
     return float(x), float(y)
 
 
@@ -317,9 +317,9 @@ def layers(
     entries = list(construction.get("layers", []))
     thick = _thickness(entries)
     widths = _widths(thick)
-    every = [_widths(_thickness(c.get("layers", []))).sum() for c in building.get("constructions", [])]
+    total_widths = [_widths(_thickness(c.get("layers", []))).sum() for c in building.get("constructions", [])]
     # One scale for all constructions, so that thickness can be compared.
-    widths = np.maximum(300.0 * widths / max([widths.sum(), *every]), 15.0) if len(widths) else widths
+    widths = np.maximum(300.0 * widths / max([widths.sum(), *total_widths]), 15.0) if len(widths) else widths
     svg = Svg(420.0, 132.0 + 17.0 * len(entries))
     edges = 60.0 + np.concatenate([[0.0], np.cumsum(widths)])
     top, bottom = 50.0, 112.0
@@ -435,16 +435,16 @@ def _layer_sensors(
     probes = {p.get("name"): p for p in building.get("probes", [])}
     for number, info in enumerate(sensors.values(), start=1):
         owner, _, what = str(info.get("output", "")).partition(".")
-        place: float | None = None
+        x: float | None = None
         if owner in probes and probes[owner].get("surface") in names:
             depths = np.concatenate([[0.0], np.cumsum(thick)])
-            place = float(np.interp(float(probes[owner].get("depth", 0.0)), depths, edges))
+            x = float(np.interp(float(probes[owner].get("depth", 0.0)), depths, edges))
         elif owner in names:
-            place = _face_place(what, edges, [str(e.get("name")) for e in construction.get("layers", [])])
-        if place is not None:
-            svg.line(place, top - 10.0, place, top + 26.0, "leader")
-            svg.add("circle", cx=place, cy=top + 26.0, r=3.2, class_="sensor-dot")
-            svg.label(place, top - 13.0, str(number), "sensor-name", "middle")
+            x = _face_place(what, edges, [str(e.get("name")) for e in construction.get("layers", [])])
+        if x is not None:
+            svg.line(x, top - 10.0, x, top + 26.0, "leader")
+            svg.add("circle", cx=x, cy=top + 26.0, r=3.2, class_="sensor-dot")
+            svg.label(x, top - 13.0, str(number), "sensor-name", "middle")
 
 
 def _face_place(what: str, edges: Array, names: Sequence[str]) -> float | None:

@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-CLEARLY: Final = 4.0
+MIN_CLEAR_DIFFERENCE: Final = 4.0
 """Difference of the log density of all days below which no form is clearly better; odds of 55 to 1. [-]"""
 
 _REPLICATES: Final = 4000
 _SEED: Final = 20
 
 
-def form_weights(by_day: Floats) -> Floats:
+def pseudo_bma_weights(by_day: Floats) -> Floats:
     """Weigh forms of a model.
 
     Parameters
@@ -45,7 +45,7 @@ def form_weights(by_day: Floats) -> Floats:
     --------
     Two forms that predict all days equally well count the same:
 
-    >>> form_weights(np.zeros((2, 5)))
+    >>> pseudo_bma_weights(np.zeros((2, 5)))
     array([0.5, 0.5])
     """
     rng = np.random.default_rng(_SEED)
@@ -58,11 +58,11 @@ def form_weights(by_day: Floats) -> Floats:
     return np.asarray(mean / mean.sum())
 
 
-def simplest(by_day: Floats, changes: list[int]) -> int:
+def most_parsimonious(by_day: Floats, changes: list[int]) -> int:
     """Choose the form to use: the simplest one that is not clearly worse than the best.
 
     A form is clearly worse if the best one predicts the days left out better by more than two standard errors
-    of the difference, and by more than `CLEARLY`.
+    of the difference, and by more than `MIN_CLEAR_DIFFERENCE`.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
 
     Examples
     --------
-    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
+    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
     2
-    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
+    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
     0
     """
     total = by_day.sum(axis=1)
@@ -93,8 +93,8 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
     days = by_day.shape[1]
     less = by_day[best] - by_day
     doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
-    near = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
-    return int(min(near, key=lambda k: (changes[k], -total[k])))
+    candidates = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, MIN_CLEAR_DIFFERENCE))
+    return int(min(candidates, key=lambda k: (changes[k], -total[k])))
 
 
 def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -> Floats:
@@ -123,5 +123,5 @@ def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -
     mass = np.concatenate([np.full(s.size, w / s.size) for s, w in zip(samples, weights, strict=True)])
     order = np.argsort(values, kind="stable")
     reached = np.cumsum(mass[order]) / mass.sum()
-    at = np.searchsorted(reached, levels - 1e-12)
-    return np.asarray(values[order][np.minimum(at, values.size - 1)])
+    index = np.searchsorted(reached, levels - 1e-12)
+    return np.asarray(values[order][np.minimum(index, values.size - 1)])

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from mascarin.convert.source import Item
-from mascarin.convert.work import Work
+from mascarin.convert.context import Context
+from mascarin.convert.idf import IdfObject
 
 #: Coefficients D + E V + F V^2 of the algorithm SimpleCombined by roughness, radiation included
 #: (ASHRAE Handbook of Fundamentals 1989, p. 22.4, as in the EnergyPlus Engineering Reference).
@@ -28,7 +28,7 @@ _WINDS: Final = (1.0, 8.0)
 
 
 @dataclass(frozen=True)
-class Film:
+class OuterCoefficient:
     """A coefficient of the description.
 
     Attributes
@@ -43,70 +43,70 @@ class Film:
     combined: bool = False
 
 
-class Films:
+class ConvectionCoefficients:
     """Coefficients of the surfaces, by the algorithms and the values that the file names.
 
     Parameters
     ----------
-    work : Work
+    context : Context
         The conversion.
     """
 
-    def __init__(self, work: Work) -> None:
-        self._work = work
-        self._given: dict[tuple[str, str], Item] = {}
-        for item in work.model.of("SurfaceProperty:ConvectionCoefficients"):
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._by_surface: dict[tuple[str, str], IdfObject] = {}
+        for item in context.model.of("SurfaceProperty:ConvectionCoefficients"):
             for k in (1, 2):
                 side = item.word(f"convection_coefficient_{k}_location")
                 if side:
-                    self._given[item.word("surface_name"), side] = item
-        for item in work.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
-            work.findings.left_out(
+                    self._by_surface[item.word("surface_name"), side] = item
+        for item in context.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
+            context.findings.left_out(
                 item, "coefficients of a group of surfaces", "those of the algorithm of the building are used"
             )
 
-    def inside(self, user: Item, zone: Item | None, tilt: float, *, window: bool = False) -> Any:
+    def inside(self, user: IdfObject, zone: IdfObject | None, tilt: float, *, window: bool = False) -> Any:
         """Coefficient of an inner surface."""
-        given = self._own(user, "inside")
-        if given is not None:
-            return given
-        main = self._work.model.one("SurfaceConvectionAlgorithm:Inside")
+        own_coefficient = self._own(user, "inside")
+        if own_coefficient is not None:
+            return own_coefficient
+        main = self._context.model.one("SurfaceConvectionAlgorithm:Inside")
         word = zone.word("zone_inside_convection_algorithm") if zone is not None else ""
         source = zone if word else main
         word = word or (main.word("algorithm") if main is not None else "") or "tarp"
         if word == "simple":
             return _simple(tilt)
         if word not in ("tarp", "detailed", "bldgdetailed") and source is not None:
-            self._work.findings.approximated(
+            self._context.findings.approximated(
                 source, f"inside convection by {word}", "the algorithm TARP is used: coefficients differ"
             )
         return "iso15099" if window else "tarp"
 
-    def outside(self, user: Item, zone: Item | None, roughness: str) -> Film:
+    def outside(self, user: IdfObject, zone: IdfObject | None, roughness: str) -> OuterCoefficient:
         """Coefficient of a surface outdoors."""
-        given = self._own(user, "outside")
-        if given is not None:
-            return Film(given)
-        main = self._work.model.one("SurfaceConvectionAlgorithm:Outside")
+        own_coefficient = self._own(user, "outside")
+        if own_coefficient is not None:
+            return OuterCoefficient(own_coefficient)
+        main = self._context.model.one("SurfaceConvectionAlgorithm:Outside")
         word = zone.word("zone_outside_convection_algorithm") if zone is not None else ""
         source = zone if word else main
         word = word or (main.word("algorithm") if main is not None else "") or "doe-2"
         if word == "simplecombined":
-            return Film(combined(roughness), combined=True)
+            return OuterCoefficient(combined(roughness), combined=True)
         if word == "mowitt":
-            return Film("mowitt")
+            return OuterCoefficient("mowitt")
         if word in ("tarp", "detailed", "blast"):
-            return Film({"kind": "tarp", "roughness": roughness})
+            return OuterCoefficient({"kind": "tarp", "roughness": roughness})
         if word != "doe-2" and source is not None:
-            self._work.findings.approximated(
+            self._context.findings.approximated(
                 source, f"outside convection by {word}", "the algorithm TARP is used: coefficients differ"
             )
-            return Film({"kind": "tarp", "roughness": roughness})
-        return Film({"kind": "doe2", "roughness": roughness})
+            return OuterCoefficient({"kind": "tarp", "roughness": roughness})
+        return OuterCoefficient({"kind": "doe2", "roughness": roughness})
 
-    def _own(self, user: Item, side: str) -> Any:
+    def _own(self, user: IdfObject, side: str) -> Any:
         """Coefficient that the file gives for one surface; None without it."""
-        item = self._given.get((user.name.casefold(), side))
+        item = self._by_surface.get((user.name.casefold(), side))
         if item is None:
             return None
         k = 1 if item.word("convection_coefficient_1_location") == side else 2
@@ -116,7 +116,7 @@ class Films:
             return value
         word = {"tarp": "tarp", "mowitt": "mowitt", "doe2": "doe2", "simple": None}.get(kind)
         if word is None or (side == "inside" and word != "tarp"):
-            self._work.findings.left_out(
+            self._context.findings.left_out(
                 item, f"a coefficient by {kind}", "that of the algorithm of the building is used"
             )
         return word if side == "outside" or word == "tarp" else None

@@ -10,22 +10,22 @@ from markupsafe import Markup
 KINDS: Final = ("Table", "Figure")
 
 
-class Numbering:
+class CrossReferences:
     """Counts tables and figures in the order of the page.
 
     A text may refer to what comes after it: the page is made twice, and the second time all are known.
 
     Examples
     --------
-    >>> numbering = Numbering()
-    >>> numbering.label("Table", "metrics"), numbering.label("Table", "periods")
+    >>> references = CrossReferences()
+    >>> references.label("Table", "metrics"), references.label("Table", "periods")
     ('Table 1', 'Table 2')
-    >>> str(numbering.refer("Table", "periods"))
+    >>> str(references.refer("Table", "periods"))
     '<a href="#table-periods">Table 2</a>'
     """
 
     def __init__(self) -> None:
-        self._known: dict[tuple[str, str], str] = {}
+        self._label_of: dict[tuple[str, str], str] = {}
         self._counts: Counter[str] = Counter()
 
     def restart(self) -> None:
@@ -48,10 +48,10 @@ class Numbering:
             Such as ``Table 3``.
         """
         self._counts[kind] += 1
-        self._known[kind, key] = f"{kind} {self._counts[kind]}"
-        return self._known[kind, key]
+        self._label_of[kind, key] = f"{kind} {self._counts[kind]}"
+        return self._label_of[kind, key]
 
-    def known(self, kind: str, key: str) -> bool:
+    def has_label(self, kind: str, key: str) -> bool:
         """Whether the page has it.
 
         Parameters
@@ -59,7 +59,7 @@ class Numbering:
         kind, key : str
             As for `label`.
         """
-        return (kind, key) in self._known
+        return (kind, key) in self._label_of
 
     def refer(self, kind: str, key: str) -> Markup:
         """A link to a table or figure.
@@ -74,5 +74,5 @@ class Numbering:
         Markup
             Its number; before it is counted only its kind.
         """
-        words = self._known.get((kind, key), kind)
+        words = self._label_of.get((kind, key), kind)
         return Markup('<a href="#{}-{}">{}</a>').format(kind.lower(), key, words)

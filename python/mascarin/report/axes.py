@@ -32,8 +32,8 @@ def time_axis(first: datetime, hours: float) -> Axis:
     """Axis in hours from a first instant with marks at midnights."""
     to_midnight = (24.0 - (first.hour + first.minute / 60.0)) % 24.0
     days = max(1.0, hours / 24.0)
-    every = max(1, math.ceil(days / 6.0))
-    marks = np.arange(to_midnight, hours + 1e-6, 24.0 * every)
+    day_spacing = max(1, math.ceil(days / 6.0))
+    marks = np.arange(to_midnight, hours + 1e-6, 24.0 * day_spacing)
     names = [short_day(first + timedelta(hours=float(m))) for m in marks]
     return Axis(0.0, max(hours, 1e-6), [float(m) for m in marks], names)
 

@@ -27,7 +27,7 @@ _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
 
 
 @dataclass(frozen=True)
-class Item:
+class IdfObject:
     """One object of the file.
 
     Attributes
@@ -73,8 +73,8 @@ class Item:
 
     def text(self, *keys: str) -> str:
         """The same as text without spaces at its ends; empty where nothing is given."""
-        found = self.get(*keys)
-        return "" if found is None else str(found).strip()
+        value = self.get(*keys)
+        return "" if value is None else str(value).strip()
 
     def word(self, *keys: str) -> str:
         """The same in small letters, for words that EnergyPlus compares without case."""
@@ -88,13 +88,13 @@ class Item:
         InputError
             The field holds something else.
         """
-        found = self.get(*keys)
-        if found is None or (isinstance(found, str) and found.strip().casefold() in AUTO):
+        value = self.get(*keys)
+        if value is None or (isinstance(value, str) and value.strip().casefold() in AUTO):
             return None
         try:
-            return float(found)
+            return float(value)
         except (TypeError, ValueError):
-            raise self.error(f"{keys[0]}: found {found!r}", "a number", "Correct the field") from None
+            raise self.error(f"{keys[0]}: found {value!r}", "a number", "Correct the field") from None
 
     def needed(self, *keys: str) -> float:
         """A number that must be given.
@@ -104,11 +104,11 @@ class Item:
         InputError
             There is none.
         """
-        found = self.number(*keys)
-        if found is None:
+        number = self.number(*keys)
+        if number is None:
             text = self.text(*keys)
             raise self.error(f"{keys[0]}: found {text or 'nothing'}", "a number", "Give the number")
-        return found
+        return number
 
     def is_auto(self, *keys: str) -> bool:
         """Whether the field leaves the number to EnergyPlus."""
@@ -118,12 +118,12 @@ class Item:
         """Groups of an extensible field."""
         return [row for row in self.fields.get(key) or [] if isinstance(row, Mapping)]
 
-    def error(self, found: str, expected: str, advice: str) -> InputError:
+    def error(self, problem: str, expected: str, advice: str) -> InputError:
         """An error that names the object and its line."""
-        return InputError(f"{self.where}: {found}; expected {expected}. {advice}")
+        return InputError(f"{self.where}: {problem}; expected {expected}. {advice}")
 
 
-class Model:
+class IdfModel:
     """All objects of a file, by class and by name, without regard to case.
 
     Parameters
@@ -132,40 +132,40 @@ class Model:
         The file.
     version : tuple of int
         Version of EnergyPlus that it is written for.
-    items : list of Item
+    items : list of IdfObject
         In the order of the file.
     groups : mapping of str to str
         Group of each class that occurs, in the dictionary of this version.
     """
 
     def __init__(
-        self, file: Path, version: tuple[int, ...], items: list[Item], groups: Mapping[str, str]
+        self, file: Path, version: tuple[int, ...], items: list[IdfObject], groups: Mapping[str, str]
     ) -> None:
         self.file, self.version, self.items, self.groups = file, version, items, groups
         self._asked: set[str] = set()
-        self._by_kind: dict[str, list[Item]] = {}
-        self._by_name: dict[tuple[str, str], Item] = {}
+        self._by_kind: dict[str, list[IdfObject]] = {}
+        self._by_name: dict[tuple[str, str], IdfObject] = {}
         for item in items:
             self._by_kind.setdefault(item.kind.casefold(), []).append(item)
             self._by_name.setdefault((item.kind.casefold(), item.name.casefold()), item)
 
-    def of(self, *kinds: str) -> list[Item]:
+    def of(self, *kinds: str) -> list[IdfObject]:
         """Objects of some classes; the classes count as read."""
         self._asked |= {kind.casefold() for kind in kinds}
         return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
 
-    def one(self, kind: str) -> Item | None:
+    def one(self, kind: str) -> IdfObject | None:
         """The object of a class of which there is one; None without it."""
-        found = self.of(kind)
-        return found[0] if found else None
+        objects = self.of(kind)
+        return objects[0] if objects else None
 
-    def named(self, name: str, *kinds: str) -> Item | None:
+    def named(self, name: str, *kinds: str) -> IdfObject | None:
         """The object of one of some classes with a name."""
         self._asked |= {kind.casefold() for kind in kinds}
         keys = ((kind.casefold(), name.strip().casefold()) for kind in kinds)
         return next((self._by_name[key] for key in keys if key in self._by_name), None)
 
-    def require(self, user: Item, key: str, *kinds: str, name: str | None = None) -> Item:
+    def require(self, user: IdfObject, key: str, *kinds: str, name: str | None = None) -> IdfObject:
         """The object that a field names.
 
         Raises
@@ -173,25 +173,25 @@ class Model:
         InputError
             There is none; the text names the nearest ones.
         """
-        wanted = user.text(key) if name is None else name
-        found = self.named(wanted, *kinds)
-        if found is None:
-            known = [item.name for item in self.of(*kinds)]
+        target = user.text(key) if name is None else name
+        target_object = self.named(target, *kinds)
+        if target_object is None:
+            names = [item.name for item in self.of(*kinds)]
             raise user.error(
-                f"{key}: found '{wanted}'" if wanted else f"{key}: found nothing",
+                f"{key}: found '{target}'" if target else f"{key}: found nothing",
                 f"the name of a {' or '.join(kinds[:3])} of the file",
-                did_you_mean(wanted, known) or f"Add the {kinds[0]}",
+                did_you_mean(target, names) or f"Add the {kinds[0]}",
             )
-        return found
+        return target_object
 
-    def unread(self) -> Iterator[tuple[str, list[Item]]]:
+    def unread(self) -> Iterator[tuple[str, list[IdfObject]]]:
         """Classes that no part of the conversion has read, with their objects."""
         for key, items in self._by_kind.items():
             if key not in self._asked:
                 yield items[0].kind, items
 
 
-def read(path: Path) -> Model:
+def read(path: Path) -> IdfModel:
     """Read an IDF or epJSON file of EnergyPlus 8.9 or later.
 
     Parameters
@@ -230,12 +230,14 @@ def read(path: Path) -> Model:
         raise _unreadable(path, error) from None
     except kit.IdfKitError as error:
         raise InputError(f"{path}: {error}; expected a model of EnergyPlus") from None
-    if document.version[:2] not in {one[:2] for one in kit.get_schema_manager().get_supported_versions()}:
+    if document.version[:2] not in {
+        version[:2] for version in kit.get_schema_manager().get_supported_versions()
+    }:
         raise _unknown_version(kit, path)
     items, schema = _items(document, path, form), document.schema
     kinds = {item.kind for item in items}
     groups = {kind: str(schema.get_group(kind) or "") for kind in kinds} if schema is not None else {}
-    return Model(path, tuple(document.version), items, groups)
+    return IdfModel(path, tuple(document.version), items, groups)
 
 
 def _idfkit() -> Any:
@@ -253,11 +255,11 @@ def _idf(kit: Any, path: Path) -> Any:
     data = path.read_bytes()
     plain = _COMMENT.sub(b"", data)
     last = plain.rfind(b";") + 1
-    rest = plain[last:].strip(_ENDING)
-    if rest:
+    incomplete = plain[last:].strip(_ENDING)
+    if incomplete:
         # idfkit would look for the end of this object without end.
-        line = plain.count(b"\n", 0, plain.index(rest, last)) + 1
-        name = rest.split(b",")[0].decode("latin-1").strip()[:60]
+        line = plain.count(b"\n", 0, plain.index(incomplete, last)) + 1
+        name = incomplete.split(b",")[0].decode("latin-1").strip()[:60]
         raise InputError(
             f"{path}:{line}: found {name!r} without a semicolon after its last field; expected one at the "
             "end of each object. Is the file complete?"
@@ -285,76 +287,78 @@ def _epjson(kit: Any, path: Path) -> Any:
 
 
 def _unknown_version(kit: Any, path: Path) -> InputError:
-    known = kit.get_schema_manager().get_supported_versions()
-    ends = " to ".join(f"{major}.{minor}" for major, minor, _ in (min(known), max(known)))
-    found = re.search(r"version[^0-9]*([0-9.]+)", path.read_text(encoding="latin-1"), re.IGNORECASE)
+    versions = kit.get_schema_manager().get_supported_versions()
+    ends = " to ".join(f"{major}.{minor}" for major, minor, _ in (min(versions), max(versions)))
+    match = re.search(r"version[^0-9]*([0-9.]+)", path.read_text(encoding="latin-1"), re.IGNORECASE)
     return InputError(
-        f"{path}: found EnergyPlus version {found[1] if found else 'that is not known'}; expected {ends}. "
+        f"{path}: found EnergyPlus version {match[1] if match else 'that is not known'}; expected {ends}. "
         "Bring the file to such a version by IDFVersionUpdater, which comes with EnergyPlus"
     )
 
 
 def _unreadable(path: Path, error: Any) -> InputError:
-    told = []
-    for one in error.diagnostics:
-        place = f"{path}{'' if one.line is None else f':{one.line}'}"
-        name = f"{one.obj_type or 'object'}{f' {one.obj_name!r}' if one.obj_name else ''}"
-        told.append(f"{place}: {name}: {one.message}")
+    messages = []
+    for diagnostic in error.diagnostics:
+        position = f"{path}{'' if diagnostic.line is None else f':{diagnostic.line}'}"
+        name = (
+            f"{diagnostic.obj_type or 'object'}{f' {diagnostic.obj_name!r}' if diagnostic.obj_name else ''}"
+        )
+        messages.append(f"{position}: {name}: {diagnostic.message}")
     return InputError(
-        "\n".join(told or [f"{path}: {error}"])
+        "\n".join(messages or [f"{path}: {error}"])
         + "; expected objects and fields of the version that the file names. Correct it, or bring it to "
         "that version by IDFVersionUpdater, which comes with EnergyPlus"
     )
 
 
-def _items(document: Any, path: Path, form: str) -> list[Item]:
+def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
     schema = document.schema
     lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
     defaults: dict[str, dict[str, Any]] = {}
-    found = []
-    for k, one in enumerate(document.all_objects):
-        kind = str(one.obj_type)
+    items = []
+    for k, entry in enumerate(document.all_objects):
+        kind = str(entry.obj_type)
         if schema is None or kind not in schema:
-            known = list(schema.object_types) if schema is not None else []
+            classes = list(schema.object_types) if schema is not None else []
             raise InputError(
-                f"{path}:{lines.get((kind, one.name), '?')}: found the class '{kind}', which EnergyPlus "
-                f"{'.'.join(map(str, document.version[:2]))} does not have. {did_you_mean(kind, known)}"
+                f"{path}:{lines.get((kind, entry.name), '?')}: found the class '{kind}', which EnergyPlus "
+                f"{'.'.join(map(str, document.version[:2]))} does not have. {did_you_mean(kind, classes)}"
             )
         if kind not in defaults:
             defaults[kind] = _defaults(schema, kind)
-        plain = {key: value for key, value in dict(one.data).items() if value is not None and value != ""}
-        line = lines.get(k) if form == "idf" else lines.get((kind, one.name), lines.get((kind, "")))
-        item = Item(kind, str(one.name or ""), plain, defaults[kind], line, path.name)
+        plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
+        line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
+        item = IdfObject(kind, str(entry.name or ""), plain, defaults[kind], line, path.name)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
             raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")
-        found.append(item)
-    return found
+        items.append(item)
+    return items
 
 
 def _defaults(schema: Any, kind: str) -> dict[str, Any]:
     names = schema.get_all_field_names(kind)
-    known = ((name, schema.get_field_default(kind, name)) for name in names)
-    return {name: value for name, value in known if value is not None and value != ""}
+    pairs = ((name, schema.get_field_default(kind, name)) for name in names)
+    return {name: value for name, value in pairs if value is not None and value != ""}
 
 
 def _idf_lines(document: Any) -> dict[Any, int]:
     """Line of each object by its place."""
     text = document.raw_text or ""
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
-    found: dict[Any, int] = {}
-    for k, one in enumerate(document.all_objects):
-        span = document.region_of(one)
+    line_of: dict[Any, int] = {}
+    for k, entry in enumerate(document.all_objects):
+        span = document.region_of(entry)
         if span is not None:
-            found[k] = bisect.bisect_right(starts, span.start)
-    return found
+            line_of[k] = bisect.bisect_right(starts, span.start)
+    return line_of
 
 
 def _epjson_lines(path: Path) -> dict[Any, int]:
     """Line of each object by class and name; that of the class under the empty name."""
     text = path.read_text(encoding="utf-8-sig")
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
-    found: dict[Any, int] = {}
+    line_of: dict[Any, int] = {}
     above: list[str] = []
     last = ""
     for token in _TOKEN.finditer(text):
@@ -363,10 +367,10 @@ def _epjson_lines(path: Path) -> dict[Any, int]:
             above.append(last)
             if mark == "{" and len(above) in (2, 3):
                 key = (above[1], "" if len(above) == 2 else above[2])
-                found.setdefault(key, bisect.bisect_right(starts, token.start()))
+                line_of.setdefault(key, bisect.bisect_right(starts, token.start()))
             last = ""
         elif mark in "}]":
             above = above[:-1]
         else:
             last = json.loads(mark, strict=False)
-    return found
+    return line_of

@@ -16,18 +16,18 @@ METHODS: Final[tuple[MethodName, ...]] = (
 WITH_SQUARES: Final = ("least-squares", "emcee")
 """Methods that minimize a sum of squares, and therefore support the cost ``nll`` only."""
 
-FINEST: Final = 24
+MAX_REDUCTIONS: Final = 24
 """Largest number of halvings with which the points of a pattern search are exact binary numbers."""
 
 SlopesName = Literal["differences", "exact"]
 SLOPES: Final[tuple[SlopesName, ...]] = ("differences", "exact")
 
-_AGREE: Final = {"hooke-jeeves": 10}
-_AGREE_OTHERS: Final = 2
+_MIN_AGREEING: Final = {"hooke-jeeves": 10}
+_MIN_AGREEING_OTHERS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Rules:
+class SearchOptions:
     """Options of a search: number of starts, resolution, and when it ends.
 
     A *sequence* is one search of a method other than least squares: pattern search, swarm, hybrid, evolution
@@ -74,7 +74,7 @@ class Rules:
 
     Examples
     --------
-    >>> Rules(starts=2, slopes="exact").agreeing("hooke-jeeves")
+    >>> SearchOptions(starts=2, slopes="exact").agreeing("hooke-jeeves")
     10
     """
 
@@ -98,15 +98,15 @@ class Rules:
         least = {"starts": 1, "sequences": 1, "reductions": 1, "together": 1, "agree": 1}
         least |= {"evaluations": 1, "particles": 4, "generations": 2, "walkers": 4, "moves": 50}
         for name, smallest in least.items():
-            found = getattr(self, name)
-            if found is not None and found < smallest:
-                msg = f"{name}: found {found}, expected at least {smallest}"
+            option = getattr(self, name)
+            if option is not None and option < smallest:
+                msg = f"{name}: found {option}, expected at least {smallest}"
                 raise InputError(msg)
         if self.slopes not in SLOPES:
             msg = f"slopes: found '{self.slopes}', expected {' or '.join(SLOPES)}"
             raise InputError(msg)
-        if self.reductions > FINEST:
-            msg = f"reductions: found {self.reductions}, expected at most {FINEST}"
+        if self.reductions > MAX_REDUCTIONS:
+            msg = f"reductions: found {self.reductions}, expected at most {MAX_REDUCTIONS}"
             raise InputError(msg)
         if self.walkers is not None and self.walkers % 2:
             msg = f"walkers: found {self.walkers}, expected an even number: they move in two halves"
@@ -118,4 +118,4 @@ class Rules:
 
     def agreeing(self, method: str) -> int:
         """Return the number of sequences of a method that must reach the same minimum. [-]"""
-        return self.agree if self.agree is not None else _AGREE.get(method, _AGREE_OTHERS)
+        return self.agree if self.agree is not None else _MIN_AGREEING.get(method, _MIN_AGREEING_OTHERS)
