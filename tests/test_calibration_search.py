@@ -371,7 +371,7 @@ def test_damaged_evaluations_are_computed_again(tmp_path: Path) -> None:
     """An edited residual, a NaN, lines of another record, swapped and cut lines: the same estimates."""
     path = tmp_path / "record.jsonl"
     other = tmp_path / "other.jsonl"
-    keywords: dict[str, Any] = {"method": "least-squares", "cost": "nll", "rules": Rules(starts=1, agree=1)}
+    keywords: dict[str, Any] = {"method": "least-squares", "cost": "nll", "options": SearchOptions(starts=1, agree=1)}
     whole = solve(_problem(noise=0.2), record=path, **keywords)
     solve(_problem(noise=0.3), record=other, **keywords)
     first, *lines = path.read_text().splitlines(keepends=True)
