@@ -73,9 +73,9 @@ def chart(
             figure.colorbar(mesh, ax=ax, label=label)
     for percent in _LINES:
         # The vapour pressure, over that of the air, is a share of the saturated one.
-        whole = np.ones(len(saturated))
-        vapour = _engine.vapour_pressure(np.ascontiguousarray(saturated[:, 1]), whole)
-        line = 1000.0 * _engine.humidity_ratio(percent / 100.0 * vapour, whole)
+        ones = np.ones(len(saturated))
+        vapour = _engine.vapour_pressure(np.ascontiguousarray(saturated[:, 1]), ones)
+        line = 1000.0 * _engine.humidity_ratio(percent / 100.0 * vapour, ones)
         ax.plot(saturated[:, 0], line, color=colors.INK, lw=1.0 if percent == 100 else 0.5, alpha=0.7)
         at = int(np.flatnonzero(line <= 0.94 * top)[-1])
         at = min(at, int(0.97 * len(line)))

@@ -132,14 +132,14 @@ class Workspace:
     def _recorded(self) -> dict[str, dict[str, Any]]:
         """Files of each command; nothing where the record is damaged."""
         try:
-            found = own_files.read_json(self.path("results.json"))
-            for entry in found.values():
+            entries = own_files.read_json(self.path("results.json"))
+            for entry in entries.values():
                 own_files.require(entry if isinstance(entry, dict) else {}, {"inputs": str, "files": list})
                 # What is no text is no name.
                 entry["files"] = [name for name in entry["files"] if isinstance(name, str)]
         except (OSError, own_files.DamagedError):
             return {}
-        return found
+        return entries
 
     def _remove(self, name: object) -> None:
         """Remove a result of this folder; a name that is none of a result is left alone.
