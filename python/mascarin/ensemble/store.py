@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
 
-from mascarin._io import atomic, display, identity, own_files
+from mascarin._io import arrow_files, atomic, display, identity, own_files
 from mascarin._io.regular import require_text
 from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
@@ -424,7 +424,7 @@ class Store:
             No member has been run.
         """
         if self.complete:
-            with (self.path / RESULTS).open("rb") as file:
+            with arrow_files.opened(self.path / RESULTS) as file:
                 return [table_of(file, self.path, filters, without)]
         pieces = [self._piece(*span) for span in sorted(self._chunks())]
         if not pieces:
