@@ -190,6 +190,12 @@ def test_a_lock_that_is_a_link_does_not_empty_a_file(tmp_path: Path) -> None:
     assert (tmp_path / "mine.txt").read_text() == "secret"
 
 
+def test_a_file_in_the_place_of_the_folder_of_a_study_is_named(tmp_path: Path) -> None:
+    (tmp_path / ".work").write_text("x")
+    with pytest.raises(InputError, match=r"\.work: found a file, expected a folder of Mascarin; remove"):
+        Workspace(tmp_path, {"study": "a"})
+
+
 def test_a_damaged_manifest_of_a_study_is_computed_again(tmp_path: Path) -> None:
     with Workspace(tmp_path, {"a": 1}):
         pass

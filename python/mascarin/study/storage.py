@@ -71,6 +71,8 @@ class Workspace:
             identity.require_no_input(out / name)
         for name in (_FOLDER, "tables", "figures"):
             identity.require_no_inputs_in(own_files.require_folder(out, name))
+        if self.folder.exists() and not self.folder.is_dir():
+            raise InputError(f"{self.folder}: found a file, expected a folder of Mascarin; remove the file")
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
