@@ -1,4 +1,8 @@
-"""The manifest of an ensemble, read with its types: it may be damaged, or come from someone else."""
+"""The manifest of an ensemble, read with its types: it may be damaged, or come from someone else.
+
+It has no seal, because people and their scripts read it as JSON. It holds names, units and hashes; a store
+whose hashes differ is not continued, the numbers of the members are in sealed pieces and checked pages.
+"""
 
 from __future__ import annotations
 

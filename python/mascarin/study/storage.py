@@ -1,6 +1,9 @@
 """Intermediate results of a study on disk, so that an interrupted study continues where it was.
 
-The manifest identifies the inputs of the intermediate results.
+The manifest identifies the inputs of the intermediate results. It and the list of results (``results.json``)
+have no seal: people read them, a changed manifest makes everything be computed again, and names in the list
+are confined to results of the folder. What is computed is in sealed files (`_io.own_files`) and records that
+are sealed line by line (`_io.own_records`).
 """
 
 from __future__ import annotations
