@@ -143,7 +143,7 @@ def _record(content: bytes, kind: str, draw: random.Random) -> bytes:
         first = own_records.seal_of(content.split(b"\n")[0].decode())
         further = [own_records.opened(first, line) for line in lines[1:]]
         head = own_records.seal_of(changed)
-        lines[1:] = [own_records.sealed(head, one).encode() for one in further]
+        lines[1:] = [own_records.sealed(head, line).encode() for line in further]
     return b"".join(lines)
 
 

@@ -184,7 +184,7 @@ def construction(draw: Draw, known: Json) -> Json:
         if (
             "gap" in known
             and layers
-            and "gap" not in (one["material"] for one in layers)
+            and "gap" not in (entry["material"] for entry in layers)
             and draw.chance(0.3)
         ):
             layers.append({"material": "gap"})
@@ -192,7 +192,7 @@ def construction(draw: Draw, known: Json) -> Json:
         name = draw.one(names)
         melts = name in ("product", "wax")
         layer: Json = {"material": name, "thickness": draw.log(0.002, 0.03 if melts else 0.4)}
-        if draw.chance(0.3) or any(one.get("name", one["material"]) == name for one in layers):
+        if draw.chance(0.3) or any(entry.get("name", entry["material"]) == name for entry in layers):
             layer["name"] = f"layer_{at}"
         if draw.chance(0.25):
             layer["nodes"] = draw.whole(1, 12)

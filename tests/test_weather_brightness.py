@@ -25,7 +25,8 @@ def shifted(name: str, minutes: float) -> Climate:
     index = pd.DatetimeIndex(table.index)
     table.index = index - pd.Timedelta(minutes=minutes)
     zone = f"UTC{str(index.tz)[3:6]}"
-    return Climate.from_table(table, timezone=zone, columns={one: one for one in COLUMNS}, check_sun=False)
+    columns = {column: column for column in COLUMNS}
+    return Climate.from_table(table, timezone=zone, columns=columns, check_sun=False)
 
 
 @pytest.mark.parametrize("name", ["tampa", "golden", "tucson"])
