@@ -237,8 +237,8 @@ def _explore(bench: Bench) -> Told:
     options |= {"scheme": bench.scheme}
     session = Session(bench.building, bench.climate, parameters=VARIED, options=options)
     page = render(session, "token", bench.folder / "explored.yaml")
-    found = session.run({VARIED[0]: 31.0})
-    return Told(0, page + "\n".join(found["warnings"]))
+    reply = session.run({VARIED[0]: 31.0})
+    return Told(0, page + "\n".join(reply["warnings"]))
 
 
 def _of_study(name: str) -> Callable[[Bench], Told]:
@@ -270,9 +270,9 @@ def _cost(bench: Bench) -> Told:
 
 def _optimize(bench: Bench) -> Told:
     """The project that ``mascarin genopt`` writes, whose program runs in this process."""
-    made = _genopt(bench)
-    if made.code:
-        return made
+    project = _genopt(bench)
+    if project.code:
+        return project
     said: list[str] = []
 
     def start(program: Program, folder: Path) -> None:
@@ -287,7 +287,7 @@ def _optimize(bench: Bench) -> Told:
         patch.setattr(Program, "_start", start)
         # One run at a time: the folder is that of the process.
         told = bench.command("optimize", sorted((bench.folder / "genopt").glob("*.ini"))[0], "--workers", "1")
-    return Told(told.code, "\n".join([made.text, told.text, *said]))
+    return Told(told.code, "\n".join([project.text, told.text, *said]))
 
 
 def _design_command(bench: Bench) -> Told:
@@ -313,10 +313,10 @@ def _in_python(call: Callable[[], Any]) -> Told:
     """What a function says: by its result, or as a warning of Python."""
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
-        found = call()
-    said = [str(one.message) for one in heard]
-    said += [str(value) for key, value in getattr(found, "attrs", {}).items() if "warning" in str(key)]
-    return Told(0, "\n".join([*said, *getattr(found, "warnings", ())]))
+        result = call()
+    said = [str(warning.message) for warning in heard]
+    said += [str(value) for key, value in getattr(result, "attrs", {}).items() if "warning" in str(key)]
+    return Told(0, "\n".join([*said, *getattr(result, "warnings", ())]))
 
 
 def _gradient(bench: Bench) -> Told:

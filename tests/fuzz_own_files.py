@@ -143,7 +143,7 @@ def _record(content: bytes, kind: str, draw: random.Random) -> bytes:
         first = own_records.seal_of(content.split(b"\n")[0].decode())
         further = [own_records.opened(first, line) for line in lines[1:]]
         head = own_records.seal_of(changed)
-        lines[1:] = [own_records.sealed(head, one).encode() for one in further]
+        lines[1:] = [own_records.sealed(head, line).encode() for line in further]
     return b"".join(lines)
 
 
@@ -268,8 +268,8 @@ def _use(workspace: Workspace) -> None:
     intervals = PredictionIntervals(
         0.95, np.ones((3, 2)), np.zeros((3, 2)), np.ones(2), {"blind": np.array([0.5])}, np.ones(1)
     )
-    made = (intervals, problem, {"a": [1, 2.5, None], "b": (True, "x")}, np.float64(0.1))
-    kept.kept(workspace, "key", lambda: made, (problem,))
+    content = (intervals, problem, {"a": [1, 2.5, None], "b": (True, "x")}, np.float64(0.1))
+    kept.kept(workspace, "key", lambda: content, (problem,))
 
 
 def _again(at: Path) -> None:

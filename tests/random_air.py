@@ -13,38 +13,38 @@ Json = dict[str, Any]
 
 def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
     """Everything that acts on the air of a zone; `others` are the names of the other zones."""
-    made: Json = {"volume": draw.noted(draw.log(4.0, 600.0), 1.0)}
+    tree: Json = {"volume": draw.noted(draw.log(4.0, 600.0), 1.0)}
     if draw.chance(0.3):
-        made["capacity_factor"] = draw.number(1.0, 12.0)
+        tree["capacity_factor"] = draw.number(1.0, 12.0)
     if draw.chance(0.6):
-        made["infiltration"] = _infiltration(draw)
+        tree["infiltration"] = _infiltration(draw)
     if draw.chance(0.3):
-        made["longwave"] = draw.of(
+        tree["longwave"] = draw.of(
             "radiosity", "none", "linearised", {"kind": "linearised", "reference": draw.number(0.0, 30.0)}
         )
     for name in draw.some(["people", "lamp", "heater"]):
-        made.setdefault("gains", {})[name] = _gain(draw, schedules)
+        tree.setdefault("gains", {})[name] = _gain(draw, schedules)
     for name in draw.some(["fan", "shaft"]) if draw.chance(0.4) else []:
         flow = {"air_changes": draw.log(0.1, 30.0)} if draw.chance(0.6) else {"flow": draw.log(0.001, 0.3)}
-        made.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5)
-    made |= _loads(draw, schedules)
+        tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5)
+    tree |= _loads(draw, schedules)
     if draw.chance(0.25):
-        made["thermal_bridges"] = {"edge": _bridge(draw, others)}
+        tree["thermal_bridges"] = {"edge": _bridge(draw, others)}
         if draw.chance(0.4):
-            made["thermal_bridges"]["post"] = _bridge(draw, others)
-    return made
+            tree["thermal_bridges"]["post"] = _bridge(draw, others)
+    return tree
 
 
 def _infiltration(draw: Draw) -> Any:
     if draw.chance(0.4):
         return draw.noted(draw.log(0.02, 6.0), 0.01)
-    made: Json = {"constant": draw.number(0.0, 2.0)}
+    tree: Json = {"constant": draw.number(0.0, 2.0)}
     if draw.chance(0.5):
-        made["temperature"] = draw.number(0.0, 0.05)
+        tree["temperature"] = draw.number(0.0, 0.05)
     if draw.chance(0.5):
-        made["wind"] = draw.number(0.0, 0.3)
+        tree["wind"] = draw.number(0.0, 0.3)
     if draw.chance(0.4):
-        made["blower_door"] = draw.of(
+        tree["blower_door"] = draw.of(
             draw.log(0.3, 15.0),
             {"kind": "factor", "n50": draw.log(0.3, 15.0), "factor": draw.number(0.01, 0.1)},
             {"kind": "stack_wind", "n50": 3, "storeys": draw.whole(1, 3), "shelter": draw.whole(1, 5)},
@@ -53,19 +53,19 @@ def _infiltration(draw: Draw) -> Any:
                 "stack": 0.0003, "wind": 0.0002,
             },
         )  # fmt: skip
-    return made
+    return tree
 
 
 def _gain(draw: Draw, schedules: Schedules) -> Json:
-    made: Json = {} if draw.chance(0.4) else {"radiative": draw.of(0.0, 1.0, draw.number(0.0, 1.0))}
+    tree: Json = {} if draw.chance(0.4) else {"radiative": draw.of(0.0, 1.0, draw.number(0.0, 1.0))}
     if draw.chance(0.2):
         column, unit = draw.of(("P_heater", None), ("P_heater", "W"), ("P_kilo", "kW"))
-        made |= {"column": column} | ({"unit": unit} if unit else {})
+        tree |= {"column": column} | ({"unit": unit} if unit else {})
         if draw.chance(0.4):
-            made["factor"] = draw.number(-1.0, 1.5)
+            tree["factor"] = draw.number(-1.0, 1.5)
     else:
-        made["power"] = draw.of(draw.log(1.0, 4000.0), draw.number(-300.0, 300.0))
-    return made | schedules.maybe("on", 0.5)
+        tree["power"] = draw.of(draw.log(1.0, 4000.0), draw.number(-300.0, 300.0))
+    return tree | schedules.maybe("on", 0.5)
 
 
 def _loads(draw: Draw, schedules: Schedules) -> Json:
@@ -84,7 +84,7 @@ def _loads(draw: Draw, schedules: Schedules) -> Json:
         return {"held": held if draw.chance(0.7) else draw.number(5.0, 30.0)}
     if way > 6:
         return {}
-    made: Json = {}
+    loads: Json = {}
     for key, purpose, column, low, high in (
         ("heating", "warm", "T_low", 10.0, 21.5),
         ("cooling", "cool", "T_high", 22.0, 30.0),
@@ -100,12 +100,12 @@ def _loads(draw: Draw, schedules: Schedules) -> Json:
             plant["capacity"] = draw.log(20.0, 20_000.0)
         if draw.chance(0.4):
             plant["radiative"] = draw.of(0.95, 0.0, draw.number(0.0, 0.95))
-        made[key] = plant | schedules.maybe("on", 0.35)
-    return made
+        loads[key] = plant | schedules.maybe("on", 0.35)
+    return loads
 
 
 def _bridge(draw: Draw, others: list[str]) -> Json:
-    made: Json = (
+    bridge: Json = (
         {"psi": draw.number(-0.05, 1.0), "length": draw.number(0.0, 60.0)}
         if draw.chance(0.6)
         else {"chi": draw.number(0.0, 5.0)} | ({"number": draw.whole(1, 40)} if draw.chance(0.5) else {})
@@ -117,7 +117,7 @@ def _bridge(draw: Draw, others: list[str]) -> Json:
     ]  # fmt: skip
     ends += [{"zone": name} for name in others[:2]]
     end: Json = draw.one(ends)
-    return made | end
+    return bridge | end
 
 
 # --- air between zones and outdoors -------------------------------------------------------------------------
@@ -125,7 +125,7 @@ def _bridge(draw: Draw, others: list[str]) -> Json:
 
 def paths(draw: Draw, schedules: Schedules, zones: list[str]) -> Json:
     """Air between zones: mixing, doors, and flows of fans from one to another."""
-    made: Json = {}
+    paths_by_name: Json = {}
     for at in range(draw.whole(0, 3) if len(zones) > 1 else 0):
         first = draw.whole(0, len(zones) - 2)
         between = [zones[first], zones[draw.whole(first + 1, len(zones) - 1)]]
@@ -142,13 +142,13 @@ def paths(draw: Draw, schedules: Schedules, zones: list[str]) -> Json:
             path = {"between": between, "flow": draw.log(0.001, 0.5)}
         if way and draw.chance(0.3):
             path["one_way"] = True
-        made[f"path_{at}"] = path | schedules.maybe("on", 0.4)
-    return made
+        paths_by_name[f"path_{at}"] = path | schedules.maybe("on", 0.4)
+    return paths_by_name
 
 
 def units(draw: Draw, schedules: Schedules, zones: list[str]) -> Json:
     """Ventilation units with recovery or a given temperature of the supplied air."""
-    made: Json = {}
+    units_by_name: Json = {}
     for at in range(draw.of(0, 0, 0, 1, 1, 2)):
         unit: Json = {}
         for section in ("supply", "exhaust"):
@@ -163,30 +163,30 @@ def units(draw: Draw, schedules: Schedules, zones: list[str]) -> Json:
             )
         elif len(unit) == 2 and draw.chance(0.6):
             unit["recovery"] = draw.number(0.0, 1.0)
-        made[f"unit_{at}"] = unit
-    return made
+        units_by_name[f"unit_{at}"] = unit
+    return units_by_name
 
 
 def _flow(draw: Draw, schedules: Schedules) -> Any:
     if draw.chance(0.5):
         return draw.log(0.001, 0.2)
     if draw.chance(0.4):
-        made: Json = {"column": "Q_fan", "unit": "m3/h"}
-        return made | ({"factor": draw.number(0.1, 2.0)} if draw.chance(0.5) else {})
+        flow: Json = {"column": "Q_fan", "unit": "m3/h"}
+        return flow | ({"factor": draw.number(0.1, 2.0)} if draw.chance(0.5) else {})
     return {"flow": draw.log(0.001, 0.2)} | schedules.maybe("on", 0.5)
 
 
 def moved(made_paths: Json, made_units: Json) -> set[str]:
     """Zones that fans move air into or out of."""
-    found = {
+    changes = {
         name for unit in made_units.values() for key in ("supply", "exhaust") for name in unit.get(key, {})
     }
-    return found | {name for path in made_paths.values() if path.get("one_way") for name in path["between"]}
+    return changes | {name for path in made_paths.values() if path.get("one_way") for name in path["between"]}
 
 
 def openings(draw: Draw, schedules: Schedules, zones: list[str], controls: list[str]) -> Json:
     """Openings to outdoors by wind and buoyancy, without a network."""
-    made: Json = {}
+    openings_by_name: Json = {}
     for at in range(draw.of(0, 0, 1, 2)):
         opening: Json = {
             "zone": draw.one(zones),
@@ -196,15 +196,15 @@ def openings(draw: Draw, schedules: Schedules, zones: list[str], controls: list[
         opening |= {"discharge": draw.number(0.4, 0.8)} if draw.chance(0.3) else {}
         opening |= {"wind_coefficient": draw.number(0.0, 0.6)} if draw.chance(0.3) else {}
         opening |= {"control": draw.one(controls)} if controls and draw.chance(0.5) else {}
-        made[f"opening_{at}"] = opening | schedules.maybe("on", 0.4)
-    return made
+        openings_by_name[f"opening_{at}"] = opening | schedules.maybe("on", 0.4)
+    return openings_by_name
 
 
 def vents(
     draw: Draw, schedules: Schedules, zones: list[str], walls: dict[str, str], controls: list[str]
 ) -> Json:
     """Openings of the pressure network; `walls` are vertical outdoor walls with their zones."""
-    made: Json = {}
+    vents_by_name: Json = {}
     for at in range(draw.of(0, 0, 0, 1, 2, 4)):
         vent: Json = {"area": draw.log(0.0005, 3.0), "elevation": draw.number(0.0, 12.0)}
         if len(zones) > 1 and draw.chance(0.35):
@@ -216,8 +216,8 @@ def vents(
         vent |= {"discharge": draw.number(0.4, 0.8)} if draw.chance(0.3) else {}
         vent |= {"exponent": draw.number(0.5, 1.0)} if draw.chance(0.4) else {}
         vent |= {"control": draw.one(controls)} if controls and draw.chance(0.5) else {}
-        made[f"vent_{at}"] = vent | schedules.maybe("on", 0.35)
-    return made
+        vents_by_name[f"vent_{at}"] = vent | schedules.maybe("on", 0.35)
+    return vents_by_name
 
 
 def _to_outdoors(draw: Draw, zones: list[str], walls: dict[str, str]) -> Json:
@@ -245,7 +245,7 @@ def _to_outdoors(draw: Draw, zones: list[str], walls: dict[str, str]) -> Json:
 
 def controls(draw: Draw, zones: list[str]) -> Json:
     """What opens and closes openings: bands that are wide, narrow, or of no width."""
-    made: Json = {}
+    controls_by_name: Json = {}
     for at in range(draw.of(0, 0, 1, 2)):
         control: Json = {"zone": draw.one(zones)}
         for key, low, high, apart in (
@@ -263,8 +263,8 @@ def controls(draw: Draw, zones: list[str]) -> Json:
         for key in ("minimum_open_time", "minimum_closed_time"):
             if draw.chance(0.3):
                 control[key] = draw.of(0, 10, 45, draw.whole(1, 240))
-        made[f"control_{at}"] = control
-    return made
+        controls_by_name[f"control_{at}"] = control
+    return controls_by_name
 
 
 # --- humidity -----------------------------------------------------------------------------------------------
@@ -272,33 +272,33 @@ def controls(draw: Draw, zones: list[str]) -> Json:
 
 def humidity(draw: Draw, schedules: Schedules, tree: Json) -> Json:
     """The vapour balances: sources, plants, sorption, paint, recovery."""
-    made: Json = {}
+    section: Json = {}
     for key, low, high in (("initial", 0.02, 1.0), ("lewis", 0.7, 1.3), ("period", 6.0, 48.0)):
         if draw.chance(0.4):
-            made[key] = draw.number(low, high)
+            section[key] = draw.number(low, high)
     if draw.chance(0.3):
-        made["deep_period"] = draw.number(100.0, 1000.0)
-    solids = [name for name, one in tree["materials"].items() if one.get("kind") != "resistance"]
+        section["deep_period"] = draw.number(100.0, 1000.0)
+    solids = [name for name, entry in tree["materials"].items() if entry.get("kind") != "resistance"]
     for name in draw.some(solids):
-        made.setdefault("materials", {})[name] = random_materials.sorption(draw)
-    for name, one in tree["zones"].items():
-        part = _zone_humidity(draw, schedules, cooled="cooling" in one or "held" in one)
+        section.setdefault("materials", {})[name] = random_materials.sorption(draw)
+    for name, entry in tree["zones"].items():
+        part = _zone_humidity(draw, schedules, cooled="cooling" in entry or "held" in entry)
         if part:
-            made.setdefault("zones", {})[name] = part
+            section.setdefault("zones", {})[name] = part
     for name in draw.some(sorted(tree["surfaces"])) if draw.chance(0.3) else []:
-        made.setdefault("surfaces", {})[name] = draw.of({"paint": draw.log(0.01, 5.0)}, {"sealed": True})
+        section.setdefault("surfaces", {})[name] = draw.of({"paint": draw.log(0.01, 5.0)}, {"sealed": True})
     both = [
         name
         for name, unit in tree.get("ventilation_units", {}).items()
         if unit.keys() >= {"supply", "exhaust"}
     ]
     for name in draw.some(both):
-        made.setdefault("recovery", {})[name] = draw.number(0.0, 1.0)
-    return made
+        section.setdefault("recovery", {})[name] = draw.number(0.0, 1.0)
+    return section
 
 
 def _zone_humidity(draw: Draw, schedules: Schedules, *, cooled: bool) -> Json:
-    made: Json = {} if draw.chance(0.6) else {"storage": draw.number(1.0, 20.0)}
+    section: Json = {} if draw.chance(0.6) else {"storage": draw.number(1.0, 20.0)}
     for name in draw.some(["people", "shower", "plants"]):
         source: Json = draw.of(
             {"power": draw.log(1.0, 3000.0)},
@@ -307,21 +307,21 @@ def _zone_humidity(draw: Draw, schedules: Schedules, *, cooled: bool) -> Json:
         )
         if "column" in source and draw.chance(0.4):
             source["factor"] = draw.number(0.0, 2.0)
-        made.setdefault("gains", {})[name] = source | schedules.maybe("on", 0.5)
+        section.setdefault("gains", {})[name] = source | schedules.maybe("on", 0.5)
     if draw.chance(0.4):
         coil: Json = {"sensible_heat_ratio": draw.number(0.4, 1.0)}
         coil |= {"coil_temperature": draw.number(2.0, 16.0)} if draw.chance(0.5) else {}
-        made["drying"] = coil if cooled and draw.chance(0.4) else _humidistat(draw, schedules, "drying")
+        section["drying"] = coil if cooled and draw.chance(0.4) else _humidistat(draw, schedules, "drying")
     if draw.chance(0.3):
-        made["humidifying"] = _humidistat(draw, schedules, "humidifying")
-    return made
+        section["humidifying"] = _humidistat(draw, schedules, "humidifying")
+    return section
 
 
 def _humidistat(draw: Draw, schedules: Schedules, which: str) -> Json:
     dries = which == "drying"
     level, ratio = ("damp", "humid") if dries else ("dry", "arid")
     columns = ("phi_high", "w_high") if dries else ("phi_low", "w_low")
-    made: Json = draw.of(
+    set_point: Json = draw.of(
         {"relative_humidity": draw.number(0.5, 0.9) if dries else draw.number(0.1, 0.49)},
         {"relative_humidity": {"schedule": schedules.named(level)}},
         {"relative_humidity": {"column": columns[0], "unit": "%"}},
@@ -330,5 +330,5 @@ def _humidistat(draw: Draw, schedules: Schedules, which: str) -> Json:
         {"humidity_ratio": {"column": columns[1], "unit": "g/kg"}},
     )
     if draw.chance(0.5):
-        made["capacity"] = draw.log(5.0, 20_000.0)
-    return made | schedules.maybe("on", 0.3)
+        set_point["capacity"] = draw.log(5.0, 20_000.0)
+    return set_point | schedules.maybe("on", 0.3)

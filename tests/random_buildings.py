@@ -156,18 +156,18 @@ class _Maker:
                 continue
             halves = draw.of([(0.05, 0.95)], [(0.05, 0.45), (0.55, 0.95)])
             for at, (left, right) in enumerate(halves):
-                one = random_shells.window(draw, self.schedules, name, facing != "outdoors", glazings)
+                entry = random_shells.window(draw, self.schedules, name, facing != "outdoors", glazings)
                 low = draw.number(0.02, 0.4)
                 size: Json = {
                     "vertices": random_shells.pane_of(
                         points, (left, right), (low, draw.number(low + 0.2, 0.97))
                     )
                 }
-                self.tree["windows"][f"{name}_pane_{at}"] = one | size
+                self.tree["windows"][f"{name}_pane_{at}"] = entry | size
         lit = [
-            name for name, one in self.tree["surfaces"].items()
-            if one["outside"].get("outdoors") and one["outside"].get("exposure", {"sun": True})["sun"]
-            and "irradiance" not in one["outside"]
+            name for name, entry in self.tree["surfaces"].items()
+            if entry["outside"].get("outdoors") and entry["outside"].get("exposure", {"sun": True})["sun"]
+            and "irradiance" not in entry["outside"]
         ]  # fmt: skip
         walls = [name for name in shell if name.endswith(("_south", "_north", "_east")) and name in lit]
         for at in range(draw.of(0, 0, 1, 2) if walls else 0):
@@ -213,9 +213,9 @@ class _Maker:
             wall["outside"], wall["inside"] = wall["inside"], wall["outside"]
 
     def _window(self, wall: str, area: float, between: bool, glazings: list[str]) -> None:
-        made = random_shells.window(self.draw, self.schedules, wall, between, glazings)
-        made["area"] = self.draw.noted(four(area * self.draw.number(0.02, 0.9)), 0.0)
-        self.tree["windows"][f"{wall}_pane"] = made
+        window = random_shells.window(self.draw, self.schedules, wall, between, glazings)
+        window["area"] = self.draw.noted(four(area * self.draw.number(0.02, 0.9)), 0.0)
+        self.tree["windows"][f"{wall}_pane"] = window
 
     # --- what depends on the surfaces -----------------------------------------------------------------------
 
@@ -223,21 +223,21 @@ class _Maker:
         """How the sun is spread in zones with windows, and given view factors."""
         draw, tree = self.draw, self.tree
         walls = {
-            name: [side.get("zone") for side in (one["outside"], one["inside"])]
-            for name, one in tree["surfaces"].items()
+            name: [side.get("zone") for side in (entry["outside"], entry["inside"])]
+            for name, entry in tree["surfaces"].items()
         }
-        for zone, one in tree["zones"].items():
+        for zone, entry in tree["zones"].items():
             faced = [name for name, both in walls.items() if zone in both]
             panes = [pane for pane in tree["windows"].values() if zone in walls[pane["surface"]]]
             inner = any(all(walls[pane["surface"]]) for pane in panes)
             if panes and draw.chance(0.7):
                 ways: list[Any] = ["area", "floor"] + (["geometry"] * 3 if drawn else [])
-                one["sun"] = draw.one(ways + ([] if inner else [_shares(draw, faced)] * 2))
+                entry["sun"] = draw.one(ways + ([] if inner else [_shares(draw, faced)] * 2))
             if panes and not inner and draw.chance(0.15):
-                one["solar_to_air"] = draw.number(0.0, 0.5)
+                entry["solar_to_air"] = draw.number(0.0, 0.5)
             twice = any(both == [zone, zone] for both in (walls[name] for name in faced))
             if not panes and not twice and len(faced) > 2 and draw.chance(0.15):
-                one["view_factors"] = {
+                entry["view_factors"] = {
                     name: {other: 1.0 / (len(faced) - 1) for other in faced if other != name}
                     for name in faced
                 }
@@ -246,9 +246,9 @@ class _Maker:
         draw, tree = self.draw, self.tree
         controls = random_air.controls(draw, names)
         vertical = {
-            name: one["inside"]["zone"]
-            for name, one in tree["surfaces"].items()
-            if one["outside"].get("outdoors") and one.get("tilt", 0) == 90
+            name: entry["inside"]["zone"]
+            for name, entry in tree["surfaces"].items()
+            if entry["outside"].get("outdoors") and entry.get("tilt", 0) == 90
         }
         air_paths = random_air.paths(draw, self.schedules, names)
         units = random_air.units(draw, self.schedules, names)
@@ -297,35 +297,35 @@ FILLED = {("Layer", "name"), ("TableLaw", "curve"), ("FractionsLaw", "curve")}
 
 def drawn_keys(part: Any) -> set[tuple[str, str]]:
     """Classes of the description with their keys, as far as a building gives them."""
-    found: set[tuple[str, str]] = set()
+    keys: set[tuple[str, str]] = set()
     if isinstance(part, Part):
         for key in part.model_fields_set | ({"kind"} & type(part).model_fields.keys()):
-            found.add((type(part).__name__, key))
-            found |= drawn_keys(getattr(part, key))
+            keys.add((type(part).__name__, key))
+            keys |= drawn_keys(getattr(part, key))
     elif isinstance(part, dict):
         for value in part.values():
-            found |= drawn_keys(value)
+            keys |= drawn_keys(value)
     elif isinstance(part, tuple | list):
         for value in part:
-            found |= drawn_keys(value)
-    return found
+            keys |= drawn_keys(value)
+    return keys
 
 
 def known_keys() -> set[tuple[str, str]]:
     """All classes that a building is made of, with all their keys."""
-    found: set[tuple[str, str]] = set()
+    keys: set[tuple[str, str]] = set()
     waiting: list[Any] = [Building]
     seen: set[Any] = set()
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, type) and issubclass(one, Part) and one not in seen:
-            seen.add(one)
-            for key, info in one.model_fields.items():
-                found.add((one.__name__, key))
+        annotation = waiting.pop()
+        if isinstance(annotation, type) and issubclass(annotation, Part) and annotation not in seen:
+            seen.add(annotation)
+            for key, info in annotation.model_fields.items():
+                keys.add((annotation.__name__, key))
                 waiting.append(info.annotation)
         else:
-            waiting += [inner for inner in get_args(one) if inner not in seen]
-    return found
+            waiting += [inner for inner in get_args(annotation) if inner not in seen]
+    return keys
 
 
 def undrawn(buildings: Iterable[Building]) -> list[str]:

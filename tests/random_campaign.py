@@ -108,13 +108,13 @@ def _judge(seed: int, line: dict[str, Any]) -> None:
     line |= {"outcome": "run", "exit": 0 if alone.energy.closes else 1, "warnings": list(alone.warnings)}
     line |= dataclasses.asdict(random_judges.extremes(building, list(alone.outputs), alone.records))
     line["residual"] = float(alone.energy.relative_residual)
-    found = random_judges.faults(drawn, building, list(alone.outputs), alone.records)
-    found += _residuals(drawn, "energy", line["residual"])
+    faults = random_judges.faults(drawn, building, list(alone.outputs), alone.records)
+    faults += _residuals(drawn, "energy", line["residual"])
     if alone.vapour is not None:
         line["vapour_residual"] = float(alone.vapour.relative_residual)
-        found += _residuals(drawn, "vapour", line["vapour_residual"])
-    found += _members(drawn, simulation, line)
-    line["faults"] += [[one.kind, one.text] for one in found]
+        faults += _residuals(drawn, "vapour", line["vapour_residual"])
+    faults += _members(drawn, simulation, line)
+    line["faults"] += [[fault.kind, fault.text] for fault in faults]
 
 
 def _residuals(drawn: Case, what: str, residual: float) -> list[Fault]:
@@ -126,7 +126,7 @@ def _residuals(drawn: Case, what: str, residual: float) -> list[Fault]:
 def _members(drawn: Case, simulation: Simulation, line: dict[str, Any]) -> list[Fault]:
     """Faults of unlike members of an ensemble, and members that differ from a run alone."""
     vectors = drawn.vectors(simulation)
-    found: list[Fault] = []
+    faults: list[Fault] = []
     with within(LONGEST * len(vectors)):
         records, residuals, failures = simulation.ensemble(vectors)
     failed, differ, largest, unsolved = {one.member for one in failures}, 0, 0.0, 0
@@ -138,23 +138,23 @@ def _members(drawn: Case, simulation: Simulation, line: dict[str, Any]) -> list[
         except SolverError:
             unsolved += 1
             if member not in failed:
-                found.append(Fault("members", f"{where}: solved in the ensemble, not alone"))
+                faults.append(Fault("members", f"{where}: solved in the ensemble, not alone"))
             continue
         if member in failed:
-            found.append(Fault("members", f"{where}: not solved in the ensemble, solved alone"))
+            faults.append(Fault("members", f"{where}: not solved in the ensemble, solved alone"))
             continue
         # An ensemble gives the larger residual of heat and vapour.
         residual = max(raw["closure"], raw["vapour"]["closure"] if simulation.building.humidity else 0.0)
         if residual != residuals[member]:
             off = abs(residual - residuals[member])
-            found.append(Fault("residual of a member", f"{where}: {off:.2g} off that of a run alone"))
+            faults.append(Fault("residual of a member", f"{where}: {off:.2g} off that of a run alone"))
         if not np.array_equal(alone, records[member], equal_nan=True):
             differ += 1
             largest = max(largest, float(np.nanmax(np.abs(alone - records[member]), initial=0.0)))
         changed = simulation._changed(vector)
         own = random_judges.faults(drawn, simulation.building, list(simulation.outputs), alone, changed)
         own += _residuals(drawn, "energy", raw["closure"])
-        found += [Fault(one.kind, f"{where}: {one.text}") for one in own]
+        faults += [Fault(one.kind, f"{where}: {one.text}") for one in own]
     line |= {
         "members": len(vectors),
         "differ": differ,
@@ -162,10 +162,10 @@ def _members(drawn: Case, simulation: Simulation, line: dict[str, Any]) -> list[
         "unsolved_members": unsolved,
     }
     if differ:
-        found.append(
+        faults.append(
             Fault("members", f"{differ} of {len(vectors)} differ from a run alone, by {largest:.3g} at most")
         )
-    return found
+    return faults
 
 
 # --- the campaign -------------------------------------------------------------------------------------------
@@ -177,7 +177,7 @@ def shown(drawn: Case) -> str:
 
     head = [f"weather: {drawn.weather.kind}, {len(drawn.weather.frame)} rows"]
     head += [f"{key}: {value!r}" for key, value in drawn.options.items()]
-    return "\n".join([*(f"# {one}" for one in head), text_of(drawn.tree)])
+    return "\n".join([*(f"# {comment}" for comment in head), text_of(drawn.tree)])
 
 
 def done(path: Path) -> list[dict[str, Any]]:
@@ -196,20 +196,20 @@ def summary(lines: list[dict[str, Any]]) -> str:
     text = [f"{len(lines)} drawn"]
     text += [
         f"  {name}: {count}"
-        for name, count in collections.Counter(one["outcome"] for one in lines).most_common()
+        for name, count in collections.Counter(line["outcome"] for line in lines).most_common()
     ]
-    members = sum(one.get("members", 0) for one in lines)
-    text.append(f"  members: {members}, of which {sum(one.get('differ', 0) for one in lines)} differ")
+    members = sum(line.get("members", 0) for line in lines)
+    text.append(f"  members: {members}, of which {sum(line.get('differ', 0) for line in lines)} differ")
     by_kind: dict[str, dict[int, str]] = {}
-    for one in lines:
-        for kind, what in one["faults"]:
-            by_kind.setdefault(kind, {}).setdefault(one["seed"], what)
+    for line in lines:
+        for kind, what in line["faults"]:
+            by_kind.setdefault(kind, {}).setdefault(line["seed"], what)
     for kind, seeds in sorted(by_kind.items(), key=lambda item: -len(item[1])):
         first = ", ".join(map(str, sorted(seeds)[:8]))
         text.append(f"{kind}: {len(seeds)} cases ({first})\n    {next(iter(seeds.values()))}")
     for outcome in ("unsolved", "refused by the run", "refused"):
-        for one in [one for one in lines if one["outcome"] == outcome][:12]:
-            text.append(f"{outcome}, seed {one['seed']}: {' '.join(one['error'].split())[:200]}")
+        for line in [line for line in lines if line["outcome"] == outcome][:12]:
+            text.append(f"{outcome}, seed {line['seed']}: {' '.join(line['error'].split())[:200]}")
     return "\n".join(text)
 
 
@@ -226,10 +226,10 @@ def main() -> int:
         print(shown(case(asked.show)))
         return 0
     lines = done(asked.resume) if asked.resume else []
-    known = {one["seed"] for one in lines}
-    wanted = [] if asked.summary else range(asked.first, asked.first + asked.count)
-    for seed in wanted:
-        if seed in known:
+    seeds = {line["seed"] for line in lines}
+    requested = [] if asked.summary else range(asked.first, asked.first + asked.count)
+    for seed in requested:
+        if seed in seeds:
             continue
         lines.append(judged(seed))
         if asked.resume:
@@ -238,7 +238,7 @@ def main() -> int:
         else:
             print(json.dumps(lines[-1]), flush=True)
     print(summary(lines))
-    return 1 if any(one["faults"] for one in lines) else 0
+    return 1 if any(line["faults"] for line in lines) else 0
 
 
 if __name__ == "__main__":

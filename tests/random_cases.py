@@ -63,12 +63,20 @@ class Case:
     def vectors(self, simulation: Simulation) -> Array:
         """Unlike members: some parameters anywhere in their plausible ranges, shape (members, P)."""
         draw = Draw(f"members {self.seed}")
-        varying = [one for one in simulation.building.parameters() if one.varies and not one.members]
+        varying = [
+            parameter
+            for parameter in simulation.building.parameters()
+            if parameter.varies and not parameter.members
+        ]
         chosen = draw.some(varying, least=1)[: draw.whole(1, 12)] if varying else []
         rows = []
         for _ in range(draw.of(3, 3, 4, 5, 6, 7, 8, 9, 11, 16, 17, 19)):
             for _ in range(TRIALS):
-                values = {one.path: draw.number(one.low, one.high) for one in chosen if draw.chance(0.8)}
+                values = {
+                    parameter.path: draw.number(parameter.low, parameter.high)
+                    for parameter in chosen
+                    if draw.chance(0.8)
+                }
                 row = _possible(simulation, values)
                 if row is not None:
                     break

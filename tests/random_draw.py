@@ -47,8 +47,8 @@ class Draw:
     def some(self, choices: Sequence[Any], least: int = 0) -> list[Any]:
         """Some of the values of a list, in its order."""
         count = self.whole(min(least, len(choices)), len(choices))
-        kept = set(self._random.sample(range(len(choices)), count))
-        return [value for at, value in enumerate(choices) if at in kept]
+        positions = set(self._random.sample(range(len(choices)), count))
+        return [value for at, value in enumerate(choices) if at in positions]
 
     def noted(self, value: float, half: float) -> Any:
         """A number as a plain one, or with a range around it, a source, and whether it is assumed.

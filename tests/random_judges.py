@@ -91,18 +91,18 @@ def faults(
     changed : mapping of str to float, optional
         Parameters of a member that differ from those of the building. [unit of each]
     """
-    found: list[Fault] = []
+    list_of_faults: list[Fault] = []
     for k, output in enumerate(outputs):
         values = records[:, k]
         if not np.isfinite(values).all():
             row = int(np.flatnonzero(~np.isfinite(values))[0])
-            found.append(Fault("not finite", f"{output.name} in row {row}: {values[row]}"))
+            list_of_faults.append(Fault("not finite", f"{output.name} in row {row}: {values[row]}"))
             continue
         low, high = float(values.min()), float(values.max())
         for kind, at, limit in _outside(case, building, output, low, high, changed or {}):
             where = f"{output.name} in row {_row(values, at)}"
-            found.append(Fault(kind, f"{where}: {at:.6g} {output.unit} ({limit})"))
-    return found
+            list_of_faults.append(Fault(kind, f"{where}: {at:.6g} {output.unit} ({limit})"))
+    return list_of_faults
 
 
 def _row(values: Array, value: float) -> int:
@@ -113,25 +113,25 @@ def _outside(
     case: Case, building: Building, output: Output, low: float, high: float, changed: Mapping[str, float]
 ) -> list[tuple[str, float, str]]:
     """Limits that the lowest or the highest value of an output is beyond: kind, value, limit."""
-    found = []
+    outside = []
     if output.unit == "degC":
         if low < ABSOLUTE_ZERO:
-            found.append(("below absolute zero", low, f"expected {ABSOLUTE_ZERO:g} degC or more"))
+            outside.append(("below absolute zero", low, f"expected {ABSOLUTE_ZERO:g} degC or more"))
         if high > HOTTEST:
-            found.append(("above 2000 K", high, f"expected {HOTTEST:g} degC or less"))
+            outside.append(("above 2000 K", high, f"expected {HOTTEST:g} degC or less"))
     if output.kind in NOT_NEGATIVE | FRACTIONS and low < -ROUNDING:
         kind = "negative humidity" if output.kind in HUMIDITIES else f"negative {output.kind}"
-        found.append((kind, low, "expected 0 or more"))
+        outside.append((kind, low, "expected 0 or more"))
     if output.kind in FRACTIONS and high > 1.0 + ROUNDING:
-        found.append((f"fraction above 1: {output.kind}", high, "expected 1 or less"))
+        outside.append((f"fraction above 1: {output.kind}", high, "expected 1 or less"))
     most = capacity(building, output, changed)
     if high > most * (1.0 + ROUNDING) + ROUNDING:
-        found.append(("load above its capacity", high, f"expected {most:g} W or less"))
+        outside.append(("load above its capacity", high, f"expected {most:g} W or less"))
     if output.kind == "incident_solar":
         bound = largest_irradiance(case, building, output, changed)
         if high > bound:
-            found.append(("irradiance", high, f"expected {bound:.0f} W/m2 or less"))
-    return found
+            outside.append(("irradiance", high, f"expected {bound:.0f} W/m2 or less"))
+    return outside
 
 
 def capacity(building: Building, output: Output, changed: Mapping[str, float]) -> float:
@@ -147,8 +147,8 @@ def capacity(building: Building, output: Output, changed: Mapping[str, float]) -
     elif output.kind in ("latent_heating", "latent_cooling") and building.humidity is not None:
         which = "humidifying" if output.kind == "latent_heating" else "drying"
         part, path = getattr(building.humidity.zones[name], which), f"humidity.zones.{name}.{which}.capacity"
-    given = getattr(part, "capacity", None)
-    return math.inf if given is None else changed.get(path, float(given))
+    limit = getattr(part, "capacity", None)
+    return math.inf if limit is None else changed.get(path, float(limit))
 
 
 def largest_irradiance(case: Case, building: Building, output: Output, changed: Mapping[str, float]) -> float:
@@ -167,7 +167,9 @@ def extremes(building: Building, outputs: list[Output], records: Array) -> Extre
     """Lowest and highest values by what they are."""
 
     def of(*kinds: str, unit: str = "") -> Array:
-        chosen = [k for k, one in enumerate(outputs) if one.kind in kinds or (unit and one.unit == unit)]
+        chosen = [
+            k for k, output in enumerate(outputs) if output.kind in kinds or (unit and output.unit == unit)
+        ]
         return records[:, chosen]
 
     def end(values: Array, *, lowest: bool) -> float:

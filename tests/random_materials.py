@@ -27,14 +27,14 @@ def solid(draw: Draw) -> Json:
 
 def ordinary(draw: Draw) -> Json:
     """A building material."""
-    made: Json = draw.of(
+    material: Json = draw.of(
         {"conductivity": 1.75, "density": 2240, "specific_heat": 900},
         {"conductivity": 0.16, "density": 950, "specific_heat": 840},
         {"conductivity": 0.13, "density": 500, "specific_heat": 1600},
         {"conductivity": 0.04, "density": 30, "specific_heat": 1000},
         {"conductivity": 0.8, "density": 1700, "specific_heat": 850},
     )
-    return made
+    return material
 
 
 # --- materials that melt ------------------------------------------------------------------------------------
@@ -42,34 +42,34 @@ def ordinary(draw: Draw) -> Json:
 
 def product(draw: Draw) -> Json:
     """A product of the catalogue, by either of its curves, shifted, or with other properties or laws."""
-    known = products()
-    name = draw.one(sorted(known))
-    found = known[name]
-    given: Json = {"product": name}
-    given |= {key: _USUAL[key] for key in PROPERTIES if key not in found.raw}
-    curves = [key for key in ("heating", "cooling") if getattr(found, key) is not None]
+    catalogue = products()
+    name = draw.one(sorted(catalogue))
+    entry = catalogue[name]
+    material: Json = {"product": name}
+    material |= {key: _USUAL[key] for key in PROPERTIES if key not in entry.raw}
+    curves = [key for key in ("heating", "cooling") if getattr(entry, key) is not None]
     if not curves:
-        if "law" not in found.raw:
-            given["law"] = {"kind": "tanh", "width": draw.number(0.3, 3.0)}
-        return given
+        if "law" not in entry.raw:
+            material["law"] = {"kind": "tanh", "width": draw.number(0.3, 3.0)}
+        return material
     kind = draw.whole(0, 4)
     if kind == 1:
-        given["law"] = draw.one(curves)
+        material["law"] = draw.one(curves)
     elif kind == 2:
-        given["law"] = {"curve": draw.one(curves), "temperature_shift": draw.number(-8.0, 8.0)}
+        material["law"] = {"curve": draw.one(curves), "temperature_shift": draw.number(-8.0, 8.0)}
     elif kind == 3:
-        given["law"] = {"enthalpy_scale": draw.number(0.8, 1.2)}
+        material["law"] = {"enthalpy_scale": draw.number(0.8, 1.2)}
     elif kind == 4:
-        given["conductivity"] = draw.number(0.1, 2.0)
+        material["conductivity"] = draw.number(0.1, 2.0)
         if draw.chance(0.5):
-            given["density"] = {"solid": 900.0}
-    return given
+            material["density"] = {"solid": 900.0}
+    return material
 
 
 def closed_law(draw: Draw) -> Json:
     """A law of the liquid fraction by a formula."""
     width = draw.log(0.1, 4.0)
-    made: Json = draw.of(
+    law: Json = draw.of(
         {"kind": "tanh", "width": width},
         {"kind": "tanh", "gamma": 0.04, "delta_t": four(0.01 * width)},
         {"kind": "smooth_step", "width": width, "continuity": draw.of(1, 2)},
@@ -78,7 +78,7 @@ def closed_law(draw: Draw) -> Json:
         {"kind": "linear", "width": width},
         {"kind": "triangle", "below": width, "above": draw.log(0.1, 4.0)},
     )
-    return made
+    return law
 
 
 def _fractions(draw: Draw, start: float) -> Json:
@@ -120,37 +120,37 @@ def _table(draw: Draw, start: float) -> Json:
 def melting(draw: Draw) -> Json:
     """A material that melts: a formula or a measured curve, with or without hysteresis."""
     middle = draw.number(-5.0, 40.0)
-    made: Json = {
+    material: Json = {
         "kind": "pcm",
         "conductivity": draw.of(0.2, [0.5, 0.3], {"solid": 0.22, "liquid": 0.18}),
         "density": draw.of(855, [880, 770], {"solid": 1500, "liquid": 1450}),
         "specific_heat": draw.of(2000, [3134, 2833], {"solid": 2100, "liquid": 2300}),
     }
     if draw.chance(0.1):
-        made["source"] = "a measurement"
+        material["source"] = "a measurement"
     way = draw.whole(0, 4)
     if way == 0:
-        return made | {"law": _table(draw, middle)}
-    made["latent_heat"] = draw.log(5e4, 3e5)
+        return material | {"law": _table(draw, middle)}
+    material["latent_heat"] = draw.log(5e4, 3e5)
     if way == 1:
-        made["law"] = _fractions(draw, middle)
+        material["law"] = _fractions(draw, middle)
         if draw.chance(0.4):
-            law = made["law"]
+            law = material["law"]
             apart = draw.number(0.0, 3.0)
             lower = law | {"temperatures": [four(t - apart) for t in law["temperatures"]]}
-            made["hysteresis"] = {"model": _model(draw), "law": lower}
-        return made
-    made |= {"law": closed_law(draw), "melting_temperature": draw.noted(middle, 1.0)}
+            material["hysteresis"] = {"model": _model(draw), "law": lower}
+        return material
+    material |= {"law": closed_law(draw), "melting_temperature": draw.noted(middle, 1.0)}
     if draw.chance(0.45):
         apart = draw.number(0.05, 4.0)
-        made["hysteresis"] = {"model": _model(draw), "freezing_temperature": four(middle - apart)}
+        material["hysteresis"] = {"model": _model(draw), "freezing_temperature": four(middle - apart)}
         if draw.chance(0.3):  # far enough that the curves cannot cross
-            made["law"] = {"kind": "smooth_step", "width": 1.0}
-            made["hysteresis"] |= {
+            material["law"] = {"kind": "smooth_step", "width": 1.0}
+            material["hysteresis"] |= {
                 "freezing_temperature": four(middle - 3.0),
                 "law": {"kind": draw.of("linear", "smooth_step"), "width": draw.number(0.5, 1.8)},
             }
-    return made
+    return material
 
 
 def _model(draw: Draw) -> str:
@@ -162,18 +162,18 @@ def _model(draw: Draw) -> str:
 
 def materials(draw: Draw) -> Json:
     """Materials of a building by name; the names say what they are."""
-    made: Json = {"base": ordinary(draw)}
+    materials_by_name: Json = {"base": ordinary(draw)}
     if draw.chance(0.6):
-        made["other"] = solid(draw) if draw.chance(0.4) else ordinary(draw)
+        materials_by_name["other"] = solid(draw) if draw.chance(0.4) else ordinary(draw)
     if draw.chance(0.4):
-        made["gap"] = {"kind": "resistance", "resistance": draw.log(0.01, 3.0)}
+        materials_by_name["gap"] = {"kind": "resistance", "resistance": draw.log(0.01, 3.0)}
         if draw.chance(0.3):
-            made["gap"]["source"] = "ISO 6946:2017"
+            materials_by_name["gap"]["source"] = "ISO 6946:2017"
     if draw.chance(0.35):
-        made["product"] = product(draw)
+        materials_by_name["product"] = product(draw)
     if draw.chance(0.45):
-        made["wax"] = melting(draw)
-    return made
+        materials_by_name["wax"] = melting(draw)
+    return materials_by_name
 
 
 def construction(draw: Draw, known: Json) -> Json:
@@ -184,7 +184,7 @@ def construction(draw: Draw, known: Json) -> Json:
         if (
             "gap" in known
             and layers
-            and "gap" not in (one["material"] for one in layers)
+            and "gap" not in (entry["material"] for entry in layers)
             and draw.chance(0.3)
         ):
             layers.append({"material": "gap"})
@@ -192,7 +192,7 @@ def construction(draw: Draw, known: Json) -> Json:
         name = draw.one(names)
         melts = name in ("product", "wax")
         layer: Json = {"material": name, "thickness": draw.log(0.002, 0.03 if melts else 0.4)}
-        if draw.chance(0.3) or any(one.get("name", one["material"]) == name for one in layers):
+        if draw.chance(0.3) or any(entry.get("name", entry["material"]) == name for entry in layers):
             layer["name"] = f"layer_{at}"
         if draw.chance(0.25):
             layer["nodes"] = draw.whole(1, 12)
@@ -206,32 +206,32 @@ def construction(draw: Draw, known: Json) -> Json:
 
 
 def _pane(draw: Draw, optics: bool) -> Json:
-    made: Json = {
+    pane: Json = {
         "thickness": draw.number(0.003, 0.012),
         "emissivity": draw.of(0.84, 0.9, [0.84, 0.04], [0.1, 0.84]),
     }
     if optics:
-        made["transmittance"] = draw.number(0.1, 0.88)
-        most = 0.99 - made["transmittance"]
+        pane["transmittance"] = draw.number(0.1, 0.88)
+        most = 0.99 - pane["transmittance"]
         plain = draw.number(0.03, 0.08)
-        made["reflectance"] = min(plain, most) if draw.chance(0.6) else [
+        pane["reflectance"] = min(plain, most) if draw.chance(0.6) else [
             four(most * draw.number(0.1, 0.9)), four(most * draw.number(0.1, 0.9))]  # fmt: skip
     if draw.chance(0.5):
-        made |= {"density": 2500, "specific_heat": 750}
+        pane |= {"density": 2500, "specific_heat": 750}
     if draw.chance(0.2):
-        made["conductivity"] = draw.number(0.2, 1.2)
-    return made
+        pane["conductivity"] = draw.number(0.2, 1.2)
+    return pane
 
 
 def _gap(draw: Draw) -> Json:
     if draw.chance(0.25):
         return {"conductance": draw.log(0.5, 10.0)}
-    made: Json = {"thickness": draw.log(0.004, 0.15)}
+    gap: Json = {"thickness": draw.log(0.004, 0.15)}
     if draw.chance(0.7):
-        made["gas"] = draw.of("air", "argon", "krypton", "xenon")
+        gap["gas"] = draw.of("air", "argon", "krypton", "xenon")
     if draw.chance(0.2):
-        made["pressure"] = draw.number(60_000.0, 105_000.0)
-    return made
+        gap["pressure"] = draw.number(60_000.0, 105_000.0)
+    return gap
 
 
 def _angular(draw: Draw, panes: int) -> Json:
@@ -242,9 +242,9 @@ def _angular(draw: Draw, panes: int) -> Json:
     falling = [1.0, 0.98, 0.85, 0.5, 0.0]
     transmitted = [four(through * f) for f in falling]
     absorbed = [[four(each * f) for f in falling] for _ in range(panes)]
-    made: Json = {"angles": angles, "transmittance": transmitted, "absorptance": absorbed}
+    table: Json = {"angles": angles, "transmittance": transmitted, "absorptance": absorbed}
     if draw.chance(0.5):
-        made["reflectance"] = [
+        table["reflectance"] = [
             four(1.0 - t - sum(pane[k] for pane in absorbed)) for k, t in enumerate(transmitted)
         ]
     for key in ("diffuse", "back"):
@@ -252,44 +252,44 @@ def _angular(draw: Draw, panes: int) -> Json:
             part: Json = {"transmittance": four(0.85 * through), "absorptance": [four(0.9 * each)] * panes}
             if draw.chance(0.5):
                 part["reflectance"] = four(1.0 - part["transmittance"] - sum(part["absorptance"]))
-            made[key] = part
+            table[key] = part
     for key in ("transmittance_scale", "absorptance_scale"):
         if draw.chance(0.2):
-            made[key] = draw.number(0.9, 1.0)
-    return made
+            table[key] = draw.number(0.9, 1.0)
+    return table
 
 
 def glazing(draw: Draw) -> Json:
     """Panes with gaps, a table over the angle, or rated values."""
     if draw.chance(0.3):
-        made: Json = {
+        unit: Json = {
             "kind": "simple",
             "u_value": draw.log(0.5, 5.6),
             "solar_heat_gain": draw.number(0.15, 0.85),
         }
         if draw.chance(0.3):
-            made["transmittance"] = four(made["solar_heat_gain"] * draw.number(0.6, 1.0))
+            unit["transmittance"] = four(unit["solar_heat_gain"] * draw.number(0.6, 1.0))
         if draw.chance(0.2):
-            made["panes"] = draw.whole(1, 4)
+            unit["panes"] = draw.whole(1, 4)
         if draw.chance(0.2):
-            made["category"] = draw.number(1.0, 10.0)
+            unit["category"] = draw.number(1.0, 10.0)
         if draw.chance(0.15):
-            made |= {"outside_film": 0.04, "inside_film": draw.of(0.13, 0.1)}
+            unit |= {"outside_film": 0.04, "inside_film": draw.of(0.13, 0.1)}
         if draw.chance(0.15):
-            made["emissivity"] = draw.number(0.2, 0.95)
+            unit["emissivity"] = draw.number(0.2, 0.95)
     else:
         count = draw.of(1, 1, 2, 2, 2, 3, 4)
         angular = draw.chance(0.25)
-        made = {
+        unit = {
             "kind": "panes",
             "panes": [_pane(draw, optics=not angular) for _ in range(count)],
             "gaps": [_gap(draw) for _ in range(count - 1)],
         }
         if angular:
-            made["angular"] = _angular(draw, count)
+            unit["angular"] = _angular(draw, count)
     if draw.chance(0.1):
-        made["source"] = "a data sheet"
-    return made
+        unit["source"] = "a data sheet"
+    return unit
 
 
 def sorption(draw: Draw) -> Any:
@@ -301,13 +301,13 @@ def sorption(draw: Draw) -> Any:
     if way == 0:
         return draw.one(get_args(Sorbing))
     if way == 1:
-        made: Json = {"like": draw.one(get_args(Sorbing)), "factor": draw.number(0.5, 1.5)}
-        return made | depths | ({"vapour_resistance": draw.log(2.0, 300.0)} if draw.chance(0.5) else {})
+        isotherm: Json = {"like": draw.one(get_args(Sorbing)), "factor": draw.number(0.5, 1.5)}
+        return isotherm | depths | ({"vapour_resistance": draw.log(2.0, 300.0)} if draw.chance(0.5) else {})
     if way == 2:
         return {"capacity": draw.log(1.0, 100.0), "vapour_resistance": draw.log(2.0, 300.0)} | depths
-    made = {
+    isotherm = {
         "humidities": [0, draw.number(0.2, 0.6), draw.number(0.7, 0.95)],
         "contents": [0, draw.number(5.0, 30.0), draw.number(40.0, 90.0)],
         "vapour_resistance": draw.log(2.0, 300.0),
     }
-    return made | depths | ({"factor": draw.number(0.5, 1.5)} if draw.chance(0.4) else {})
+    return isotherm | depths | ({"factor": draw.number(0.5, 1.5)} if draw.chance(0.4) else {})

@@ -56,10 +56,10 @@ def film(draw: Draw, facing: str) -> Any:
 
 def _irradiance(draw: Draw, part: type[Part], column: str) -> Json:
     """A measured irradiance: of the free plane, or behind what shades it where a part has this key."""
-    made: Json = {"irradiance": column}
+    keys: Json = {"irradiance": column}
     if "behind_obstacles" in part.model_fields and draw.chance(0.4):
-        made["behind_obstacles"] = draw.of(True, True, False)
-    return made
+        keys["behind_obstacles"] = draw.of(True, True, False)
+    return keys
 
 
 def outdoors(draw: Draw) -> Json:
@@ -135,28 +135,28 @@ def beyond(draw: Draw, schedules: Schedules) -> Json:
 
 def _blind(draw: Draw, schedules: Schedules) -> Json:
     through = draw.of(0.0, draw.number(0.0, 0.6))
-    made: Json = {
+    blind: Json = {
         "position": draw.of("outside", "inside"),
         "transmittance": through,
         "reflectance": four((0.999 - through) * draw.number(0.0, 1.0)),
     }
     if draw.chance(0.6):
-        made["resistance"] = draw.log(0.02, 1.0)
+        blind["resistance"] = draw.log(0.02, 1.0)
     else:
-        made["shutter_resistance"] = draw.number(0.0, 0.5)
-        made["air_permeability"] = draw.of("very_high", "high", "average", "low", "tight")
+        blind["shutter_resistance"] = draw.number(0.0, 0.5)
+        blind["air_permeability"] = draw.of("very_high", "high", "average", "low", "tight")
     if draw.chance(0.3):
-        made["emissivity"] = draw.number(0.05, 0.95)
+        blind["emissivity"] = draw.number(0.05, 0.95)
     if draw.chance(0.3):
-        made["cover"] = draw.number(0.0, 1.0)
+        blind["cover"] = draw.number(0.0, 1.0)
     if draw.chance(0.3):
-        made["radiation"] = draw.number(0.0, 600.0)
-    return made | schedules.maybe("on", 0.4)
+        blind["radiation"] = draw.number(0.0, 600.0)
+    return blind | schedules.maybe("on", 0.4)
 
 
 def window(draw: Draw, schedules: Schedules, surface: str, between: bool, glazings: list[str]) -> Json:
     """A window without its size, in a wall to outdoors or between two zones."""
-    made: Json = {"surface": surface, "glazing": draw.one(glazings)}
+    tree: Json = {"surface": surface, "glazing": draw.one(glazings)}
     outer: Json = {"convection": film(draw, "zone" if between else "outdoors")}
     if not between:
         if draw.chance(0.08):
@@ -168,14 +168,14 @@ def window(draw: Draw, schedules: Schedules, surface: str, between: bool, glazin
         if draw.chance(0.3):
             outer["longwave"] = draw.of("none", "exact", {"kind": "linearised", "reference": 10})
         if draw.chance(0.3):
-            made["blind"] = _blind(draw, schedules)
+            tree["blind"] = _blind(draw, schedules)
     if draw.chance(0.4):
-        made["frame"] = {"fraction": draw.number(0.05, 0.6), "u_value": draw.log(0.6, 5.5)}
+        tree["frame"] = {"fraction": draw.number(0.05, 0.6), "u_value": draw.log(0.6, 5.5)}
         if draw.chance(0.3):
-            made["frame"] |= {"absorptance": draw.number(0.1, 0.9), "emissivity": draw.number(0.1, 0.95)}
+            tree["frame"] |= {"absorptance": draw.number(0.1, 0.9), "emissivity": draw.number(0.1, 0.95)}
     if draw.chance(0.2):
-        made["cavity_height"] = draw.log(0.2, 3.0)
-    return made | {"outside": outer, "inside": {"convection": film(draw, "zone")}}
+        tree["cavity_height"] = draw.log(0.2, 3.0)
+    return tree | {"outside": outer, "inside": {"convection": film(draw, "zone")}}
 
 
 def pane_of(wall: list[Point], u: tuple[float, float], v: tuple[float, float]) -> list[Point]:
@@ -206,18 +206,18 @@ def row_of_rooms(draw: Draw, zones: list[str], attic: str | None) -> dict[str, t
         By surface: corners counter-clockwise seen from outside [m], what is outside and what is inside.
     """
     depth, height, x = draw.number(2.0, 9.0), draw.number(2.2, 5.0), 0.0
-    made: dict[str, tuple[list[Point], str, str]] = {}
+    shell: dict[str, tuple[list[Point], str, str]] = {}
     for at, zone in enumerate(zones):
         a, b, h, d = x, x + draw.number(2.0, 9.0), height, depth
         above = attic or "outdoors"
-        made[f"{zone}_floor"] = ([[a, 0, 0], [a, d, 0], [b, d, 0], [b, 0, 0]], "beyond", zone)
-        made[f"{zone}_roof"] = ([[a, 0, h], [b, 0, h], [b, d, h], [a, d, h]], above, zone)
-        made[f"{zone}_south"] = ([[a, 0, 0], [b, 0, 0], [b, 0, h], [a, 0, h]], "outdoors", zone)
-        made[f"{zone}_north"] = ([[b, d, 0], [a, d, 0], [a, d, h], [b, d, h]], "outdoors", zone)
+        shell[f"{zone}_floor"] = ([[a, 0, 0], [a, d, 0], [b, d, 0], [b, 0, 0]], "beyond", zone)
+        shell[f"{zone}_roof"] = ([[a, 0, h], [b, 0, h], [b, d, h], [a, d, h]], above, zone)
+        shell[f"{zone}_south"] = ([[a, 0, 0], [b, 0, 0], [b, 0, h], [a, 0, h]], "outdoors", zone)
+        shell[f"{zone}_north"] = ([[b, d, 0], [a, d, 0], [a, d, h], [b, d, h]], "outdoors", zone)
         before = zones[at - 1] if at else "outdoors"
-        made[f"{zone}_west"] = ([[a, d, 0], [a, 0, 0], [a, 0, h], [a, d, h]], before, zone)
+        shell[f"{zone}_west"] = ([[a, d, 0], [a, 0, 0], [a, 0, h], [a, d, h]], before, zone)
         x = b
-    made["last_east"] = (
+    shell["last_east"] = (
         [[x, 0, 0], [x, depth, 0], [x, depth, height], [x, 0, height]],
         "outdoors",
         zones[-1],
@@ -225,12 +225,12 @@ def row_of_rooms(draw: Draw, zones: list[str], attic: str | None) -> dict[str, t
     if attic is not None:
         d, h, top = depth, height, height + draw.number(0.5, 3.0)
         ridge = [[0, d / 2, top], [x, d / 2, top]]
-        made["pitch_south"] = ([[0, 0, h], [x, 0, h], ridge[1], ridge[0]], "outdoors", attic)
-        made["pitch_north"] = ([[x, d, h], [0, d, h], ridge[0], ridge[1]], "outdoors", attic)
-        made["gable_west"] = ([[0, d, h], [0, 0, h], ridge[0]], "outdoors", attic)
-        made["gable_east"] = ([[x, 0, h], [x, d, h], ridge[1]], "outdoors", attic)
+        shell["pitch_south"] = ([[0, 0, h], [x, 0, h], ridge[1], ridge[0]], "outdoors", attic)
+        shell["pitch_north"] = ([[x, d, h], [0, d, h], ridge[0], ridge[1]], "outdoors", attic)
+        shell["gable_west"] = ([[0, d, h], [0, 0, h], ridge[0]], "outdoors", attic)
+        shell["gable_east"] = ([[x, 0, h], [x, d, h], ridge[1]], "outdoors", attic)
     angle = draw.of(0.0, 0.0, draw.number(-180.0, 180.0))
-    return {name: (turned(points, angle), out, inner) for name, (points, out, inner) in made.items()}
+    return {name: (turned(points, angle), out, inner) for name, (points, out, inner) in shell.items()}
 
 
 def shade(draw: Draw, wall: list[Point]) -> Json:

@@ -225,7 +225,7 @@ def _columns(draw: Draw, frame: pd.DataFrame, index: pd.DatetimeIndex) -> pd.Dat
     """Every measured column, between the two values that `COLUMNS` gives it."""
     hours = np.arange(len(index)) * (index[1] - index[0]).total_seconds() / 3600.0
     light = frame["diffuse_horizontal"] if "diffuse_horizontal" in frame else 0.4 * frame["global_horizontal"]
-    made = {}
+    columns = {}
     for name, (low, high) in COLUMNS.items():
         wave = 0.5 + 0.5 * np.sin(draw.number(0.1, 3.0) * hours + draw.number(0.0, 6.0))
         way = draw.whole(0, 3)
@@ -233,9 +233,9 @@ def _columns(draw: Draw, frame: pd.DataFrame, index: pd.DatetimeIndex) -> pd.Dat
             wave if way < 2 else np.round(wave) if way == 2 else np.full(len(index), draw.number(0.0, 1.0))
         )
         if name.startswith("G_"):
-            made[name] = np.minimum(np.asarray(light) * (0.5 + 2.0 * share), high)
+            columns[name] = np.minimum(np.asarray(light) * (0.5 + 2.0 * share), high)
         elif name == "rain":
-            made[name] = np.where(share > 0.8, high * share, 0.0)
+            columns[name] = np.where(share > 0.8, high * share, 0.0)
         else:
-            made[name] = low + (high - low) * share
-    return pd.DataFrame(made, index=index)
+            columns[name] = low + (high - low) * share
+    return pd.DataFrame(columns, index=index)

@@ -154,18 +154,18 @@ def test_hysteresis_works_with_every_product_whose_curves_do_not_cross() -> None
             continue
         more = {key: {"conductivity": 0.2, "density": 900}[key] for key in one.missing}
         try:
-            found = PhaseChangeMaterial.from_product(name, hysteresis={"model": "curve_track"}, **more)
+            material = PhaseChangeMaterial.from_product(name, hysteresis={"model": "curve_track"}, **more)
         except InputError as error:
             assert "never more liquid on heating than on cooling" in str(error)  # noqa: PT017
             crossed.append(name)
             continue
         # The enthalpy of all liquid over all solid is that of the table of the product.
         solid, liquid = (float(x) for x in one.pair("specific_heat") or (0.0, 0.0))
-        low, high = found.melting
+        low, high = material.melting
         by_law = (
-            solid * (found.reference - low)
-            + liquid * (high - found.reference)
-            + float(found.latent_heat or 0.0)
+            solid * (material.reference - low)
+            + liquid * (high - material.reference)
+            + float(material.latent_heat or 0.0)
         )
         assert by_law == pytest.approx(one.enthalpies([low, high], [0.0, 1.0])[1], abs=1.0)
     assert crossed == ["RT21HC", "PX25", "Crodatherm-19", "Crodatherm-21", "SmartBoard-21"]

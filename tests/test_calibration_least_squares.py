@@ -170,7 +170,7 @@ def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Pat
 
 def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
-    whole = solve(posed(0.2), options=EXACT, record=path)
+    reference = solve(posed(0.2), options=EXACT, record=path)
     sound = path.read_bytes()
     lines = path.read_text().splitlines(keepends=True)
     at = next(k for k, line in enumerate(lines) if "j" in json.loads(line))
@@ -184,8 +184,8 @@ def test_damaged_slopes_in_a_record_are_computed_again(tmp_path: Path) -> None:
         path.write_text("".join([*lines[:at], changed, *lines[at + 1 :]]))
         with pytest.warns(UserWarning, match=rf"damaged lines: 1 \(line {at + 1}: .*computed again"):
             fit = solve(posed(0.2), options=EXACT, record=path)
-        np.testing.assert_array_equal(fit.x, whole.x)
-        np.testing.assert_array_equal(fit.high, whole.high)
+        np.testing.assert_array_equal(fit.x, reference.x)
+        np.testing.assert_array_equal(fit.high, reference.high)
         assert sorted(path.read_bytes().splitlines()) == sorted(sound.splitlines())
 
 

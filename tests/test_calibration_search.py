@@ -371,8 +371,12 @@ def test_damaged_evaluations_are_computed_again(tmp_path: Path) -> None:
     """An edited residual, a NaN, lines of another record, swapped and cut lines: the same estimates."""
     path = tmp_path / "record.jsonl"
     other = tmp_path / "other.jsonl"
-    keywords: dict[str, Any] = {"method": "least-squares", "cost": "nll", "options": SearchOptions(starts=1, agree=1)}
-    whole = solve(_problem(noise=0.2), record=path, **keywords)
+    keywords: dict[str, Any] = {
+        "method": "least-squares",
+        "cost": "nll",
+        "options": SearchOptions(starts=1, agree=1),
+    }
+    reference = solve(_problem(noise=0.2), record=path, **keywords)
     solve(_problem(noise=0.3), record=other, **keywords)
     first, *lines = path.read_text().splitlines(keepends=True)
     shape = _problem(noise=0.2).measured.shape
@@ -397,17 +401,17 @@ def test_damaged_evaluations_are_computed_again(tmp_path: Path) -> None:
         path.write_text("".join([first, *changed]))
         with pytest.warns(UserWarning, match=r"damaged lines: 1 \(line \d+: .*computed again"):
             fit = solve(_problem(noise=0.2), record=path, **keywords)
-        assert fit.x.tobytes() == whole.x.tobytes(), name
+        assert fit.x.tobytes() == reference.x.tobytes(), name
         assert fit.trace.replayed == len(lines) - 1, name
         # What is in the file afterwards is sound: nothing is warned of a second time.
         again = solve(_problem(noise=0.2), record=path, **keywords)
         assert again.trace.replayed == len(lines), name
     path.write_text("".join([first, *reversed(lines)]))
-    assert solve(_problem(noise=0.2), record=path, **keywords).x.tobytes() == whole.x.tobytes()
+    assert solve(_problem(noise=0.2), record=path, **keywords).x.tobytes() == reference.x.tobytes()
     path.write_text("".join([_edited(first, "weights", [1.0, 9.0]), *lines]))
     with pytest.warns(UserWarning, match="damaged or of another version; everything is computed again"):
         fit = solve(_problem(noise=0.2), record=path, **keywords)
-    assert fit.x.tobytes() == whole.x.tobytes()
+    assert fit.x.tobytes() == reference.x.tobytes()
     assert fit.trace.replayed == 0
     path.write_text(first[:30])  # killed while the first line was written
     assert solve(_problem(noise=0.2), record=path, **keywords).trace.replayed == 0

@@ -52,9 +52,9 @@ def test_every_section_and_output_kind_belongs_to_a_feature() -> None:
     sections: set[str] = set()
     kinds: set[str] = set()
     for feature in FEATURES:
-        one = building(feature)
-        sections |= one.model_fields_set
-        kinds |= {output.kind for output in one.outputs()}
+        described = building(feature)
+        sections |= described.model_fields_set
+        kinds |= {output.kind for output in described.outputs()}
     missing = sorted(set(Description.model_fields) - sections)
     assert missing == [], (
         f"sections of a building that no feature has: {missing}. Add a feature with them to FEATURES in "
@@ -162,11 +162,11 @@ def kinds_in(text: str) -> set[str]:
 
 
 def test_every_warning_of_a_run_is_known(warned: Bench) -> None:
-    found = warned.simulation().run().warnings
-    assert found
-    for line in found:
+    lines = warned.simulation().run().warnings
+    assert lines
+    for line in lines:
         assert kinds_in(line), f"a warning whose words are not in SAID of tests/test_crossing.py: {line}"
-    assert kinds_in("\n".join(found)) >= EXPECTED[warned.scheme]
+    assert kinds_in("\n".join(lines)) >= EXPECTED[warned.scheme]
 
 
 @pytest.mark.parametrize("entrance", [name for name in ENTRANCES if name not in WITHOUT_RUN])
@@ -187,6 +187,6 @@ def test_entrances_without_a_run_say_why() -> None:
 
 
 def test_files_of_a_bench_are_those_of_a_user(tmp_path: Path) -> None:
-    one = Bench(tmp_path / "x", description("nothing"))
-    assert one.command("check", one.file("building.yaml")).code == 0
-    assert one.file("logger.csv").is_file()
+    bench = Bench(tmp_path / "x", description("nothing"))
+    assert bench.command("check", bench.file("building.yaml")).code == 0
+    assert bench.file("logger.csv").is_file()

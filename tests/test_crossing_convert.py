@@ -92,11 +92,11 @@ def test_a_feature_is_converted_or_named(feature: str, tmp_path: Path) -> None:
     file, objects = tmp_path / "model.idf", OBJECTS[feature]
     file.write_text(IDF + objects.text, encoding="utf-8")
     (tmp_path / "logged.csv").write_text("hour,value\n" + "".join(f"{h},0.5\n" for h in range(8760)))
-    found = convert(file)
-    left = [f"{one.kind} {one.name}: {one.what}" for one in found.findings]
+    conversion = convert(file)
+    left = [f"{finding.kind} {finding.name}: {finding.what}" for finding in conversion.findings]
     if objects.has is None:
         assert any(objects.named in line for line in left), left
     else:
-        assert objects.has(found.building), left
-    assert parse(yaml_text(found), "model.yaml") == found.building
-    assert found.building.check()
+        assert objects.has(conversion.building), left
+    assert parse(yaml_text(conversion), "model.yaml") == conversion.building
+    assert conversion.building.check()

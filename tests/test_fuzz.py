@@ -44,9 +44,9 @@ def test_mutated_inputs_are_read_or_refused(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", OWN)
 def test_mutated_own_files_are_read_refused_or_computed_again(name: str, tmp_path: Path) -> None:
-    known = {one.name: one for one in fuzz_own_files.readers(tmp_path / "samples")}
-    assert sorted(known) == sorted(OWN)
-    reader, place = known[name], tmp_path / "place"
+    readers = {own.name: own for own in fuzz_own_files.readers(tmp_path / "samples")}
+    assert sorted(readers) == sorted(OWN)
+    reader, place = readers[name], tmp_path / "place"
     for file, content in reader.files.items():
         (place / file).parent.mkdir(parents=True, exist_ok=True)
         (place / file).write_bytes(content)

@@ -153,7 +153,7 @@ def test_the_log_of_another_project_is_an_error(tmp_path: Path) -> None:
 
 def test_a_run_whose_line_in_the_log_is_damaged_is_made_again(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    whole = optimize(ini, run=runner(bowl))
+    reference = optimize(ini, run=runner(bowl))
     first, line, *lines = log_path(ini).read_text().splitlines(keepends=True)
     cost = json.loads(line)["costs"][0]
     for damaged in (
@@ -166,7 +166,7 @@ def test_a_run_whose_line_in_the_log_is_damaged_is_made_again(tmp_path: Path) ->
         with pytest.warns(UserWarning, match=r"damaged lines: 1 \(line 2: .*these simulations are run again"):
             again = optimize(ini, Options(resume=True), run=runner(bowl))
         assert again.runs == 1
-        assert again.values() == whole.values()
+        assert again.values() == reference.values()
     log_path(ini).write_text("".join([first.replace('"format":2', '"format":3'), line, *lines]))
     with pytest.raises(InputError, match="not the first line of a log of evaluations"):
         optimize(ini, Options(resume=True), run=runner(bowl))

@@ -196,16 +196,16 @@ def inputs_of(words: tuple[str, ...], place: Path) -> list[str]:
     try:
         code = main(list(words))
     finally:
-        found, _opened = _opened, None
+        paths, _opened = _opened, None
     assert code in (0, 1, 2)
-    named = {(place / one).resolve() for one in found}
+    named = {(place / path).resolve() for path in paths}
     return sorted(str(file.relative_to(place)) for file in before if file.resolve() in named)
 
 
 def files(place: Path) -> list[Path]:
     """Files of the folder, without the results of an earlier run that a new one removes or rewrites."""
     own = {"result.txt", "log.txt", "GenOpt.log", "OutputListingMain.txt", "OutputListingAll.txt"}
-    return sorted(one for one in place.rglob("*") if one.name not in own)
+    return sorted(path for path in place.rglob("*") if path.name not in own)
 
 
 def test_every_command_is_tried() -> None:

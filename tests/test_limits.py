@@ -56,8 +56,8 @@ def test_the_rule(limit: float) -> None:
 
 def test_a_room_held_at_the_limits_is_comfortable() -> None:
     for limit in (20.0, 26.0):
-        found = discomfort(Evaluation(around(limit), 20.0, 26.0), np.ones(5))
-        assert (float(found.hours), float(found.degree_hours)) == (0.0, 0.0)
+        hours = discomfort(Evaluation(around(limit), 20.0, 26.0), np.ones(5))
+        assert (float(hours.hours), float(hours.degree_hours)) == (0.0, 0.0)
     far = discomfort(Evaluation(np.array([19.99, 26.01]), 20.0, 26.0), np.ones(2))
     assert (float(far.hot_hours), float(far.cold_hours)) == (1.0, 1.0)
 
@@ -67,8 +67,8 @@ def test_a_room_held_at_the_limits_is_comfortable() -> None:
 )
 def test_an_adaptive_model_is_valid_at_the_ends_of_its_range(index: str, low: float, high: float) -> None:
     for end in (low, high):
-        here = held(np.full(5, 24.0), running_mean=around(end), prevailing_mean=around(end))
-        assert not np.isnan(INDICES[index].evaluate(here).values).any()
+        conditions = held(np.full(5, 24.0), running_mean=around(end), prevailing_mean=around(end))
+        assert not np.isnan(INDICES[index].evaluate(conditions).values).any()
     beyond = held(np.full(2, 24.0), running_mean=np.array([low - 1e-3, high + 1e-3]),
                   prevailing_mean=np.array([low - 1e-3, high + 1e-3]))  # fmt: skip
     assert np.isnan(INDICES[index].evaluate(beyond).values).all()
@@ -79,8 +79,8 @@ def test_a_room_held_at_the_limits_of_en_16798_is_comfortable(mean: float, categ
     index = INDICES["adaptive-en"]
     ends = index.evaluate(held(np.array([24.0]), running_mean=mean), category)
     for end in (float(ends.low), float(np.asarray(ends.high).item())):
-        found = index.evaluate(held(around(end), running_mean=mean), category)
-        assert not found.excess.any()
+        evaluation = index.evaluate(held(around(end), running_mean=mean), category)
+        assert not evaluation.excess.any()
 
 
 def test_the_air_speed_of_the_standards_raises_the_limit_though_its_last_bit_is_missing() -> None:
@@ -100,9 +100,9 @@ def test_an_index_is_valid_at_the_ends_of_its_ranges(name: str) -> None:
     _, low, high, _ = ranges["air"]
     for end in (low, high):
         radiant = np.full(5, min(max(end, -10.0), 30.0))
-        here = Conditions(around(end), radiant, 45.0, air_speed=0.9)
-        found = index.evaluate(here, None if index.categories else limits_used)
-        where = found.outside[f"air temperature {'below' if end == low else 'above'} {end:g} degC"]
+        conditions = Conditions(around(end), radiant, 45.0, air_speed=0.9)
+        evaluation = index.evaluate(conditions, None if index.categories else limits_used)
+        where = evaluation.outside[f"air temperature {'below' if end == low else 'above'} {end:g} degC"]
         assert not where.any()
 
 
@@ -167,8 +167,8 @@ def test_objectives_of_designs_count_a_value_at_the_limit_as_inside() -> None:
 
 def test_a_criterion_is_met_by_a_metric_at_its_limit() -> None:
     for error in [*around(0.3), 20.3 - 20.0]:
-        found = {"a": {"p": compare([0.0, 1.0], [0.0, 1.0 + error])}}
-        assert judge([Criterion(metric="max_error", limit=0.3)], found)[0].passed
+        metrics = {"a": {"p": compare([0.0, 1.0], [0.0, 1.0 + error])}}
+        assert judge([Criterion(metric="max_error", limit=0.3)], metrics)[0].passed
     apart = {"a": {"p": compare([0.0, 1.0], [0.0, 1.3001])}}
     assert not judge([Criterion(metric="max_error", limit=0.3)], apart)[0].passed
 
@@ -189,8 +189,8 @@ def test_settings_of_comfort_give_the_same_hours_for_rounded_series() -> None:
     times = pd.date_range("2001-07-01", periods=5, freq="1h", tz="UTC")
     settings = ComfortSettings(index="operative", band=[20, 26])
     for limit in (20.0, 26.0):
-        found = assess("room", settings, times, around(limit), around(limit))
-        assert found.hours == found.degree_hours == 0.0
+        comfort = assess("room", settings, times, around(limit), around(limit))
+        assert comfort.hours == comfort.degree_hours == 0.0
 
 
 #: Modules in which every comparison of a size is with a limit, and what else is compared there.
@@ -207,9 +207,9 @@ RATED = {
 def test_no_index_is_compared_with_a_limit_without_the_rule(name: str) -> None:
     tree = ast.parse((PACKAGE / name).read_text(encoding="utf-8"))
     sizes = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
-    found = {
+    places = {
         ast.unparse(node)
         for node in ast.walk(tree)
         if isinstance(node, ast.Compare) and any(isinstance(op, sizes) for op in node.ops)
     }
-    assert found == RATED[name]
+    assert places == RATED[name]

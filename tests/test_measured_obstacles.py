@@ -132,8 +132,8 @@ def test_a_horizon_takes_its_part() -> None:
     up, direct, total = row["sun_up"], row["direct_normal"], row["global_horizontal"]
     hidden = (up < np.sin(h) - 0.01) & (up > 0.01)
     sky = 0.5 * row["diffuse_horizontal"]
-    whole = direct * np.maximum(-row["sun_north"], 0.0) + sky + 0.5 * REFLECTANCE * total
-    expected = MEASURED * (sky * left + 0.5 * REFLECTANCE * (total - direct * up)) / whole
+    free_facade = direct * np.maximum(-row["sun_north"], 0.0) + sky + 0.5 * REFLECTANCE * total
+    expected = MEASURED * (sky * left + 0.5 * REFLECTANCE * (total - direct * up)) / free_facade
     assert got[hidden] == pytest.approx(expected[hidden], rel=5e-3)
 
 

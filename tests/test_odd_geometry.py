@@ -120,8 +120,8 @@ def made(seed: int) -> tuple[Building | None, str]:
 
 
 def test_most_are_accepted_and_refusals_name_what_was_written() -> None:
-    found = [made(seed) for seed in range(40)]
-    refused = [said for building, said in found if building is None]
+    refusals = [made(seed) for seed in range(40)]
+    refused = [said for building, said in refusals if building is None]
     assert len(refused) < 20, refused
     for said in refused:
         assert "surfaces.wall" in said or "windows.window" in said

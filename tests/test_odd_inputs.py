@@ -342,23 +342,23 @@ def server() -> Iterator[Server]:
     from mascarin.commands.explore import _values
 
     session = Session(box(), box_climate(), parameters=["zones.room.volume"], options={"step": "3h"})
-    made = Server(
+    running = Server(
         lambda token: "page", {"/run": lambda content: session.run(_values(content), content.get("band"))}
     )
-    thread = threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True)
+    thread = threading.Thread(target=running.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True)
     thread.start()
-    yield made
-    made.shutdown()
-    made.server_close()
+    yield running
+    running.shutdown()
+    running.server_close()
 
 
 def asked(server: Server, body: bytes, **headers: str) -> tuple[int, dict[str, Any]]:
     connection = http.client.HTTPConnection(HOST, server.server_port, timeout=60)
     connection.request("POST", "/run", body, {TOKEN: server.token, **headers})
     answer = connection.getresponse()
-    found = json.loads(answer.read())
+    reply = json.loads(answer.read())
     connection.close()
-    return answer.status, found
+    return answer.status, reply
 
 
 BODIES = [
@@ -382,15 +382,17 @@ BODIES = [
 def test_a_request_is_answered_or_refused(
     server: Server, body: bytes, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    status, found = asked(server, body)
+    status, reply = asked(server, body)
     assert status in (200, 400)
-    assert "error" in found or "refused" in found, (body[:60], found)
+    assert "error" in reply or "refused" in reply, (body[:60], reply)
     assert capfd.readouterr().err == ""
 
 
 def test_odd_requests_are_refused(server: Server, capfd: pytest.CaptureFixture[str]) -> None:
     assert "series" in asked(server, b"{}")[1]
-    lengths = [b"POST /run HTTP/1.1\r\nContent-Length: " + one for one in (b"9" * 5000, b"-1", b"x", b"")]
+    lengths = [
+        b"POST /run HTTP/1.1\r\nContent-Length: " + length for length in (b"9" * 5000, b"-1", b"x", b"")
+    ]
     for lines in (b"GET //[ HTTP/1.1", b"GET http://[ HTTP/1.1", *lengths):
         connection = http.client.HTTPConnection(HOST, server.server_port, timeout=60)
         connection.connect()
@@ -405,12 +407,12 @@ def test_a_defect_is_said_on_the_page_and_the_server_goes_on(capfd: pytest.Captu
     def broken(content: Any) -> Any:
         raise ZeroDivisionError("one over nothing")
 
-    made = Server(lambda token: "page", {"/run": broken})
-    threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
+    running = Server(lambda token: "page", {"/run": broken})
+    threading.Thread(target=running.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
     for _ in range(2):
-        status, found = asked(made, b"{}")
+        status, reply = asked(running, b"{}")
         assert status == 500
-        assert found["error"] == "a defect in Mascarin: ZeroDivisionError: one over nothing"
-    made.shutdown()
-    made.server_close()
+        assert reply["error"] == "a defect in Mascarin: ZeroDivisionError: one over nothing"
+    running.shutdown()
+    running.server_close()
     assert "Traceback" not in capfd.readouterr().err

@@ -18,17 +18,17 @@ from mascarin.study.storage import Workspace
 
 
 def test_every_changed_byte_is_found() -> None:
-    whole = own_files.sealed("test", b"some content")
-    assert own_files.opened("test", whole) == b"some content"
-    for k in range(len(whole)):
+    file = own_files.sealed("test", b"some content")
+    assert own_files.opened("test", file) == b"some content"
+    for k in range(len(file)):
         for bit in (1, 128):
-            damaged = whole[:k] + bytes([whole[k] ^ bit]) + whole[k + 1 :]
+            damaged = file[:k] + bytes([file[k] ^ bit]) + file[k + 1 :]
             with pytest.raises(own_files.DamagedError):
                 own_files.opened("test", damaged)
         with pytest.raises(own_files.DamagedError):
-            own_files.opened("test", whole[:k])
+            own_files.opened("test", file[:k])
     with pytest.raises(own_files.DamagedError, match="another version or kind"):
-        own_files.opened("other", whole)
+        own_files.opened("other", file)
 
 
 def test_arrays_come_back_with_all_bits() -> None:
@@ -69,9 +69,9 @@ def test_a_key_that_may_be_empty_may_not_be_missing() -> None:
     kinds: dict[str, Any] = {"costs": (list, type(None)), "n": int}
     own_files.require({"costs": None, "n": 1}, kinds)
     own_files.require({"n": 1}, kinds, further=("costs",))
-    for found in ({"n": 1}, {"costs": [], "n": True}, {"costs": {}, "n": 1}, {}):
+    for content in ({"n": 1}, {"costs": [], "n": True}, {"costs": {}, "n": 1}, {}):
         with pytest.raises(own_files.DamagedError):
-            own_files.require(found, kinds)
+            own_files.require(content, kinds)
 
 
 def test_nested_json_is_bounded() -> None:
@@ -88,8 +88,8 @@ def test_names_stay_in_their_folder(name: Any, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "out" / "link").symlink_to(tmp_path / "elsewhere")
-    found = own_files.inside(tmp_path / "out", name)
-    assert found is None or found == tmp_path / "out"
+    path = own_files.inside(tmp_path / "out", name)
+    assert path is None or path == tmp_path / "out"
     assert own_files.inside(tmp_path / "out", "tables/a.csv") == tmp_path / "out" / "tables" / "a.csv"
 
 
@@ -188,6 +188,12 @@ def test_a_lock_that_is_a_link_does_not_empty_a_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="found a link"):
         FolderLock(tmp_path / "out")
     assert (tmp_path / "mine.txt").read_text() == "secret"
+
+
+def test_a_file_in_the_place_of_the_folder_of_a_study_is_named(tmp_path: Path) -> None:
+    (tmp_path / ".work").write_text("x")
+    with pytest.raises(InputError, match=r"\.work: found a file, expected a folder of Mascarin; remove"):
+        Workspace(tmp_path, {"study": "a"})
 
 
 def test_a_damaged_manifest_of_a_study_is_computed_again(tmp_path: Path) -> None:

@@ -91,12 +91,15 @@ def table(column: str, values: Any, air: Any) -> mc.Climate:
 @pytest.mark.parametrize("humidity", [1.0, 45.0, 80.0, 99.0])
 def test_measured_humidity_comes_back_from_a_room(air: float, humidity: float) -> None:
     """By relative humidity and by dew point; the room is as warm as the outdoor air and holds its vapour."""
-    given = np.full(25, air)
+    temperatures = np.full(25, air)
     names = ["room.relative_humidity", "room.dew_point", "room.humidity_ratio"]
     dew = float(dew_point(air, humidity))
-    for climate in (table("relative_humidity", humidity, given), table("dew_point", dew, given)):
-        found = mc.simulate(room(), climate, step="1h", outputs=names, initial=air)
-        relative, point, ratio = found.records[-1]
+    for climate in (
+        table("relative_humidity", humidity, temperatures),
+        table("dew_point", dew, temperatures),
+    ):
+        run = mc.simulate(room(), climate, step="1h", outputs=names, initial=air)
+        relative, point, ratio = run.records[-1]
         assert relative == pytest.approx(0.01 * humidity, rel=1e-9)
         assert point == pytest.approx(dew, abs=1e-8)
         assert ratio == pytest.approx(float(humidity_ratio(air, humidity, 95_000.0)), rel=1e-9)
@@ -107,8 +110,8 @@ def test_frost_forms_where_the_air_is_saturated_over_ice() -> None:
     names = ["room.relative_humidity", "wall.inside_condensation", "wall.inside_relative_humidity"]
     for humidity, flag in ((85.0, 0.0), (95.0, 1.0)):
         climate = table("relative_humidity", humidity, np.full(25, -10.0))
-        found = mc.simulate(room(), climate, step="1h", outputs=names, initial=-10.0)
-        assert found.records[-1].tolist() == pytest.approx([0.01 * humidity, flag, 0.01 * humidity], rel=1e-9)
+        run = mc.simulate(room(), climate, step="1h", outputs=names, initial=-10.0)
+        assert run.records[-1].tolist() == pytest.approx([0.01 * humidity, flag, 0.01 * humidity], rel=1e-9)
 
 
 #: Constants of saturation, of the ratio of molar masses and of the heat of evaporation, as they are written.
@@ -122,7 +125,7 @@ ALLOWED = ("crates/engine/src/physics/", "python/mascarin/verification/", "crate
 def test_formulas_of_moist_air_are_written_once() -> None:
     """No constant of a saturation pressure outside of the physics of the engine and of closed forms."""
     pattern = re.compile(rf"(?<![\w.])(?:{CONSTANTS})(?![\w.])")
-    found = []
+    places = []
     for folder, ending in (("crates", "rs"), ("python", "py"), ("bench", "py"), ("docs", "py")):
         for file in sorted((ROOT / folder).rglob(f"*.{ending}")):
             where = file.relative_to(ROOT).as_posix()
@@ -130,7 +133,7 @@ def test_formulas_of_moist_air_are_written_once() -> None:
                 continue
             for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
                 if pattern.search(line):
-                    found.append(f"{where}:{number}: {line.strip()}")
-    assert not found
+                    places.append(f"{where}:{number}: {line.strip()}")
+    assert not places
     physics = (ROOT / "crates/engine/src/physics/psychrometrics.rs").read_text(encoding="utf-8")
     assert pattern.search(physics)

@@ -28,13 +28,13 @@ USABLE = 0.9
 @cache
 def drawn() -> list[Building]:
     """Buildings of some seeds; those that are refused are left out."""
-    found = []
+    buildings = []
     for seed in range(DRAWN):
         try:
-            found.append(case(seed).building())
+            buildings.append(case(seed).building())
         except InputError:
             continue
-    return found
+    return buildings
 
 
 def test_nearly_all_descriptions_can_be_used() -> None:
@@ -60,30 +60,30 @@ def test_a_seed_gives_one_case() -> None:
 def test_a_printed_case_is_the_same_building() -> None:
     from mascarin.building.reading import parse
 
-    one = case(12)
-    assert parse(random_campaign.shown(one), "case.yaml") == one.building()
+    drawn_case = case(12)
+    assert parse(random_campaign.shown(drawn_case), "case.yaml") == drawn_case.building()
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_nothing_impossible_comes_out(part: int) -> None:
     lines = [random_campaign.judged(seed) for seed in range(part, CASES, PARTS)]
-    found = [(line["seed"], *fault) for line in lines for fault in line["faults"]]
-    assert found == []
+    faults = [(line["seed"], *fault) for line in lines for fault in line["faults"]]
+    assert faults == []
     ended = [(line["seed"], line.get("error")) for line in lines if line["outcome"] != "run"]
     assert len(ended) <= MOST_ENDED, ended
 
 
 def test_judges_find_what_is_impossible() -> None:
-    one = next(one for one in map(case, range(18, 99)) if one.building().humidity is not None)
-    building = one.building()
+    damp = next(damp for damp in map(case, range(18, 99)) if damp.building().humidity is not None)
+    building = damp.building()
     outputs = list(building.outputs())
     good = np.full((2, len(outputs)), 0.5)
-    assert faults(one, building, outputs, good) == []
+    assert faults(damp, building, outputs, good) == []
     kinds = set()
     for value in (-300.0, 2000.0, -0.1, 1.5, np.nan):
         bad = good.copy()
         bad[1] = value
-        kinds |= {fault.kind for fault in faults(one, building, outputs, bad)}
+        kinds |= {fault.kind for fault in faults(damp, building, outputs, bad)}
     assert kinds >= {
         "below absolute zero", "above 2000 K", "negative humidity", "fraction above 1: relative_humidity",
         "irradiance", "not finite", "negative air_changes",

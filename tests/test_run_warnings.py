@@ -43,10 +43,10 @@ def sheet() -> Building:
 
 @pytest.fixture(scope="module")
 def said(sheet: Building) -> tuple[str, ...]:
-    found = mc.simulate(sheet, CLIMATE, step="3h").warnings
-    assert LATE in found[0]
-    assert "cannot enclose it" in found[-1]  # of the building
-    return found
+    lines = mc.simulate(sheet, CLIMATE, step="3h").warnings
+    assert LATE in lines[0]
+    assert "cannot enclose it" in lines[-1]  # of the building
+    return lines
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_a_long_step_is_said_with_every_scheme(tampa: Building, exact: np.ndarra
         return float(np.sqrt(np.mean((run.every("3h").records[3:, 0] - exact[3:]) ** 2)))
 
     late = mc.simulate(tampa, TAMPA, step="3h", **options)  # type: ignore[arg-type]
-    (line, *_) = [one for one in late.warnings if LATE in one]
+    (line, *_) = [text for text in late.warnings if LATE in text]
     estimate = float(line.split("wrong by about ")[1].split()[0])
     assert error(late) > 0.5 * LARGE
     assert 0.4 * error(late) < estimate < 3.0 * error(late)
@@ -102,17 +102,17 @@ def test_sweeps_have_the_warnings_of_members_and_of_the_building(
     path = next(p.path for p in sheet.parameters() if p.path.endswith("thickness")) or layer
     samples = {path: [0.001, 0.2, 0.0012]}
     members = mc.sweep(sheet, CLIMATE, samples, step="3h", outputs=["room.air_temperature"])
-    found = members.attrs["warnings"]
-    assert found[0].startswith("2 of 3 members: the time step of 180 min is too long for the air of a zone")
-    assert found[1:] == [f"with the values of the building: {line}" for line in said]
+    lines = members.attrs["warnings"]
+    assert lines[0].startswith("2 of 3 members: the time step of 180 min is too long for the air of a zone")
+    assert lines[1:] == [f"with the values of the building: {line}" for line in said]
     hidden = mc.sweep(sheet, CLIMATE, samples, step="3h", outputs=["facade.outside_temperature"])
-    assert hidden.attrs["warnings"] == found[1:]  # no air was recorded, the building is still checked
+    assert hidden.attrs["warnings"] == lines[1:]  # no air was recorded, the building is still checked
     hottest = {"hottest": Statistic.read("max:room.air_temperature")}
     store = sweep_into(tmp_path / "store", sheet, CLIMATE, samples, step="3h", objectives=hottest)
-    assert store.warnings() == store.to_xarray().attrs["warnings"] == found
-    assert json.loads((tmp_path / "store" / "manifest.json").read_text())["warnings"] == found[1:]
+    assert store.warnings() == store.to_xarray().attrs["warnings"] == lines
+    assert json.loads((tmp_path / "store" / "manifest.json").read_text())["warnings"] == lines[1:]
     again = sweep_into(tmp_path / "store", sheet, CLIMATE, samples, step="3h", objectives=hottest)
-    assert again.warnings() == found
+    assert again.warnings() == lines
     assert store.sound()
     assert "time_step_error" not in store.to_dataframe()
 
@@ -126,7 +126,7 @@ def test_analyses_have_the_warnings(sheet: Building, said: tuple[str, ...]) -> N
     base = [f"with the values of the building: {line}" for line in said]
     vary = {"surfaces.facade.outside.absorptance": (0.3, 0.9), "zones.room.volume": (40.0, 60.0)}
     options = {"outputs": ["room.air_temperature"], "step": "3h"}
-    found = mc.sensitivity_analysis(
+    analysis = mc.sensitivity_analysis(
         sheet,
         CLIMATE,
         vary=vary,
@@ -134,7 +134,7 @@ def test_analyses_have_the_warnings(sheet: Building, said: tuple[str, ...]) -> N
         replicates=3,
         **options,  # type: ignore[arg-type]
     )
-    assert found.warnings[-len(base) :] == tuple(base)
+    assert analysis.warnings[-len(base) :] == tuple(base)
     slopes = mc.jacobian(sheet, CLIMATE, list(vary), **options)  # type: ignore[arg-type]
     assert slopes.attrs["warnings"] == list(said)
     assert mc.gradient(sheet, CLIMATE, Mean("room.air_temperature"), step="3h").warnings == said

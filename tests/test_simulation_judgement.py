@@ -98,12 +98,12 @@ def test_an_ensemble_says_which_members_are_unsound(
     monkeypatch.setattr(CompiledRun, "ensemble", judged)
     samples = {"surfaces.facade.outside.absorptance": list(np.linspace(0.1, 0.9, 17))}
     options: dict[str, Any] = {"step": "1h", "precision": precision, "outputs": ["room.air_temperature"]}
-    whole = mc.sweep(box(), box_climate(), samples, **options)
+    members = mc.sweep(box(), box_climate(), samples, **options)
     store = sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
-    for lines in (whole.attrs["warnings"], store.warnings(), store.to_xarray().attrs["warnings"]):
+    for lines in (members.attrs["warnings"], store.warnings(), store.to_xarray().attrs["warnings"]):
         # The box has one wall of 54 m2 and a volume: that is said, too, and nothing else.
         assert len(lines) == 2, lines
         assert lines[0].startswith("4 of 17 members: temperatures lie outside")
         assert lines[1].startswith("with the values of the building: zones.room: the surfaces cannot enclose")
-    np.testing.assert_array_equal(store.to_dataframe()["outside"].to_numpy(), whole["outside"].to_numpy())
-    assert whole["outside"].attrs["units"] == "K"
+    np.testing.assert_array_equal(store.to_dataframe()["outside"].to_numpy(), members["outside"].to_numpy())
+    assert members["outside"].attrs["units"] == "K"

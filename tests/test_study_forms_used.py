@@ -98,10 +98,10 @@ def test_documents_of_shipped_studies_know_the_parameters_of_every_form(name: st
     for choice in study.forms.combinations():
         variant = study.variant_of(choice)
         paths = study.problem(variant).paths
-        whole = study.whole(variant)
-        run = compared(study, "fitted", whole, whole.values, None, label(choice))
-        found = coefficients(study, {"fitted": run}, (*paths, *published))["coefficients"]["models"]
+        simulation = study.whole(variant)
+        run = compared(study, "fitted", simulation, simulation.values, None, label(choice))
+        models = coefficients(study, {"fitted": run}, (*paths, *published))["coefficients"]["models"]
         laws = {path.rpartition(".convection")[0] for path in paths if ".convection" in path}
-        assert {f"{law}.convection" for law in laws} <= set(found["fitted"]), label(choice)
-        assert all(value > 0.0 for value in found["fitted"].values())
+        assert {f"{law}.convection" for law in laws} <= set(models["fitted"]), label(choice)
+        assert all(value > 0.0 for value in models["fitted"].values())
         assert phase_change(study, run)

@@ -143,22 +143,24 @@ def test_a_member_has_the_bits_of_its_run_alone(
     names = OUTPUTS if features else OUTPUTS[:4]
     options = OPTIONS | {"outputs": names, "scheme": scheme, "step": step}
     samples = SAMPLES if features else dict(list(SAMPLES.items())[:5])
-    found = sweep(building, climate, samples, **options)
+    members = sweep(building, climate, samples, **options)
     order = np.random.default_rng(3).permutation(19)
     shuffled = sweep(
         building, climate, {path: [values[k] for k in order] for path, values in samples.items()}, **options
     )
     some = sweep(building, climate, {path: values[4:15] for path, values in samples.items()}, **options)
     for name in names:
-        np.testing.assert_array_equal(shuffled[name].to_numpy(), found[name].to_numpy()[order], err_msg=name)
-        np.testing.assert_array_equal(some[name].to_numpy(), found[name].to_numpy()[4:15], err_msg=name)
+        np.testing.assert_array_equal(
+            shuffled[name].to_numpy(), members[name].to_numpy()[order], err_msg=name
+        )
+        np.testing.assert_array_equal(some[name].to_numpy(), members[name].to_numpy()[4:15], err_msg=name)
     for k in range(0, 19, 3):
         alone = simulate(
             building, climate, parameters={path: values[k] for path, values in samples.items()}, **options
         )
         for name in names:
             np.testing.assert_array_equal(
-                found[name].to_numpy()[k], alone[name].values, err_msg=f"{name}, member {k}"
+                members[name].to_numpy()[k], alone[name].values, err_msg=f"{name}, member {k}"
             )
 
 
@@ -185,13 +187,15 @@ def test_a_sweep_that_was_interrupted_ends_with_the_same_bytes(
 def test_single_precision_does_not_depend_on_neighbors(climate: Climate) -> None:
     building, samples = rooms(False), dict(list(SAMPLES.items())[:5])
     options = OPTIONS | {"outputs": OUTPUTS[:4], "step": "30min", "precision": "single"}
-    found = sweep(building, climate, samples, **options)
+    members = sweep(building, climate, samples, **options)
     order = np.random.default_rng(5).permutation(19)
     shuffled = sweep(
         building, climate, {path: [values[k] for k in order] for path, values in samples.items()}, **options
     )
     for name in OUTPUTS[:4]:
-        np.testing.assert_array_equal(shuffled[name].to_numpy(), found[name].to_numpy()[order], err_msg=name)
+        np.testing.assert_array_equal(
+            shuffled[name].to_numpy(), members[name].to_numpy()[order], err_msg=name
+        )
 
 
 def _bits(features: bool) -> str:
@@ -199,8 +203,8 @@ def _bits(features: bool) -> str:
     names = OUTPUTS if features else OUTPUTS[:4]
     samples = SAMPLES if features else dict(list(SAMPLES.items())[:5])
     options = OPTIONS | {"outputs": names, "step": "1h"}
-    found = sweep(rooms(features), Climate.shipped("golden"), samples, **options)
-    return hashlib.sha256(b"".join(found[name].to_numpy().tobytes() for name in names)).hexdigest()
+    members = sweep(rooms(features), Climate.shipped("golden"), samples, **options)
+    return hashlib.sha256(b"".join(members[name].to_numpy().tobytes() for name in names)).hexdigest()
 
 
 @pytest.mark.parametrize("features", [False, True])

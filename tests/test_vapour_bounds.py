@@ -72,11 +72,11 @@ def test_an_opened_window_leads_to_the_outdoor_humidity(step: int, scheme: Any) 
         schedules={"open": opened("06:00", "18:00")},
         humidity={"initial": 0.6},
     )  # fmt: skip
-    found = mc.simulate(
+    run = mc.simulate(
         mc.Building.from_dict(plain), climate(20.0, -14.0, 24), step=step, scheme=scheme, initial=20.0,
         outputs=["room.humidity_ratio"],
     )  # fmt: skip
-    series = found.records[:, 0]
+    series = run.records[:, 0]
     outside, inside = float(ratios(-14.0)[0]), float(series[0])
     assert series.min() >= outside * (1.0 - ROUNDING)
     assert series.max() <= inside * (1.0 + ROUNDING)
@@ -87,11 +87,11 @@ def test_an_opened_window_leads_to_the_outdoor_humidity(step: int, scheme: Any) 
     largest = {60: 1e-3, 900: 0.05, 3600: 1e-4, 10800: 1e-4}
     first_order = {60: 0.035, 900: 0.21, 3600: 0.08, 10800: 0.03}
     assert error < (first_order if scheme == "backward-euler" else largest)[step]
-    assert found.vapour is not None
-    assert found.vapour.relative_residual < 1e-10
-    assert bool(found.vapour.corrected) == (scheme != "backward-euler" and step >= 900)
-    coarse = [line for line in found.warnings if "too long for the vapour" in line]
-    assert len(coarse) == bool(found.vapour.corrected)
+    assert run.vapour is not None
+    assert run.vapour.relative_residual < 1e-10
+    assert bool(run.vapour.corrected) == (scheme != "backward-euler" and step >= 900)
+    coarse = [line for line in run.warnings if "too long for the vapour" in line]
+    assert len(coarse) == bool(run.vapour.corrected)
 
 
 def test_the_scheme_is_of_second_order_where_nothing_is_corrected() -> None:
@@ -105,16 +105,16 @@ def test_the_scheme_is_of_second_order_where_nothing_is_corrected() -> None:
     )
     errors = []
     for step in (900, 450, 225):
-        found = mc.simulate(
+        run = mc.simulate(
             mc.Building.from_dict(plain), climate(20.0, 5.0, 6), step=step, initial=20.0,
             outputs=["room.humidity_ratio"],
         )  # fmt: skip
-        series, outside = found.records[:, 0], float(ratios(5.0)[0])
+        series, outside = run.records[:, 0], float(ratios(5.0)[0])
         hours = np.arange(len(series)) * step / 3600.0
         exact = outside + (series[0] - outside) * np.exp(-4.0 * np.clip(hours - 1.0, 0.0, None))
         errors.append(float(np.abs(series - exact).max()))
-        assert found.vapour is not None
-        assert not found.vapour.corrected
+        assert run.vapour is not None
+        assert not run.vapour.corrected
     orders = [math.log2(a / b) for a, b in itertools.pairwise(errors)]
     assert orders == pytest.approx([2.0, 2.0], abs=0.25)
 
@@ -130,8 +130,8 @@ def test_cooled_air_keeps_no_more_than_it_holds_and_no_less_than_its_causes() ->
     outputs = ["room.humidity_ratio", "room.relative_humidity"]
     weather = climate(25.0, 20.0, 48)
     for step in (3600, 900, 60):
-        found = mc.simulate(mc.Building.from_dict(plain), weather, step=step, outputs=outputs)
-        ratio, humidity = found.records.T
+        run = mc.simulate(mc.Building.from_dict(plain), weather, step=step, outputs=outputs)
+        ratio, humidity = run.records.T
         assert humidity.min() > 0.3
         assert humidity.max() <= 1.0 + ROUNDING
         # Saturated at 2 degC, the lowest temperature of the air.
@@ -196,18 +196,18 @@ def test_random_rooms_are_never_below_zero_or_outside_of_their_causes(sorbing: b
         names = [
             f"{zone}.{kind}" for zone in plain["zones"] for kind in ("humidity_ratio", "relative_humidity")
         ]
-        found = mc.simulate(
+        run = mc.simulate(
             mc.Building.from_dict(plain), climate(air, dew, 48), step=step, outputs=names, initial=20.0
         )
-        ratio, humidity = found.records[:, ::2], found.records[:, 1::2]
+        ratio, humidity = run.records[:, ::2], run.records[:, 1::2]
         assert ratio.min() >= 0.0, (step, plain)
         assert humidity.max() <= 1.0 + ROUNDING, (step, plain)
-        assert found.vapour is not None
-        assert found.vapour.relative_residual < 1e-10
+        assert run.vapour is not None
+        assert run.vapour.relative_residual < 1e-10
         if not sources and not sorbing:
             causes = np.concatenate([ratios(dew), ratio[0]])
             # Air that condenses may be as dry as the coldest room.
-            low = causes.min() if not found.vapour.into["condensation"] else 0.0
+            low = causes.min() if not run.vapour.into["condensation"] else 0.0
             assert ratio.min() >= low * (1.0 - ROUNDING), (step, plain)
             assert ratio.max() <= causes.max() * (1.0 + ROUNDING), (step, plain)
 
@@ -259,11 +259,11 @@ def test_derivatives_where_the_humidity_is_kept_between_its_causes() -> None:
 def test_the_start_has_the_pressure_of_the_weather() -> None:
     """60 % at 20 degC and 980 hPa, whatever the altitude is."""
     plain = building(zones={"room": {"volume": 30.0}}, surfaces=walls("room"), humidity={"initial": 0.6})
-    found = mc.simulate(
+    run = mc.simulate(
         mc.Building.from_dict(plain), climate(20.0, 5.0, 6), initial=20.0,
         outputs=["room.relative_humidity", "room.humidity_ratio"],
     )  # fmt: skip
-    assert found.records[0, 0] == pytest.approx(0.6, rel=1e-12)
+    assert run.records[0, 0] == pytest.approx(0.6, rel=1e-12)
 
 
 def test_nothing_is_flagged_where_next_to_nothing_is_exchanged() -> None:
@@ -273,11 +273,11 @@ def test_nothing_is_flagged_where_next_to_nothing_is_exchanged() -> None:
         surfaces=walls("room", 200.0),
         humidity={"initial": 0.6, "materials": {"board": "wood"}, "deep_period": 504.0},
     )
-    found = mc.simulate(mc.Building.from_dict(plain), climate(10.0, 5.0, 240), step="5min", initial=20.0)
-    assert found.vapour is not None
-    assert found.vapour.exchanged < 1e-6
-    assert found.vapour.closes
-    assert not [line for line in found.warnings if "vapour balance" in line]
+    run = mc.simulate(mc.Building.from_dict(plain), climate(10.0, 5.0, 240), step="5min", initial=20.0)
+    assert run.vapour is not None
+    assert run.vapour.exchanged < 1e-6
+    assert run.vapour.closes
+    assert not [line for line in run.warnings if "vapour balance" in line]
 
 
 def test_the_warning_names_a_step_without_corrections() -> None:

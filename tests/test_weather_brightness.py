@@ -25,7 +25,8 @@ def shifted(name: str, minutes: float) -> Climate:
     index = pd.DatetimeIndex(table.index)
     table.index = index - pd.Timedelta(minutes=minutes)
     zone = f"UTC{str(index.tz)[3:6]}"
-    return Climate.from_table(table, timezone=zone, columns={one: one for one in COLUMNS}, check_sun=False)
+    columns = {column: column for column in COLUMNS}
+    return Climate.from_table(table, timezone=zone, columns=columns, check_sun=False)
 
 
 @pytest.mark.parametrize("name", ["tampa", "golden", "tucson"])
@@ -109,7 +110,9 @@ def test_nothing_above_extraterrestrial_plus_reflected(
     table = pd.DataFrame(dict.fromkeys(names, 1.0), index=index)
     table["direct_normal"] = rng.choice([0.0, 50.0, 900.0, 1400.0], 49)
     table["diffuse_horizontal"] = rng.choice([0.0, 1.0, 80.0, 500.0, 1150.0], 49)
-    climate = Climate.from_table(table, timezone="UTC", columns={one: one for one in names}, check_sun=False)
+    climate = Climate.from_table(
+        table, timezone="UTC", columns={name: name for name in names}, check_sun=False
+    )
     for tilt, azimuth in ((90.0, 0.0), (90.0, 90.0), (90.0, 180.0), (90.0, 270.0), (30.0, 180.0), (0.0, 0.0)):
         building = box().replace(
             {
@@ -117,7 +120,7 @@ def test_nothing_above_extraterrestrial_plus_reflected(
                 "surfaces.facade.azimuth": azimuth, "site.diffuse": diffuse,
             }
         )  # fmt: skip
-        found = simulate(building, climate, step="15min", outputs=["facade.incident_solar"]).records[:, 0]
+        incident = simulate(building, climate, step="15min", outputs=["facade.incident_solar"]).records[:, 0]
         reflected = float(building.site.ground_reflectance) * 0.5 * (1.0 - np.cos(np.radians(tilt)))
-        assert found.max() <= 1408.0 * (1.0 + reflected)
-        assert found.min() >= 0.0
+        assert incident.max() <= 1408.0 * (1.0 + reflected)
+        assert incident.min() >= 0.0

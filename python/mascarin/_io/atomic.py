@@ -94,7 +94,9 @@ def _require_possible(path: Path, kind: str) -> None:
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"cannot write {path.name}: no such folder", str(path.parent))
     if path.is_dir() and not path.is_symlink():
-        raise InputError(f"{path}: found a folder, expected a file to write; choose another name")
+        raise InputError(
+            f"{path}: found a folder, expected a file to write; remove the folder or choose another name"
+        )
 
 
 @contextlib.contextmanager

@@ -95,12 +95,12 @@ def remember(path: Path, kind: str = "") -> None:
     InputError
         It is an output of this command.
     """
-    found, register = _identity(path), _registers[-1]
-    if found is None or _path_of(register.own, found) is not None:
+    file_id, register = _identity(path), _registers[-1]
+    if file_id is None or _path_of(register.own, file_id) is not None:
         return
-    register.inputs[found] = (path.absolute(), kind)
+    register.inputs[file_id] = (path.absolute(), kind)
     for output in register.outputs:
-        if _identity(output) == found:
+        if _identity(output) == file_id:
             require_no_input(output)
 
 
@@ -130,18 +130,18 @@ def require_no_input(path: Path, kind: str = "") -> None:
     Traceback (most recent call last):
     mascarin.errors.InputError: -o: found ...logger.csv, which is an input (--weather); expected ...
     """
-    found, register = _identity(path), _registers[-1]
-    if found is None or found not in register.inputs:
+    file_id, register = _identity(path), _registers[-1]
+    if file_id is None or file_id not in register.inputs:
         return
-    source, known = register.inputs[found]
-    if _identity(source) != found:
+    source, facts = register.inputs[file_id]
+    if _identity(source) != file_id:
         return  # removed or replaced since: the inode belongs to another file now
-    if kind and kind == known and not register.command:
+    if kind and kind == facts and not register.command:
         return
-    option, given = _option_of_output(path, register.words), _option_of_input(found, register.words)
+    option, input_option = _option_of_output(path, register.words), _option_of_input(file_id, register.words)
     where = f"{option}: found {path}, which is an input" if option else f"{path}: found an input"
-    if given:
-        where += f" ({given})"
+    if input_option:
+        where += f" ({input_option})"
     elif source != path.absolute():
         where += f", read as {source}"
     remedy = "choose another name" if register.command else "choose another name, or remove the file first"
@@ -163,8 +163,8 @@ def require_no_inputs_in(folder: Path) -> None:
     """
     register = _registers[-1]
     place = folder.resolve()
-    for found, (source, _) in list(register.inputs.items()):
-        if source.resolve().is_relative_to(place) and _identity(source) == found:
+    for file_id, (source, _) in list(register.inputs.items()):
+        if source.resolve().is_relative_to(place) and _identity(source) == file_id:
             where = _option_of_output(folder, register.words) or str(folder)
             raise InputError(
                 f"{where}: found the input {source} in {folder}, where files are replaced; expected a folder "
@@ -199,10 +199,10 @@ def outputs(*files: Path) -> Iterator[None]:
 
 def written(path: Path) -> None:
     """Remember a file that was written here: it is an own file from now on."""
-    found, register = _identity(path), _registers[-1]
-    if found is not None:
-        register.own[found] = path.absolute()
-        register.inputs.pop(found, None)
+    file_id, register = _identity(path), _registers[-1]
+    if file_id is not None:
+        register.own[file_id] = path.absolute()
+        register.inputs.pop(file_id, None)
 
 
 def _identity(path: Path) -> Identity | None:
@@ -239,8 +239,8 @@ def _option_of_output(path: Path, words: Sequence[str]) -> str:
     place = path.absolute()
     for name, value in _options(words):
         if name in OPTIONS and "\0" not in value:
-            given = Path(value).absolute()
-            if given == place or given in place.parents:
+            output = Path(value).absolute()
+            if output == place or output in place.parents:
                 return name
     return ""
 

@@ -99,9 +99,9 @@ def opened(kind: str, whole: bytes) -> bytes:
 
 
 def _digest(head: bytes, content: bytes) -> bytes:
-    found = hashlib.sha256(head)
-    found.update(content)
-    return found.digest()
+    digest = hashlib.sha256(head)
+    digest.update(content)
+    return digest.digest()
 
 
 def read(path: Path, kind: str) -> bytes:
@@ -193,10 +193,10 @@ def _depth(found: Any) -> int:
     depth, level = 0, [found]
     while level:
         level = [
-            one
+            value
             for item in level
             if isinstance(item, dict | list)
-            for one in (item.values() if isinstance(item, dict) else item)
+            for value in (item.values() if isinstance(item, dict) else item)
         ]
         depth += 1
     return depth
@@ -212,10 +212,10 @@ def read_json(path: Path) -> dict[str, Any]:
     OSError
         It cannot be read.
     """
-    found = json_of(whole(path))
-    if not isinstance(found, dict):
-        raise DamagedError(f"it holds a {type(found).__name__} instead of a mapping")
-    return found
+    content = json_of(whole(path))
+    if not isinstance(content, dict):
+        raise DamagedError(f"it holds a {type(content).__name__} instead of a mapping")
+    return content
 
 
 def packed(notes: Any, arrays: Mapping[str, Array]) -> bytes:
@@ -236,11 +236,11 @@ def packed(notes: Any, arrays: Mapping[str, Array]) -> bytes:
     import numpy as np
 
     places, parts = [], []
-    for name, given in arrays.items():
-        values = np.ascontiguousarray(given)
+    for name, array in arrays.items():
+        values = np.ascontiguousarray(array)
         if values.dtype.char not in _NUMBERS:
             raise TypeError(f"{name}: cannot keep an array of {values.dtype}")
-        places.append([name, values.dtype.newbyteorder("<").str, list(np.shape(given))])
+        places.append([name, values.dtype.newbyteorder("<").str, list(np.shape(array))])
         parts.append(values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes())
     head = json.dumps({"notes": notes, "arrays": places}).encode()
     return len(head).to_bytes(_WORD, "little") + head + b"".join(parts)

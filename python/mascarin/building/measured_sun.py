@@ -52,8 +52,8 @@ def _obstructed(building: Description) -> dict[SideName, list[str]]:
         return {}
     horizon = ["horizon"] if building.site.horizon else []
     walls, shades = obstructions(building), _shades(building)
-    found = {at: [*walls.get(at, []), *shades.get(at, []), *horizon] for at, _ in free}
-    return {at: names for at, names in found.items() if names}
+    obstacles = {at: [*walls.get(at, []), *shades.get(at, []), *horizon] for at, _ in free}
+    return {at: names for at, names in obstacles.items() if names}
 
 
 def paths(building: Description) -> set[str]:
@@ -133,7 +133,7 @@ def _shades(building: Description) -> dict[SideName, list[str]]:
 
     standing, names = InFront(list(shade_outlines(building.shades).values())), list(building.shades)
     walls, panes = outlines(building.surfaces), window_outlines(building.windows)
-    drawn: dict[SideName, Polygon] = {(name, "outside"): one for name, one in walls.items()}
-    drawn |= {(name, "inside"): one.reversed() for name, one in walls.items()}
-    drawn |= {(name, "outside"): one for name, one in panes.items()}
+    drawn: dict[SideName, Polygon] = {(name, "outside"): outline for name, outline in walls.items()}
+    drawn |= {(name, "inside"): outline.reversed() for name, outline in walls.items()}
+    drawn |= {(name, "outside"): outline for name, outline in panes.items()}
     return {at: [names[k] for k in standing.of(polygon)] for at, polygon in drawn.items()}

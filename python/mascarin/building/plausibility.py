@@ -83,16 +83,16 @@ def _implausible_melting(building: Description) -> Iterator[str]:
 
 def _unused_curve(material: PhaseChangeMaterial) -> str | None:
     """What is ignored of a product that freezes by another curve than it melts by; None where nothing is."""
-    one = None if material.product is None else product(material.product)
-    if one is None or one.heating is None or one.cooling is None or material.hysteresis is not None:
+    entry = None if material.product is None else product(material.product)
+    if entry is None or entry.heating is None or entry.cooling is None or material.hysteresis is not None:
         return None
     used = material.law.curve if isinstance(material.law, TableLaw) else None
     if used is None:
         return None  # a law of the user
     other, does = ("cooling", "freezes") if used == "heating" else ("heating", "melts")
-    halves = {name: curve.temperature_at(0.5) for name, curve in curves(one)}
+    halves = {name: curve.temperature_at(0.5) for name, curve in curves(entry)}
     return (
-        f"{one.name} {does} by its {other} curve (half at {halves[other]:.1f} degC), which is not used: it "
+        f"{entry.name} {does} by its {other} curve (half at {halves[other]:.1f} degC), which is not used: it "
         f"melts and freezes by its {used} curve (half at {halves[used]:.1f} degC). For both curves write "
         "'hysteresis: {model: curve_switch}' and no law"
     )

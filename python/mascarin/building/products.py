@@ -79,8 +79,8 @@ def _heating_fractions(given: Any, one: Product) -> Any:
             f"law: {DEFAULT_CURVE}, or none; the cooling curve belongs below hysteresis",
             "Remove 'law:'.",
         )
-    whole = isinstance(given, Mapping) and "kind" in given and named is None
-    if whole or not (given is None or isinstance(given, str | Mapping)):
+    is_law = isinstance(given, Mapping) and "kind" in given and named is None
+    if is_law or not (given is None or isinstance(given, str | Mapping)):
         return given
     more = {key: value for key, value in given.items() if key != "kind"} if isinstance(given, Mapping) else {}
     if one.heating is not None:
@@ -140,15 +140,15 @@ def _latent_heat(one: Product, law: Any) -> Number:
 
     That of the product is at its melting temperature; between the two lies a difference of sensible heat.
     """
-    found: Number = _noted(one.raw["latent_heat"], one)
+    latent: Number = _noted(one.raw["latent_heat"], one)
     heats, centre = one.pair("specific_heat"), one.melting_temperature
     points = law.get("temperatures") if isinstance(law, Mapping) else law.temperatures
     if heats is None or centre is None or heats[0] == heats[1] or not points:
-        return found
+        return latent
     middle = 0.5 * (float(points[0]) + float(points[-1]))
-    moved = float(found) + (heats[1] - heats[0]) * (middle - centre)
-    note = f"at {middle:g} degC, from {float(found):g} J/kg at {centre:g} degC; {found.source}"
-    return Number(round(moved, 1), source=note, assumed=found.assumed, derived=True)
+    moved = float(latent) + (heats[1] - heats[0]) * (middle - centre)
+    note = f"at {middle:g} degC, from {float(latent):g} J/kg at {centre:g} degC; {latent.source}"
+    return Number(round(moved, 1), source=note, assumed=latent.assumed, derived=True)
 
 
 def _over(own: Any, given: Any) -> Any:

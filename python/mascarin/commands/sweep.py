@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from mascarin._io import arrow_files
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.commands.exit_code import exit_code
@@ -148,7 +149,8 @@ def _read(file: Path) -> pd.DataFrame:
             case ".csv":
                 return read_csv(file)
             case ".parquet":
-                return pd.read_parquet(file)
+                with arrow_files.opened(file) as content:
+                    return pd.read_parquet(content)
     except (OSError, ValueError, ImportError) as error:
         raise InputError(f"--samples: '{file}' cannot be read: {error}") from None
     raise InputError(f"--samples: found '{file}'; expected a file ending in .csv or .parquet")

@@ -57,9 +57,9 @@ def table_of(file: BinaryIO, folder: Path, filters: Any, without: Collection[str
     """
     import pyarrow.parquet as pq
 
-    found = pq.read_metadata(file)
-    names = [name for name in found.schema.to_arrow_schema().names if name not in without]
+    footer = pq.read_metadata(file)
+    names = [name for name in footer.schema.to_arrow_schema().names if name not in without]
     if filters is None:
-        memory.require(8 * found.num_rows * len(names), f"{folder}: the results", "read fewer members")
+        memory.require(8 * footer.num_rows * len(names), f"{folder}: the results", "read fewer members")
     file.seek(0)
     return pq.read_table(file, columns=names, filters=filters, page_checksum_verification=True)

@@ -1,4 +1,8 @@
-"""The manifest of an ensemble, read with its types: it may be damaged, or come from someone else."""
+"""The manifest of an ensemble, read with its types: it may be damaged, or come from someone else.
+
+It has no seal, because people and their scripts read it as JSON. It holds names, units and hashes; a store
+whose hashes differ is not continued, the numbers of the members are in sealed pieces and checked pages.
+"""
 
 from __future__ import annotations
 
@@ -57,14 +61,14 @@ def read(place: Path) -> dict[str, Any]:
         There is none, or it is damaged.
     """
     try:
-        found = own_files.read_json(place)
-        _check(found)
+        manifest = own_files.read_json(place)
+        _check(manifest)
     except (OSError, own_files.DamagedError) as error:
         raise InputError(
             f"{place}: found no readable manifest ({error}); expected the folder of an ensemble, as "
             "sweep_into() or 'mascarin sweep --out' makes it. If it was one, remove it and run it again"
         ) from None
-    return found
+    return manifest
 
 
 def _check(found: dict[str, Any]) -> None:
@@ -72,10 +76,10 @@ def _check(found: dict[str, Any]) -> None:
     if not 1 <= found["members"] <= _MOST:
         raise own_files.DamagedError(f"members: found {found['members']}")
     for key in _LISTS:
-        if not all(isinstance(one, str) for one in found.get(key, [])):
+        if not all(isinstance(text, str) for text in found.get(key, [])):
             raise own_files.DamagedError(f"{key}: found something else than texts")
     for key in ("kept", "sample_units"):
-        if not all(isinstance(one, str) for one in found.get(key, {}).values()):
+        if not all(isinstance(text, str) for text in found.get(key, {}).values()):
             raise own_files.DamagedError(f"{key}: found something else than texts")
     for values in found.get("single_precision", {}).values():
         own_files.require(values if isinstance(values, dict) else {}, _DIFFERENCE)

@@ -134,7 +134,7 @@ def sweep(
     _require_room(inputs, found)
     order = found.by_structure()
     with reporting(progress, "members") as report:
-        whole, judged, failures = _gathered(
+        members, judged, failures = _gathered(
             order,
             _chunks(
                 inputs,
@@ -148,7 +148,7 @@ def sweep(
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
     first = _first(inputs, found)
     return (
-        _dataset(inputs, found, whole)
+        _dataset(inputs, found, members)
         .assign(
             closure=xr.DataArray(judged[0], dims="member", attrs=CLOSURE),
             outside=xr.DataArray(judged[1], dims="member", attrs=OUTSIDE),

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
 
-from mascarin._io import atomic, display, identity, own_files
+from mascarin._io import arrow_files, atomic, display, identity, own_files
 from mascarin._io.regular import require_text
 from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
@@ -162,11 +162,11 @@ class Store:
 
         try:
             with (self.path / RESULTS).open("rb") as file:
-                found = pq.read_metadata(file)
-            names = {*found.schema.to_arrow_schema().names}
+                footer = pq.read_metadata(file)
+            names = {*footer.schema.to_arrow_schema().names}
         except (OSError, ValueError, pa.ArrowException):
             return False
-        return found.num_rows == self.count and {"member", *_JUDGED, *self.manifest["kept"]} <= names
+        return footer.num_rows == self.count and {"member", *_JUDGED, *self.manifest["kept"]} <= names
 
     def _is_whole(self, file: Path) -> bool:
         """Whether a piece is as it was written; each is read once."""
@@ -283,10 +283,10 @@ class Store:
                 )
                 held.append(table)
                 joined = pa.concat_tables(held)
-                whole = len(joined) // rows * rows
-                for at in range(0, whole, rows):
+                full_rows = len(joined) // rows * rows
+                for at in range(0, full_rows, rows):
                     writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
-                held = [joined.slice(whole)]
+                held = [joined.slice(full_rows)]
             rest = pa.concat_tables(held) if held else None
             if writer is not None and rest is not None and len(rest):
                 writer.write_table(rest.combine_chunks(), row_group_size=rows)
@@ -311,11 +311,11 @@ class Store:
 
         series = {*self.manifest["outputs"]} if not self.manifest["objectives"] else set()
         with self._blamed():
-            found = [table.to_pandas(ignore_metadata=True) for table in self._tables(without=series)]
-            whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
-            if not {*_JUDGED, "failure"} <= {*whole.columns}:
+            frames = [table.to_pandas(ignore_metadata=True) for table in self._tables(without=series)]
+            frame: pd.DataFrame = pd.concat(frames).drop_duplicates("member")
+            if not {*_JUDGED, "failure"} <= {*frame.columns}:
                 raise KeyError("closure")
-            return whole.sort_values("member").set_index("member")
+            return frame.sort_values("member").set_index("member")
 
     def warnings(self) -> list[str]:
         """Warnings about members, and of a run with the values of the building; see `mascarin.sweep`."""
@@ -408,12 +408,12 @@ class Store:
         return kept * rows + len(self.manifest["paths"]) + 4
 
     def _chunks(self) -> list[tuple[int, int]]:
-        found = []
+        chunks = []
         for file in (self.path / "pieces").glob("*.parquet"):
             name = _CHUNK.fullmatch(file.name)
             if name and int(name[1]) < int(name[2]) <= self.count and self._is_whole(file):
-                found.append((int(name[1]), int(name[2])))
-        return found
+                chunks.append((int(name[1]), int(name[2])))
+        return chunks
 
     def _tables(self, filters: Any = None, without: Collection[str] = ()) -> list[pa.Table]:
         """Tables of the finished file, or of all pieces.
@@ -424,9 +424,9 @@ class Store:
             No member has been run.
         """
         if self.complete:
-            with (self.path / RESULTS).open("rb") as file:
+            with arrow_files.opened(self.path / RESULTS) as file:
                 return [table_of(file, self.path, filters, without)]
-        pieces = [self._piece(*one) for one in sorted(self._chunks())]
+        pieces = [self._piece(*span) for span in sorted(self._chunks())]
         if not pieces:
             raise InputError(f"{self.path}: no member has been run yet")
         return [table_of(io.BytesIO(piece), self.path, filters, without) for piece in pieces]

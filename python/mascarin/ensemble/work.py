@@ -155,10 +155,10 @@ def run_chunk(
             before = done
             call = None if report is None else (lambda count, _, before=before: report(before + count))
             run = simulation.ensemble(vectors, precision=inputs.precision, progress=call)
-            kept = _reduced(inputs, simulation, run.records)
+            objectives = _reduced(inputs, simulation, run.records)
             if values is None:
-                values = np.full((members.count, *kept.shape[1:]), np.nan)
-            values[batch], closure[batch], outside[batch] = kept, run.residuals, run.outside
+                values = np.full((members.count, *objectives.shape[1:]), np.nan)
+            values[batch], closure[batch], outside[batch] = objectives, run.residuals, run.outside
             step_errors[batch] = member_errors(
                 simulation.building, simulation.outputs, run.records, simulation.scheme
             )

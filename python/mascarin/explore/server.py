@@ -144,7 +144,7 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             if not isinstance(content, dict):
                 raise InputError("request: expected an object")
-            found = answer(content)
+            reply = answer(content)
         except (MascarinError, OSError) as error:
             self._json(HTTPStatus.OK, {"refused": str(error)})  # an answer: browsers log failures
         except Exception as error:  # whatever is wrong is said on the page, and the server goes on
@@ -152,7 +152,7 @@ class _Handler(BaseHTTPRequestHandler):
             sys.stderr.write(f"error: {text}\n")
             self._say(HTTPStatus.INTERNAL_SERVER_ERROR, text)
         else:
-            self._json(HTTPStatus.OK, found)
+            self._json(HTTPStatus.OK, reply)
 
     def _is_own_host(self) -> bool:
         """Whether the request names this server, and comes from its page if it says where it comes from."""

@@ -18,7 +18,7 @@ from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import batches
+from mascarin.sensitivity.runs import Collector, batches
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.judgement import ensemble_warnings
 from mascarin.simulation.nominal import of_nominal
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
+    from mascarin.sensitivity.methods import Plan
     from mascarin.simulation.compiled import EnsembleRun
     from mascarin.simulation.initial import Initial
     from mascarin.simulation.options import Precision, Scheme, TimeLike
@@ -232,21 +233,33 @@ def sensitivity_analysis(
     taken = collector(
         runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
+    lines = _run_all(simulation, runs, taken, every, precision, progress)
+    analysis = taken.result(confidence=confidence)
+    said = (*analysis.warnings, *lines, *of_base(of_nominal(simulation)))
+    return replace(analysis, times=simulation.index[::every], warnings=said)
+
+
+def _run_all(
+    simulation: Simulation,
+    runs: Plan,
+    taken: Collector[Any, Any],
+    every: int,
+    precision: Precision,
+    progress: ProgressOption,
+) -> list[str]:
+    """Carry out the runs of a plan; lines about members that are not sound, and about single precision."""
     remarks: list[str] = []
-    judged: list[Array] = []
+    residuals, outside = np.full(len(runs), np.nan), np.full(len(runs), np.nan)
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
             run = run_samples(simulation, runs.paths, x, first, every=every, precision=precision)
-            records = run.records
-            taken.add(first, records)
-            judged.append(np.array([run.residuals, run.outside]))
+            taken.add(first, run.records)
+            last = first + len(x)
+            residuals[first:last], outside[first:last] = run.residuals, run.outside
             if first == 0 and precision == "single":
-                remarks = _single_precision(simulation, runs.paths, x, records, every)
-            report(first + len(x), len(runs))
-    found = taken.result(confidence=confidence)
-    members = ensemble_warnings(*np.concatenate(judged, axis=1), precision=precision)
-    said = (*found.warnings, *members, *remarks, *of_base(of_nominal(simulation)))
-    return replace(found, times=simulation.index[::every], warnings=said)
+                remarks = _single_precision(simulation, runs.paths, x, run.records, every)
+            report(last, len(runs))
+    return [*ensemble_warnings(residuals, outside, precision=precision), *remarks]
 
 
 def _single_precision(

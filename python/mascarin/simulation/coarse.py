@@ -34,10 +34,10 @@ START: Final = 3
 
 def watched(building: Building, outputs: Sequence[Output]) -> list[Output]:
     """Air temperatures of zones without plant that are not among the outputs of a run."""
-    known = {output.name for output in outputs}
+    names = {output.name for output in outputs}
     every = building.outputs()
     places = _free(building, every).values()
-    return [every[column] for column in places if every[column].name not in known]
+    return [every[column] for column in places if every[column].name not in names]
 
 
 def member_errors(
@@ -72,14 +72,14 @@ def member_errors(
 def _free(building: Building, outputs: Sequence[Output]) -> dict[str, int]:
     """Zones without heating and cooling whose air temperature is an output, with its place."""
     zones = list(building.zones.items())
-    found = {}
+    columns = {}
     for column, output in enumerate(outputs):
         if output.kind != "air_temperature" or output.zone is None:
             continue
         name, zone = zones[output.zone]
         if zone.heating is None and zone.cooling is None:
-            found[name] = column
-    return found
+            columns[name] = column
+    return columns
 
 
 class Bends:
@@ -102,9 +102,9 @@ class Bends:
 
     def __init__(self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2") -> None:
         self._order, self._share = SHARES[scheme]
-        found = _free(building, outputs)
-        self._names = list(found)
-        self._columns = list(found.values())
+        columns = _free(building, outputs)
+        self._names = list(columns)
+        self._columns = list(columns.values())
         self._skip = START
         self._before = np.empty((0, len(self._columns)))
         self._sum = np.zeros((1, len(self._columns)))

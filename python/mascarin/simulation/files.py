@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from mascarin._io import atomic, identity, memory, own_files
+from mascarin._io import arrow_files, atomic, identity, memory, own_files
 from mascarin._io.regular import require_regular, require_text
 from mascarin.errors import InputError
 from mascarin.simulation.blocks import InMemory
@@ -260,7 +260,7 @@ def _read_parquet(path: Path) -> tuple[Array, pd.DatetimeIndex, dict[str, Any]]:
     import pyarrow.parquet as pq
 
     try:
-        with path.open("rb") as raw, pq.ParquetFile(raw, page_checksum_verification=True) as file:
+        with arrow_files.opened(path) as raw, pq.ParquetFile(raw, page_checksum_verification=True) as file:
             numbers = file.metadata.num_rows * file.metadata.num_columns
             memory.require(8 * numbers, f"{path}: the series", "use a part of the file")
             table = file.read()

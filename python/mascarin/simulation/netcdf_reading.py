@@ -50,23 +50,23 @@ _SINCE: Final = re.compile(
 
 def seal(path: Path) -> None:
     """Append the hash of a complete file."""
-    found = _hash(path, path.stat().st_size)
+    digest = _hash(path, path.stat().st_size)
     with path.open("ab") as file:
-        file.write(_SEAL + found)
+        file.write(_SEAL + digest)
 
 
 def _hash(path: Path, size: int) -> bytes:
     """SHA-256 of the first bytes of a file."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     with path.open("rb") as file:
         left = size
         while left:
             block = file.read(min(left, _BLOCK))
             if not block:
                 break
-            found.update(block)
+            digest.update(block)
             left -= len(block)
-    return found.digest()
+    return digest.digest()
 
 
 def _require_whole(path: Path) -> None:
@@ -159,17 +159,17 @@ def _series(file: h5py.File, name: str, size: int) -> h5py.Dataset:
     """
     if not isinstance(file.get(name, getlink=True), h5py.HardLink):
         raise ValueError(f"{name}: it is in another file")
-    found = file[name]
-    if not isinstance(found, h5py.Dataset) or found.ndim != 1 or found.dtype.kind not in "iuf":
+    variable = file[name]
+    if not isinstance(variable, h5py.Dataset) or variable.ndim != 1 or variable.dtype.kind not in "iuf":
         raise ValueError(f"{name}: it is no series of numbers")
-    if found.external or found.is_virtual:
+    if variable.external or variable.is_virtual:
         raise ValueError(f"{name}: it is in another file")
-    claimed = len(found) * found.dtype.itemsize
-    if claimed > size * (_RATIO if found.chunks else 1):
+    claimed = len(variable) * variable.dtype.itemsize
+    if claimed > size * (_RATIO if variable.chunks else 1):
         raise ValueError(f"{name}: it claims {claimed} bytes, which the file does not have")
-    if {"scale_factor", "add_offset"} & set(found.attrs):
+    if {"scale_factor", "add_offset"} & set(variable.attrs):
         raise ValueError(f"{name}: its numbers are packed")
-    return found
+    return variable
 
 
 def _nanoseconds(values: npt.NDArray[Any], units: str) -> npt.NDArray[np.int64]:
@@ -180,11 +180,11 @@ def _nanoseconds(values: npt.NDArray[Any], units: str) -> npt.NDArray[np.int64]:
     ValueError
         Units that are not those of times, or times outside of the calendar.
     """
-    found = _SINCE.fullmatch(units)
-    if found is None or found["unit"] not in _UNITS:
+    match = _SINCE.fullmatch(units)
+    if match is None or match["unit"] not in _UNITS:
         raise ValueError(f"time: found units '{units[:60]}'")
-    length = _UNITS[found["unit"]]
-    first = np.datetime64(f"{found['date']}T{found['time'] or '00:00:00'}", "ns").astype(np.int64)
+    length = _UNITS[match["unit"]]
+    first = np.datetime64(f"{match['date']}T{match['time'] or '00:00:00'}", "ns").astype(np.int64)
     spans = np.asarray(values)
     if spans.dtype.kind == "f" and not (np.isfinite(spans).all() and (spans == np.round(spans)).all()):
         raise ValueError("time: found spans that are not whole numbers")

@@ -67,7 +67,7 @@ def _shortened(simulation: Simulation, steps: int) -> Simulation:
         return simulation
     times = simulation.times
     last = times.first + steps * simulation.step_seconds
-    made = copy.copy(simulation)
-    made.compiled = replace(simulation.compiled, forcing=forcing[:steps])
-    made.times = Times(times.first, last, simulation.step_seconds, times.zone)
-    return made
+    shorter = copy.copy(simulation)
+    shorter.compiled = replace(simulation.compiled, forcing=forcing[:steps])
+    shorter.times = Times(times.first, last, simulation.step_seconds, times.zone)
+    return shorter

@@ -66,9 +66,9 @@ def collected(
         The balances, further checks, layers that do not melt, steps too long for the air of a zone; last
         those about the building.
     """
-    found = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
-    found += [*watch.melting.warnings(), *watch.bends.warnings(step_seconds)]
-    return tuple(dict.fromkeys((*found, *building)))
+    lines = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
+    lines += [*watch.melting.warnings(), *watch.bends.warnings(step_seconds)]
+    return tuple(dict.fromkeys((*lines, *building)))
 
 
 def of_engine(
@@ -137,16 +137,16 @@ def of_members(
     >>> of_members(np.zeros(2), np.zeros(2), np.array([0.1, 0.5]), step_seconds=3600.0)[0][:74]
     '1 of 2 members: the time step of 60 min is too long for the air of a zone,'
     """
-    found = ensemble_warnings(closure, outside, first, precision)
+    lines = ensemble_warnings(closure, outside, first, precision)
     late = np.flatnonzero(step_errors >= LARGE)
     if late.size:
         worst = int(np.nanargmax(step_errors))
-        found.append(
+        lines.append(
             f"{late.size} of {len(step_errors)} members: the time step of {step_seconds / 60.0:g} min is too "
             f"long for the air of a zone, whose temperature is wrong by about {step_errors[worst]:.1g} K "
             f"(root mean square) in member {first + worst}: take a shorter step"
         )
-    return found
+    return lines
 
 
 def says_unsound(warnings: Iterable[str]) -> bool:

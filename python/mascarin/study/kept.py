@@ -81,11 +81,11 @@ def kept(
     path = workspace.path(f"{name}.npz")
     try:
         notes, arrays = own_files.unpacked(own_files.read(path, name))
-        found: _T = _decoded(notes, arrays, known)
+        result: _T = _decoded(notes, arrays, known)
     except (OSError, *_UNUSABLE):
         pass  # there is none, of another version, or damaged: computed again
     else:
-        return found
+        return result
     made = make()
     plain: dict[str, Any] = {}
     tree = _encoded(made, plain, known)
@@ -108,8 +108,8 @@ def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence
     out = workspace.out
     names = kept(workspace, ("files", key), lambda: [path.relative_to(out).as_posix() for path in write()])
     paths = [own_files.inside(out, name) for name in names]
-    known = [path for path in paths if path is not None and path.is_file()]
-    return known if len(known) == len(paths) else list(write())
+    present = [path for path in paths if path is not None and path.is_file()]
+    return present if len(present) == len(paths) else list(write())
 
 
 def kept_series(

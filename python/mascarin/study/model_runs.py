@@ -75,8 +75,8 @@ class ModelRuns:
                 simulation, lead = setup.varied()
                 chosen = factors(setup.building, plan)
                 names = setup.observation.names
-                found = analyze(simulation, plan, chosen, lead, names, self._workspace, report)
-                return replace(found, warnings=(*found.warnings, *of_base(of_nominal(simulation))))
+                analysis = analyze(simulation, plan, chosen, lead, names, self._workspace, report)
+                return replace(analysis, warnings=(*analysis.warnings, *of_base(of_nominal(simulation))))
 
             return kept(setup.workspace, key, make)
 

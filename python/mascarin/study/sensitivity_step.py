@@ -178,8 +178,8 @@ def analyze(
         done[first:last] = True
         pace.update(len(samples), time.monotonic() - began)
         progress(int(done.sum()), len(runs))
-    found = taken.result()
-    return replace(found, warnings=(*found.warnings, *ensemble_warnings(*judged)))
+    analysis = taken.result()
+    return replace(analysis, warnings=(*analysis.warnings, *ensemble_warnings(*judged)))
 
 
 class _Pace:

@@ -1,6 +1,9 @@
 """Intermediate results of a study on disk, so that an interrupted study continues where it was.
 
-The manifest identifies the inputs of the intermediate results.
+The manifest identifies the inputs of the intermediate results. It and the list of results (``results.json``)
+have no seal: people read them, a changed manifest makes everything be computed again, and names in the list
+are confined to results of the folder. What is computed is in sealed files (`_io.own_files`) and records that
+are sealed line by line (`_io.own_records`).
 """
 
 from __future__ import annotations
@@ -71,6 +74,8 @@ class Workspace:
             identity.require_no_input(out / name)
         for name in (_FOLDER, "tables", "figures"):
             identity.require_no_inputs_in(own_files.require_folder(out, name))
+        if self.folder.exists() and not self.folder.is_dir():
+            raise InputError(f"{self.folder}: found a file, expected a folder of Mascarin; remove the file")
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
@@ -132,14 +137,14 @@ class Workspace:
     def _recorded(self) -> dict[str, dict[str, Any]]:
         """Files of each command; nothing where the record is damaged."""
         try:
-            found = own_files.read_json(self.path("results.json"))
-            for entry in found.values():
+            entries = own_files.read_json(self.path("results.json"))
+            for entry in entries.values():
                 own_files.require(entry if isinstance(entry, dict) else {}, {"inputs": str, "files": list})
                 # What is no text is no name.
                 entry["files"] = [name for name in entry["files"] if isinstance(name, str)]
         except (OSError, own_files.DamagedError):
             return {}
-        return found
+        return entries
 
     def _remove(self, name: object) -> None:
         """Remove a result of this folder; a name that is none of a result is left alone.

@@ -48,7 +48,7 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
     """
     # The form of the model that is used may have parameters that the building as described does not have.
     buildings = [*(run.simulation.building for run in models.values()), study.building]
-    laws = {found[0]: _members(buildings, path) for path in paths if (found := _LAW.match(path))}
+    laws = {law[0]: _members(buildings, path) for path in paths if (law := _LAW.match(path))}
     if not laws:
         return {}
     content = {"period": _PERIOD, "unit": "W/(m2 K)"}

@@ -54,11 +54,11 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
 
 def run_warnings(models: Mapping[str, ModelRun]) -> list[str]:
     """Warnings of the runs of models, each once, with the models that have it."""
-    found: dict[str, list[str]] = {}
+    models_by_line: dict[str, list[str]] = {}
     for name, run in models.items():
         for line in run.results.warnings:
-            found.setdefault(line, []).append(name)
-    return [f"{', '.join(names)}: {line}" for line, names in found.items()]
+            models_by_line.setdefault(line, []).append(name)
+    return [f"{', '.join(names)}: {line}" for line, names in models_by_line.items()]
 
 
 def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:
