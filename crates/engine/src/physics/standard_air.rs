@@ -3,6 +3,7 @@
 //! Sources: ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (pressure at an altitude); ASHRAE Handbook of Fundamentals 2017, ch. 1
 //! (ideal gases, eqs. 3, 20 and 28).
 
+use crate::number::real::Real;
 use crate::physics::constants::{AIR_GAS_CONSTANT, AIR_SPECIFIC_HEAT, KELVIN};
 use crate::physics::psychrometrics::{VAPOUR_SPECIFIC_HEAT, humidity_ratio, saturation_pressure};
 
@@ -14,7 +15,7 @@ const SEA_LEVEL_TEMPERATURE: f64 = 288.15;
 /// Pressure of the standard atmosphere at an altitude [m]: [Pa].
 #[must_use]
 pub fn pressure_at(altitude: f64) -> f64 {
-    SEA_LEVEL_PRESSURE * f64::powf(1.0 - 2.25577e-5 * altitude, 5.25588)
+    SEA_LEVEL_PRESSURE * Real::powf(1.0 - 2.25577e-5 * altitude, 5.25588)
 }
 
 /// Density of dry air of 15 degC at an altitude [m]: [kg/m3].

@@ -46,16 +46,19 @@ impl Row {
     }
 
     /// Recorded where no outputs are named.
+    #[must_use]
     pub const fn usual(self) -> Self {
         Self { usual: true, ..self }
     }
 
     /// Nothing beyond these limits is possible.
+    #[must_use]
     pub const fn within(self, least: f64, most: f64) -> Self {
         Self { limits: [least, most], ..self }
     }
 
     /// Nothing below zero is possible.
+    #[must_use]
     pub const fn not_negative(self) -> Self {
         self.within(0.0, f64::INFINITY)
     }
