@@ -328,4 +328,7 @@ def _print(results: Results) -> None:
     if notes.reversals:
         print(f"{notes.reversals} changes between melting and freezing within one time step (hysteresis)")
     if notes.halved_steps:
-        print(f"{notes.halved_steps} time steps were halved to converge")
+        print(
+            f"{notes.halved_steps} time steps were halved: they did not converge, or carried the air of a "
+            "zone beyond what acts on it"
+        )

@@ -52,7 +52,8 @@ class Provenance:
     nested_stages : int
         Stages that only the nested iteration of Casulli & Zanolli solved.
     halved_steps : int
-        Steps, or parts of steps, that had to be halved.
+        Steps, or parts of steps, that had to be halved: they did not converge, or carried the air of a zone
+        more than 0.5 K beyond what acts on it.
     reversals : int
         How often a phase-change cell with hysteresis melted and froze within one step: its history, which is
         updated at the end of a step, contains only the sum. A shorter step makes it smaller.

@@ -1,5 +1,5 @@
-//! Parts of a step: one that does not converge is replaced by its two halves, and the first step of a run that starts from one
-//! temperature everywhere is made in parts that grow.
+//! Parts of a step: one that does not converge, or carries the air of a zone beyond its causes, is replaced by its two halves, and the
+//! first step of a run that starts from one temperature everywhere is made in parts that grow.
 
 use crate::error::EngineError;
 use crate::number::real::Real;
@@ -43,6 +43,11 @@ impl Part {
     pub(crate) fn is_last(self) -> bool {
         // Lengths are powers of a half, so that the sum is exact.
         self.from + self.share >= 1.0
+    }
+
+    /// Whether it may be halved.
+    pub(crate) fn divisible(self) -> bool {
+        self.halvings < MAX_HALVINGS
     }
 
     /// Its two halves.
@@ -114,16 +119,21 @@ impl<S: Real> StepParts<S> {
     /// weather or the parameters of the step.
     pub(crate) fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
         let solvable = matches!(error, EngineError::NotConverged { residual, .. } if !residual.is_nan());
-        if part.halvings == MAX_HALVINGS || !solvable {
+        if !(part.divisible() && solvable) {
             self.left.clear();
             return Err(error);
         }
+        self.divide(part);
+        Ok(())
+    }
+
+    /// Replaces a part by its two halves.
+    pub(crate) fn divide(&mut self, part: Part) {
         if part.halvings == 0 {
             self.load.fill(S::zero());
         }
         let [first, second] = part.halves();
         self.left.extend([second, first]);
-        Ok(())
     }
 
     /// Adds the mean loads over a part; after the last one they are replaced by the means over the step.

@@ -14,6 +14,7 @@ mod limiter;
 mod linearisation;
 mod nested;
 pub(crate) mod newton;
+mod overshoot;
 pub(crate) mod readings;
 mod remainder;
 mod residual;

@@ -31,7 +31,7 @@ pub struct Counters<S> {
     pub iterations: usize,
     /// Stages that only the nested iteration solved.
     pub nested: usize,
-    /// Steps that were halved.
+    /// Steps, and parts of steps, that were halved: they did not converge, or carried the air of a zone beyond what acts on it.
     pub halvings: usize,
     /// Steps of phase-change cells with hysteresis in which melting and freezing followed each other: the memory, which
     /// changes at the end of a step, saw only the sum.

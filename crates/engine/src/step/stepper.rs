@@ -1,6 +1,7 @@
 //! One implicit time step: a function (state, weather) -> state, made of stages that Newton's iteration solves.
 //!
-//! The state changes only when the step is accepted. A step that does not converge is made in parts.
+//! The state changes only when the step is accepted. A step that does not converge, or carries the air of a zone beyond what acts on it,
+//! is made in parts.
 
 use crate::balance::flow_index::FlowIndex;
 use crate::balance::ledger::{Ledger, Power};
@@ -183,12 +184,13 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 while let Some(part) = self.parts.next() {
                     match self.attempt(state, weather, part, dt, ledger) {
-                        Ok(()) if part.halvings == 0 => {}
+                        Ok(true) if part.halvings == 0 => {}
                         // Parts differ in length: no part is guessed from the one before it.
-                        Ok(()) => {
+                        Ok(true) => {
                             self.parts.average(part, &mut state.load);
                             self.forget();
                         }
+                        Ok(false) => self.divide(part),
                         Err(error) => self.halve(part, error)?,
                     }
                 }
@@ -212,13 +214,21 @@ impl<'a, S: Real> Stepper<'a, S> {
         Ok(())
     }
 
+    /// Replaces a part that has carried an air beyond its causes by its two halves.
+    #[cold]
+    fn divide(&mut self, part: Part) {
+        self.parts.divide(part);
+        self.solver.counters.halvings += 1;
+        self.forget();
+    }
+
     /// Whether the step has taken more iterations than it may.
     #[inline(always)]
     pub(super) fn exhausted(&self) -> bool {
         self.parts.exhausted(self.solver.counters.iterations)
     }
 
-    /// A part of a step; the state stays as it was when it fails.
+    /// A part of a step; the state stays as it was when it fails, and where it has to be divided: false.
     #[inline(always)]
     fn attempt(
         &mut self,
@@ -227,7 +237,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         part: Part,
         dt: f64,
         ledger: &mut Ledger<S>,
-    ) -> Result<(), EngineError> {
+    ) -> Result<bool, EngineError> {
         let (length, tableau) = (part.share * dt, self.scheme.tableau());
         self.begin_step(state, tableau.nodes[0]);
         let with_loads = !self.model.plan.ideal_loads.is_empty();
@@ -240,10 +250,13 @@ impl<'a, S: Real> Stepper<'a, S> {
         } else {
             self.step_without_loads(state, weather, part, length)?
         };
+        if self.overshoots(state, weather, part) {
+            return Ok(false);
+        }
         self.accept(state, &energy, ledger);
         self.advance_vapour(state, length, ledger);
         self.known.accept(part, state);
-        Ok(())
+        Ok(true)
     }
 
     /// The stages of a step without ideal loads, one after the other.

@@ -26,6 +26,7 @@ mod long_walls;
 mod marching;
 mod nested_iteration;
 mod order_with_windows;
+mod overshoots;
 mod periodic_start;
 mod properties;
 mod rooms_side_by_side;

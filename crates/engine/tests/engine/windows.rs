@@ -1,7 +1,7 @@
 //! Rooms with windows, frames and shades: energy balance, lanes, derivatives, order.
 
 use crate::common::glazed::{glazed, glazed_outputs, glazed_rooms};
-use crate::common::{facing, forcing, options, position, run, try_run, values, warmup, weather};
+use crate::common::{facing, forcing, options, position, run, set, try_run, values, warmup, weather};
 use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{Facing, Glazing, ZoneSun};
@@ -34,6 +34,40 @@ fn energy_closes_with_windows() {
             assert!(kept > 0.7 * sums[8] && kept <= (sums[8] - sums[9]) * (1.0 + 1e-12));
             assert!(result.ledger.into[Flow::Glass as usize] > 0.0);
         }
+    }
+}
+
+/// A pyranometer that shows 5 W/m2 in the first stage of each step and 6 W/m2 below zero in the last one, by day and by night: a window
+/// transmits no more than what is on it, and the sun takes no heat away.
+#[test]
+fn transmittances_of_a_sensor_with_an_offset() {
+    for mut d in glazed_rooms() {
+        d.channels.push("sensor".to_owned());
+        let channel = d.channels.len() - 1;
+        let mut windows = Vec::new();
+        for (w, surface) in d.surfaces.iter_mut().enumerate() {
+            let glazed = d.constructions[surface.construction].glazing.is_some();
+            if glazed && matches!(surface.outside.facing, Facing::Outdoors) {
+                surface.outside.irradiance = Some(channel);
+                windows.push(w);
+            }
+        }
+        let plan = Plan::new(d).unwrap();
+        let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, |time, row| {
+            weather(time, row);
+            let first = (0.1..0.9).contains(&(time / STEP).fract());
+            set(row, channel, if first { 5.0 } else { -6.0 });
+        });
+        let outputs = windows.iter().flat_map(|&surface| {
+            [Output::SolarTransmittance { surface }, Output::TransmittedSolar { surface }]
+        });
+        let run = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs.collect()));
+        let (mut lit, mut total) = (0, 0);
+        for record in run.records.chunks(2) {
+            assert!((0.0..=1.0).contains(&record[0]) && record[1] >= 0.0, "{record:?}");
+            (lit, total) = (lit + usize::from(record[0] > 0.1), total + 1);
+        }
+        assert!(10 * lit > total && !windows.is_empty(), "{lit} of {total}");
     }
 }
 
