@@ -108,7 +108,9 @@ pub(crate) fn simulate_observed<'a, S: Real>(
         control.count_step();
         let rows = action.weather_rows(weather, options.scheme);
         limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
-        validity.judge(&stepper, &state, action.step());
+        if action != Action::Balance {
+            validity.judge(&stepper, &state, action.step());
+        }
         if action.row(options).is_some() {
             let step = stepper.readings();
             records.extend(options.outputs.iter().map(|output| output.read(plan, &step, &state)));

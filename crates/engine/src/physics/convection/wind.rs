@@ -33,12 +33,12 @@ impl WindTerms {
                     (terms.direction, terms.mowitt) = (true, true);
                 }
                 Convection::Power { .. } => terms.logarithm = true,
+                Convection::Formula { formula, .. } => terms.direction |= formula.contains("windward"),
                 Convection::Constant { .. }
                 | Convection::Measured { .. }
                 | Convection::LinearWind { .. }
                 | Convection::AlamdariHammond { .. }
                 | Convection::PaperEq5 { .. }
-                | Convection::Formula { .. }
                 | Convection::Iso15099 { .. } => {}
             }
             terms
