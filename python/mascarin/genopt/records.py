@@ -155,9 +155,9 @@ class Log:
             raise InputError(msg)
         data = self.path.read_bytes()
         # A line without an end was being written when the run was killed.
-        whole = data[: data.rfind(b"\n") + 1]
+        complete = data[: data.rfind(b"\n") + 1]
         try:
-            lines = whole.decode("utf-8").splitlines()
+            lines = complete.decode("utf-8").splitlines()
         except UnicodeDecodeError as error:
             msg = (
                 f"{self.path}: damaged, it is not text ({error.reason}); remove it or start without --resume"
@@ -172,9 +172,9 @@ class Log:
             for i, line in enumerate(lines[1:], start=2)
             if not line.startswith(_END)
         ]
-        if len(whole) < len(data):
+        if len(complete) < len(data):
             with self.path.open("r+b") as file:
-                file.truncate(len(whole))
+                file.truncate(len(complete))
         self._file = self.path.open("a", encoding="utf-8")
         return records
 
@@ -343,7 +343,7 @@ def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
     try:
         head = own_files.json_of(line)
         own_files.require(head if isinstance(head, dict) else {}, {"project": dict, "format": int})
-        known = head["project"]
+        recorded = head["project"]
         version = head["format"]
     except own_files.DamagedError as error:
         msg = f"{path}:1: not a log of evaluations; remove it or start without --resume"
@@ -351,7 +351,7 @@ def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
     if version != FORMAT:
         msg = f"{path}:1: format {version}, this version reads {FORMAT}; start without --resume"
         raise InputError(msg)
-    changed = sorted(k for k in {*known, *digests} if known.get(k) != digests.get(k))
+    changed = sorted(k for k in {*recorded, *digests} if recorded.get(k) != digests.get(k))
     if changed:
         msg = (
             f"{path}: results of another project: changed since then: {', '.join(changed)}. "
@@ -380,7 +380,7 @@ def _record(path: Path, number: int, line: str) -> Record:
         raise InputError(msg) from error
 
 
-def _check(found: Mapping[str, Any]) -> None:
+def _check(record: Mapping[str, Any]) -> None:
     """Refuse a line whose values have other types.
 
     Raises
@@ -389,14 +389,14 @@ def _check(found: Mapping[str, Any]) -> None:
         It is damaged.
     """
     own_files.require(
-        found,
+        record,
         {
             "step": int, "x": list, "choices": list, "costs": (list, type(None)), "seconds": (int, float),
             "attempts": int, "reason": str, "number": int,
         },
     )  # fmt: skip
     for key, kinds in (("x", (int, float)), ("choices", (int,)), ("costs", (int, float))):
-        for value in found[key] or ():
+        for value in record[key] or ():
             if not isinstance(value, kinds) or isinstance(value, bool):
                 raise own_files.DamagedError(f"{key}: found {type(value).__name__}")
 
