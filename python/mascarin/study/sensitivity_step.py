@@ -161,7 +161,7 @@ def analyze(
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        records = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
+        records = run_samples(simulation, runs.paths, samples, first, start=skipped, record_every=every)
         workspace.keep(name, first, records)
         taken.add(first, records)
         done[first : first + len(samples)] = True
