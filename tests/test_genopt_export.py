@@ -119,12 +119,12 @@ def test_the_cost_of_a_case_equals_that_of_the_study_exactly(
             found = one.evaluate({INSULATION: x[0], ABSORPTANCE: x[1]})
             assert found.parts == {"joint": of_sensors[0], "core": of_sensors[1]}
             assert found.total == cost.total(x[None], of_sensors[None])[0] == sum(of_sensors)
-            assert found.kept == ()
+            assert found.defaults == ()
 
 
 def test_parameters_that_are_not_given_keep_the_value_of_the_study(case: Case) -> None:
     found = case.evaluate({INSULATION: 0.03})
-    assert found.kept == (ABSORPTANCE,)
+    assert found.defaults == (ABSORPTANCE,)
     assert found.total == case.evaluate({INSULATION: 0.03, ABSORPTANCE: 0.5}).total
 
 
@@ -226,7 +226,9 @@ def test_every_algorithm_is_accepted(name: str, case: Case, bench: Path, tmp_pat
     ini = write_project(str(bench / "study.yaml"), tmp_path, SHORT)
     for parameters in (case.parameters[:1], case.parameters):
         algorithm = ALGORITHMS[name]
-        if (algorithm.single and len(parameters) > 1) or (algorithm.several and len(parameters) < 2):
+        if (algorithm.single and len(parameters) > 1) or (
+            algorithm.several_parameters and len(parameters) < 2
+        ):
             with pytest.raises(InputError, match=f"--algorithm {name}: .*parameter"):
                 chosen_algorithm(name, len(parameters))
             continue
@@ -453,7 +455,7 @@ def test_errors_of_an_evaluation_are_in_its_log(
 def test_a_building_that_cannot_be_simulated(run_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(case: Case, x: np.ndarray) -> np.ndarray:
         case._reasons[:] = ["step 3 did not converge"]
-        return np.full((len(x), len(case.place), 2), np.nan)
+        return np.full((len(x), len(case.instants), 2), np.nan)
 
     monkeypatch.setattr(Case, "_model", failing)
     ask(run_folder, f"project = ..\n{INSULATION} = 0.03\n")

@@ -36,7 +36,7 @@ def test_blocks_entries_and_comments(tmp_path: Path) -> None:
     inner = a.block("B")
     assert inner is not None
     assert inner.entries[0].value == 'a "b"\\'
-    assert inner.entries[0].place == f"{tmp_path / 'a.txt'}:3"
+    assert inner.entries[0].location == f"{tmp_path / 'a.txt'}:3"
     assert not report.errors
 
 

@@ -275,7 +275,7 @@ def test_sliders_where_the_sky_is_that_of_the_weather() -> None:
     options = {"start": "2001-07-01", "end": "2001-07-03", "step": "1h"}
     session = Session(mc.Building.from_dict(plain), mc.Climate.from_epw("shipped:golden"), options=options)
     paths = [one.path for one in session.sliders]
-    assert len(paths) == choice.USUAL
+    assert len(paths) == choice.DEFAULT_SLIDERS
     assert not any(path.startswith(("site.sky", "site.cloud")) for path in paths)
     run = session.simulation.building
     assert "site.sky.scale" in [one.path for one in run.parameters()]  # that of the weather

@@ -24,7 +24,7 @@ def test_peaks_are_named_in_every_replicate() -> None:
         found = {peak.line: peak for peak in result.peaks("room", replicate)}
         lines = {w["a"]: "a", 2 * w["b"]: "2 × b", w["b"] + w["c"]: "b + c", abs(w["b"] - w["c"]): "b − c"}
         for line, label in lines.items():
-            assert label in (found[line].label, *found[line].others)
+            assert label in (found[line].label, *found[line].weaker_labels)
     # Nothing is put down to d, whatever falls on its line.
     assert all("d" not in peak.parameters for r in range(8) for peak in result.peaks("room", r))
 

@@ -103,7 +103,9 @@ def _compared(
     climate = read(weather)
     started = time.monotonic()
     with Progress("cases") as progress:
-        years, others = run(wanted, climate, own=own, step=seconds(step), workers=workers, progress=progress)
+        years, others = run(
+            wanted, climate, files=own, step=seconds(step), workers=workers, progress=progress
+        )
     took = time.monotonic() - started
     rows_found = [row for case in wanted for row in quantities(years, case)]
     rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series, known)]

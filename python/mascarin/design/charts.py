@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io import units
-from mascarin.design.measures import BINS
+from mascarin.design.reductions import BINS
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart, round_marks, tick_names
 
@@ -30,22 +30,22 @@ def intervals(ranking: Ranking, names: Sequence[str], title: str, unit: str) -> 
     """Differences from the best design with their intervals, the best at the top."""
     order = list(ranking.order)
     x = Axis.over(ranking.low, ranking.high, around=0.0)
-    left = 14.0 + 6.2 * max((len(name) for name in names), default=0)
+    margin = 14.0 + 6.2 * max((len(name) for name in names), default=0)
     height = 40.0 + 20.0 * len(order) + 20.0
     chart = Chart(
         x,
         Axis(0.0, float(len(order))),
-        width=left + 380.0,
+        width=margin + 380.0,
         height=height,
         x_label=units.shown(unit),
-        margin_left=left,
+        margin_left=margin,
     )
     zero = chart.px(0.0)
     chart.svg.line(zero, 20.0, zero, height - 34.0, "grid zero")
     for row, k in enumerate(order):
         y = chart.py(len(order) - row - 0.5)
         low, high, mid = chart.px(ranking.low[k]), chart.px(ranking.high[k]), chart.px(ranking.difference[k])
-        chart.svg.label(left - 8.0, y + 4.0, names[row], "tick", "end")
+        chart.svg.label(margin - 8.0, y + 4.0, names[row], "tick", "end")
         chart.svg.add("rect", x=low, y=y - 4.0, width=max(high - low, 1.0), height=8.0, class_="interval")
         chart.svg.add("circle", cx=mid, cy=y, r=3.5, class_="mark-tied" if ranking.tied[k] else "mark-apart")
     said = "; ".join(
@@ -118,7 +118,7 @@ def heat_map(
                 shade = 0.06 + 0.86 * (high - good[i, j]) / span
                 _cell(chart, i, j, "heat", shade)
     for j, name in enumerate(names):
-        place = f"rotate(-60 {chart.px(j + 0.62):.1f} {height - bottom + 10.0:.1f})"
+        rotation = f"rotate(-60 {chart.px(j + 0.62):.1f} {height - bottom + 10.0:.1f})"
         chart.svg.add(
             "text",
             name,
@@ -126,7 +126,7 @@ def heat_map(
             y=height - bottom + 10.0,
             class_="t tick",
             text_anchor="end",
-            transform=place,
+            transform=rotation,
         )
     chart.svg.label(width - 8.0, height - 3.0, labels[0], "axis-label", "end")
     if np.isfinite(good).any():
@@ -148,21 +148,26 @@ def _cell(chart: Chart, i: int, j: int, class_: str, shade: float | None) -> Non
 
 def cycling(counts: Array, names: Sequence[str], title: str) -> Any:
     """Days by the daily change of the liquid fraction, a bar for each design, from no change to all."""
-    left = 14.0 + 6.2 * max((len(name) for name in names), default=0)
+    margin = 14.0 + 6.2 * max((len(name) for name in names), default=0)
     total = float(counts.sum(axis=1).max()) or 1.0
     ticks = round_marks(0.0, total)
     x = Axis(0.0, max(total, ticks[-1]), ticks, tick_names(ticks))
     height = 60.0 + 22.0 * len(names)
     chart = Chart(
-        x, Axis(0.0, float(len(names))), width=left + 380.0, height=height, x_label="days", margin_left=left
+        x,
+        Axis(0.0, float(len(names))),
+        width=margin + 380.0,
+        height=height,
+        x_label="days",
+        margin_left=margin,
     )
     for row, name in enumerate(names):
-        at, y = 0.0, chart.py(len(names) - row - 0.5)
-        chart.svg.label(left - 8.0, y + 4.0, name, "tick", "end")
+        start, y = 0.0, chart.py(len(names) - row - 0.5)
+        chart.svg.label(margin - 8.0, y + 4.0, name, "tick", "end")
         for k in range(BINS):
             days = float(counts[row, k])
             if days > 0.0:
-                x0, x1 = chart.px(at), chart.px(at + days)
+                x0, x1 = chart.px(start), chart.px(start + days)
                 shade = f"{0.08 + 0.92 * k / (BINS - 1):.3f}"
                 chart.svg.add(
                     "rect",
@@ -173,7 +178,7 @@ def cycling(counts: Array, names: Sequence[str], title: str) -> Any:
                     class_="heat",
                     fill_opacity=shade,
                 )
-            at += days
+            start += days
     half = BINS // 2
     said = "; ".join(
         f"{name}: {counts[row, half:].sum():g} days of half or more" for row, name in enumerate(names)
@@ -208,13 +213,13 @@ def legend(curves: Mapping[str, Array]) -> list[tuple[str, str]]:
     ]
 
 
-def daily_fraction(found: Detail, layer: str, title: str) -> Any:
+def daily_fraction(detail: Detail, layer: str, title: str) -> Any:
     """Range of the liquid fraction on every day of the period."""
-    low, high = found.fractions[layer]
+    low, high = detail.fractions[layer]
     count = len(low)
-    months = found.days.astype("datetime64[M]")
+    months = detail.days.astype("datetime64[M]")
     firsts = np.flatnonzero(np.concatenate([[True], months[1:] != months[:-1]]))
-    names = [str(found.days[k])[5:] for k in firsts]
+    names = [str(detail.days[k])[5:] for k in firsts]
     x = Axis(0.0, float(count), tuple(map(float, firsts)), tuple(names))
     y = Axis(0.0, 1.0, (0.0, 0.5, 1.0), ("0", "0.5", "1"))
     chart = Chart(x, y, width=460.0, height=130.0, y_label="liquid fraction")

@@ -50,7 +50,7 @@ def is_dried(building: Building, zone: str) -> bool:
     return building.humidity is not None and building.humidity.zones[zone].drying is not None
 
 
-def require_same_basis(some: Sequence[object], others: Sequence[object]) -> None:
+def require_same_basis(basis: Sequence[object], other_basis: Sequence[object]) -> None:
     """Refuse designs of which only some are dried, or whose seats see different surfaces.
 
     Their latent heat would count in a part of them, and all designs have the angle factors of the first.
@@ -65,13 +65,13 @@ def require_same_basis(some: Sequence[object], others: Sequence[object]) -> None
     InputError
         Naming the loads that are not in both.
     """
-    different = {str(one) for one in {*some} ^ {*others} if isinstance(one, str)}
-    if not different and tuple(some) != tuple(others):
+    different = {str(name) for name in {*basis} ^ {*other_basis} if isinstance(name, str)}
+    if not different and tuple(basis) != tuple(other_basis):
         raise InputError(
             "found a seat that sees the surfaces of the designs differently; expected the same vertices and "
             "emissivities of the zone in all designs and samples. Remove 'seat:', or make a study of each"
         )
-    if different and not all(one.endswith("latent_cooling_load") for one in different):
+    if different and not all(name.endswith("latent_cooling_load") for name in different):
         raise InputError(
             f"found designs with and without {', '.join(sorted(different))}; expected outputs that all of "
             "them have. Remove 'seat:', or make a study of each shape"
@@ -99,14 +99,14 @@ def require_layer(building: Building, layer: str, *, melts: bool) -> None:
             f"{did_you_mean(surface, building.surfaces)}".rstrip()
         )
     construction = building.surfaces[surface].construction
-    found = {one.name: one for one in building.constructions[construction].layers}
-    if name not in found:
+    layers = {entry.name: entry for entry in building.constructions[construction].layers}
+    if name not in layers:
         raise InputError(
             f"found '{layer}', but construction '{construction}' of this surface has the layers "
-            f"{', '.join(map(str, found))}; expected one of them. "
-            f"{did_you_mean(name, list(map(str, found)))}".rstrip()
+            f"{', '.join(map(str, layers))}; expected one of them. "
+            f"{did_you_mean(name, list(map(str, layers)))}".rstrip()
         )
-    material = building.materials[found[name].material]
+    material = building.materials[layers[name].material]
     if melts and material.kind != "pcm":
         raise InputError(
             f"found '{layer}' of kind '{material.kind}', expected a phase-change material (kind: pcm)"

@@ -9,18 +9,18 @@ import numpy as np
 from pydantic import Field
 
 from mascarin.design.checks import is_dried
-from mascarin.design.measures import Heat, PeakLoad
-from mascarin.design.wanted import OfZones
+from mascarin.design.objective import ZoneObjective
+from mascarin.design.reductions import Heat, PeakLoad
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.design.layers import LayerFacts
-    from mascarin.design.wanted import Array, Measures
+    from mascarin.design.objective import Array, Reductions
     from mascarin.weather import Climate
 
 
-class _Cooled(OfZones):
+class _Cooled(ZoneObjective):
     zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the sum over them")
     setpoint: float | None = Field(
         None,
@@ -52,8 +52,9 @@ class _Cooled(OfZones):
     @property
     def words(self) -> str:
         """What it is."""
-        at = "" if self.setpoint is None else f" at {self.setpoint:g} degC"
-        return f"ideal cooling of {', '.join(self.zones)}{at}; sensible, and latent where a zone is dried"
+        setpoint_words = "" if self.setpoint is None else f" at {self.setpoint:g} degC"
+        zones = ", ".join(self.zones)
+        return f"ideal cooling of {zones}{setpoint_words}; sensible, and latent where a zone is dried"
 
     def outputs(self, building: Building) -> tuple[str, ...]:
         """The sensible load of each zone, and the latent load of each that is dried."""
@@ -77,15 +78,15 @@ class CoolingEnergy(_Cooled):
         """Unit of the value."""
         return "kWh"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """Sensible energy, and latent energy where there is drying."""
         latent = self._latent(building)
-        found: Measures = {"sensible": Heat(self._sensible())}
-        return found | ({"latent": Heat(latent)} if latent else {})
+        reductions: Reductions = {"sensible": Heat(self._sensible())}
+        return reductions | ({"latent": Heat(latent)} if latent else {})
 
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+    def value(self, values: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Sensible plus latent energy. [kWh]"""
-        return np.asarray(np.sum(list(kept.values()), axis=0), dtype=np.float64)
+        return np.asarray(np.sum(list(values.values()), axis=0), dtype=np.float64)
 
 
 class PeakCooling(_Cooled):
@@ -98,6 +99,6 @@ class PeakCooling(_Cooled):
         """Unit of the value."""
         return "W"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """The load."""
         return {"load": PeakLoad(self.outputs(building))}

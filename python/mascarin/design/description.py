@@ -8,7 +8,7 @@ from pydantic import Field, StringConstraints, model_validator
 
 from mascarin.building.names import Name
 from mascarin.building.part import Part, fault, insist
-from mascarin.design.objectives import Objective
+from mascarin.design.objectives import AnyObjective
 from mascarin.study.field_types import Duration, Time
 
 if TYPE_CHECKING:
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 #: Keys that name files.
 FILE_KEYS: Final = ("building", "epw", "tmy")
 #: Names of columns in the tables of results.
-TAKEN: Final = frozenset(
+RESERVED_NAMES: Final = frozenset(
     {"design", "climate", "sample", "rank", "closure", "outside", "failure", "tied", "tied_before"}
 )
 #: Designs of one grid; the tables and the page are made of all of them.
-MOST_DESIGNS: Final = 100_000
+MAX_DESIGNS: Final = 100_000
 
 Label = Annotated[str, StringConstraints(min_length=1, max_length=60)]
 Paths = Name | tuple[str, ...]
@@ -45,10 +45,10 @@ class ClimateFile(Part):
     )
 
     @model_validator(mode="after")
-    def _one(self) -> Self:
-        given = [key for key in ("epw", "tmy") if getattr(self, key) is not None]
-        if len(given) != 1:
-            insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy", "Keep exactly one."))
+    def _single_source(self) -> Self:
+        keys = [key for key in ("epw", "tmy") if getattr(self, key) is not None]
+        if len(keys) != 1:
+            insist(fault((), ", ".join(keys) or "nothing", "one of epw, tmy", "Keep exactly one."))
         return self
 
 
@@ -146,7 +146,7 @@ class DesignFile(Part):
     )
     set: dict[str, Any] = Field(default_factory=dict, description="Path -> value for all designs")
     variables: dict[Label, Variable] = Field(min_length=1, description="Name -> what is chosen")
-    objectives: dict[Label, Objective] = Field(min_length=1, description="Name -> what is good")
+    objectives: dict[Label, AnyObjective] = Field(min_length=1, description="Name -> what is good")
     rank_by: str | None = Field(None, description="Objective of the ranking; by default the first")
     negligible: float = Field(
         0.005,
@@ -165,7 +165,7 @@ class DesignFile(Part):
     def _names(self) -> Self:
         for section in ("variables", "objectives"):
             for name in getattr(self, section):
-                if name in TAKEN:
+                if name in RESERVED_NAMES:
                     insist(
                         fault(
                             (section, name),
@@ -180,7 +180,7 @@ class DesignFile(Part):
             insist(
                 fault(("objectives", name), f"'{name}' also under variables", "different names", "Rename it.")
             )
-        for place, chosen in (
+        for location, chosen in (
             (("rank_by",), [self.rank_by] if self.rank_by else []),
             (("search", "objectives"), list(self.search.objectives)),
         ):
@@ -188,7 +188,7 @@ class DesignFile(Part):
                 if name not in self.objectives:
                     insist(
                         fault(
-                            place,
+                            location,
                             f"'{name}'",
                             f"one of the objectives {', '.join(self.objectives)}",
                             "Correct the name.",

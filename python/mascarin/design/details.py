@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.design.choices import Design
     from mascarin.design.inputs import DesignInputs, Site
+    from mascarin.design.variables import Design
 
     Array = npt.NDArray[np.float64]
 
@@ -129,8 +129,8 @@ def detail(inputs: DesignInputs, site: Site, design: Design | None, label: str) 
 def zones_of(inputs: DesignInputs) -> list[str]:
     """Zones of the objectives, that of the ranking first; else the first of the building."""
     names = [inputs.file.ranked_by, *inputs.file.objectives]
-    found = [zone for name in names for zone in getattr(inputs.objective(name), "zones", ())]
-    return list(dict.fromkeys(found)) or [next(iter(inputs.building.zones))]
+    zones = [zone for name in names for zone in getattr(inputs.objective(name), "zones", ())]
+    return list(dict.fromkeys(zones)) or [next(iter(inputs.building.zones))]
 
 
 def layers_of(building: Building) -> list[str]:
@@ -165,15 +165,15 @@ def _varies(building: Building, path: str) -> bool:
 
 def _faces(building: Building, zone: str) -> list[tuple[str, str, float]]:
     """Surfaces that bound a zone, with the side that faces it, and the sign of its flux into the zone."""
-    found = []
+    faces = []
     for name, surface in building.surfaces.items():
         if surface.internal_mass:
             continue
         if surface.inside.zone == zone:
-            found.append((name, "inside", 1.0))
+            faces.append((name, "inside", 1.0))
         elif surface.outside.zone == zone:
-            found.append((name, "outside", -1.0))
-    return found
+            faces.append((name, "outside", -1.0))
+    return faces
 
 
 def _by_hour(values: Array, hour: npt.NDArray[np.int64]) -> Array:
@@ -188,16 +188,18 @@ def _by_day(values: Array, dates: Any) -> Array:
     return np.stack([np.minimum.reduceat(values[1:], starts), np.maximum.reduceat(values[1:], starts)])
 
 
-def grouped_gains(found: Detail, layers: Sequence[str]) -> dict[str, Array]:
+def grouped_gains(detail: Detail, layers: Sequence[str]) -> dict[str, Array]:
     """Heat gains of the zone: through surfaces with a phase-change layer, others, and by air. [W]"""
     with_pcm = {layer.partition(".")[0] for layer in layers}
-    rest = [
-        values for name, values in found.gains.items() if name not in with_pcm and name != "air from outdoors"
+    other_gains = [
+        values
+        for name, values in detail.gains.items()
+        if name not in with_pcm and name != "air from outdoors"
     ]
-    own = [values for name, values in found.gains.items() if name in with_pcm]
+    pcm_gains = [values for name, values in detail.gains.items() if name in with_pcm]
     none = np.zeros(24)
     return {
-        "surfaces with phase change": np.sum(own, axis=0) if own else none,
-        "other surfaces": np.sum(rest, axis=0) if rest else none,
-        "air from outdoors": found.gains["air from outdoors"],
+        "surfaces with phase change": np.sum(pcm_gains, axis=0) if pcm_gains else none,
+        "other surfaces": np.sum(other_gains, axis=0) if other_gains else none,
+        "air from outdoors": detail.gains["air from outdoors"],
     }

@@ -15,9 +15,9 @@ from mascarin.building import Building, load, yaml_document
 from mascarin.building.ties import expanded, spread
 from mascarin.comfort import Surroundings
 from mascarin.design.checks import require_no_columns, require_same_basis
-from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
 from mascarin.design.objectives import Comfort
+from mascarin.design.variables import Choices, read_choices
 from mascarin.errors import InputError
 from mascarin.simulation.compiling import period
 from mascarin.study.inputs import Beside, find
@@ -28,14 +28,14 @@ from mascarin.weather.shipped import PREFIX, found
 
 if TYPE_CHECKING:
     from mascarin.design.description import ClimateFile
-    from mascarin.design.objectives import Objective
+    from mascarin.design.objectives import AnyObjective
 
 #: A date without a year is one of the year that the weather file has.
 _MONTH_AND_DAY: Final = re.compile(r"\d{1,2}-\d{1,2}(?:[T ].*)?")
 
 
 #: Sections of a building with zones that are dried, and with the vertices that are seen from a seat.
-_DEEP: Final = ("humidity", "surfaces", "windows", "zones")
+_DEEP_SECTIONS: Final = ("humidity", "surfaces", "windows", "zones")
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class DesignInputs:
     choices: Choices
     uncertain: tuple[str, ...]
 
-    def objective(self, name: str) -> Objective:
+    def objective(self, name: str) -> AnyObjective:
         """An objective by its name."""
         return self.file.objectives[name]
 
@@ -130,50 +130,50 @@ def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInput
     """
     path = Path(path)
     file = yaml_document.read(path, DesignFile, "a design study", file_keys=FILE_KEYS)
-    places, faults, beside = Places(path), Faults(), Beside(path.parent, allow_outside)
-    with places.blame("building"):
+    locations, faults, beside = Places(path), Faults(), Beside(path.parent, allow_outside)
+    with locations.blame("building"):
         described = load(find(file.building, beside))
-    with places.blame("set"):
+    with locations.blame("set"):
         building = described.replace(file.set) if file.set else described
-    choices = read_choices(file, building, places, faults)
+    choices = read_choices(file, building, locations, faults)
     faults.raise_all(path)
-    uncertain = _uncertain(file, building, choices, places, faults)
+    uncertain = _uncertain(file, building, choices, locations, faults)
     sites = []
     for name in file.climates:
         with faults.kept():
-            sites.append(_site(name, file, building, beside, places))
+            sites.append(_site(name, file, building, beside, locations))
     if not any(option.parts for choice in choices.all for option in choice.options):
         # Parts that a design replaces may be those with columns.
         for site in sites:
-            with places.noting(faults, "building"):
+            with locations.noting(faults, "building"):
                 require_no_columns(site.building)
-    _check_objectives(file, building, choices, uncertain, places, faults)
-    with places.noting(faults, "reference"):
+    _check_objectives(file, building, choices, uncertain, locations, faults)
+    with locations.noting(faults, "reference"):
         building.replace(file.reference)
-    _check_validity(file, sites, places, faults)
-    _check_search(file, choices, places, faults)
+    _check_validity(file, sites, locations, faults)
+    _check_search(file, choices, locations, faults)
     faults.raise_all(path)
     return DesignInputs(file, path, building, tuple(sites), choices, uncertain)
 
 
-def in_mode(building: Building, objective: Objective) -> Building:
+def in_mode(building: Building, objective: AnyObjective) -> Building:
     """The building as an objective needs it, such as with ideal cooling."""
     changes = objective.changes()
     return building.replace(changes) if changes else building
 
 
-def _site(name: str, file: DesignFile, building: Building, beside: Beside, places: Places) -> Site:
-    given = file.climates[name]
-    with places.blame("climates", name, "epw" if given.epw is not None else "tmy"):
-        text = str(given.epw or given.tmy)
+def _site(name: str, file: DesignFile, building: Building, beside: Beside, locations: Places) -> Site:
+    climate_file = file.climates[name]
+    with locations.blame("climates", name, "epw" if climate_file.epw is not None else "tmy"):
+        text = str(climate_file.epw or climate_file.tmy)
         weather = found(text) if text.startswith(PREFIX) else find(text, beside)
-        read = Climate.from_epw if given.epw is not None else Climate.from_tmy
-        climate = read(weather, check_sun=given.check_sun)
-    with places.blame("climates", name, "set"):
-        moved = building.replace({**_place(climate), **given.set})
-    with places.blame("climates", name):
+        read = Climate.from_epw if climate_file.epw is not None else Climate.from_tmy
+        climate = read(weather, check_sun=climate_file.check_sun)
+    with locations.blame("climates", name, "set"):
+        moved = building.replace({**_location_changes(climate), **climate_file.set})
+    with locations.blame("climates", name):
         _require_wind(climate, moved)
-        start, end = period(climate, *_dates(file, given, climate))
+        start, end = period(climate, *_dates(file, climate_file, climate))
         first, last = period(climate, None, None)
         if start < first or end > last:
             raise InputError(
@@ -183,29 +183,27 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, place
                 f"take "
                 "the part after it, such as start: 01-01"
             )
-    place = climate.site
-    words = (
-        f"{place.name or name} ({place.latitude:.2f}, {place.longitude:.2f})" if place is not None else name
-    )
+    site = climate.site
+    words = f"{site.name or name} ({site.latitude:.2f}, {site.longitude:.2f})" if site is not None else name
     return Site(name, words, climate, start, end, moved, file_hash(weather))
 
 
-def _dates(file: DesignFile, given: ClimateFile, climate: Climate) -> Iterator[str | None]:
+def _dates(file: DesignFile, climate_file: ClimateFile, climate: Climate) -> Iterator[str | None]:
     year = period(climate, None, None)[0].year
     for key in ("start", "end"):
-        text = getattr(given, key) or (getattr(file.period, key) if file.period is not None else None)
+        text = getattr(climate_file, key) or (getattr(file.period, key) if file.period is not None else None)
         yield f"{year}-{text}" if text is not None and _MONTH_AND_DAY.fullmatch(text) else text
 
 
-def _place(climate: Climate) -> dict[str, Any]:
+def _location_changes(climate: Climate) -> dict[str, Any]:
     """The place of the weather, to which the building is moved."""
-    place = climate.site
-    if place is None:
+    site = climate.site
+    if site is None:
         return {}
     return {
-        "site.latitude": place.latitude,
-        "site.longitude": place.longitude,
-        "site.altitude": place.altitude,
+        "site.latitude": site.latitude,
+        "site.longitude": site.longitude,
+        "site.altitude": site.altitude,
         "site.timezone": climate.timezone,
     }
 
@@ -213,7 +211,9 @@ def _place(climate: Climate) -> dict[str, Any]:
 def _require_wind(climate: Climate, building: Building) -> None:
     """Refuse weather without wind where wind drives a flow of air."""
     driven = [
-        f"openings.{name}" for name, one in building.openings.items() if float(one.wind_coefficient) > 0.0
+        f"openings.{name}"
+        for name, opening in building.openings.items()
+        if float(opening.wind_coefficient) > 0.0
     ]
     driven += [f"vents.{name}" for name, vent in building.vents.items() if vent.windy]
     driven += [f"zones.{name}.infiltration" for name, zone in building.zones.items() if _by_wind(zone)]
@@ -234,21 +234,21 @@ def _by_wind(zone: Any) -> bool:
 
 
 def _uncertain(
-    file: DesignFile, building: Building, choices: Choices, places: Places, faults: Faults
+    file: DesignFile, building: Building, choices: Choices, locations: Places, faults: Faults
 ) -> tuple[str, ...]:
     if file.uncertainty is None:
         return ()
     chosen = [path for choice in choices.all for o in choice.options for path in (*o.numbers, *o.parts)]
     paths: list[str] = []
-    for number, given in enumerate(file.uncertainty.parameters):
-        with places.noting(faults, "uncertainty", "parameters", number):
-            for path in expanded(building, [given]):
+    for number, pattern in enumerate(file.uncertainty.parameters):
+        with locations.noting(faults, "uncertainty", "parameters", number):
+            for path in expanded(building, [pattern]):
                 parameter = building.parameter(path)
                 if parameter.structural:
                     raise InputError(
                         f"{path} changes the shape of the building; expected a number that may vary"
                     )
-                if any(_overlap(path, one) for one in chosen):
+                if any(_overlap(path, changed) for changed in chosen):
                     raise InputError(
                         f"{path} is one of the variables, or in a part that they replace; remove it"
                     )
@@ -273,13 +273,13 @@ def _check_objectives(
     building: Building,
     choices: Choices,
     uncertain: Sequence[str],
-    places: Places,
+    locations: Places,
     faults: Faults,
 ) -> None:
     deep = [*_deep(choices), *_uncertain_emissivities(building, uncertain)]
     variants = list(choices.structures())
     for name, objective in file.objectives.items():
-        with places.noting(faults, "objectives", name):
+        with locations.noting(faults, "objectives", name):
             changed = in_mode(building, objective)
             objective.check(changed)
             # A variant may leave out what an objective needs; one of each structure is compiled later.
@@ -291,13 +291,15 @@ def _check_objectives(
             _require_whole(spread(building, objective.changes()), choices)
         prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
         for variable, labels in prices.items():
-            with places.noting(faults, "objectives", name, "choices", variable):
-                known = {choice.name: [o.label for o in choice.options] for choice in choices.all}
-                if variable not in known:
-                    raise InputError(f"found '{variable}', expected one of the variables {', '.join(known)}")
-                wrong = [label for label in labels if label not in known[variable]]
+            with locations.noting(faults, "objectives", name, "choices", variable):
+                options = {choice.name: [o.label for o in choice.options] for choice in choices.all}
+                if variable not in options:
+                    raise InputError(
+                        f"found '{variable}', expected one of the variables {', '.join(options)}"
+                    )
+                wrong = [label for label in labels if label not in options[variable]]
                 if wrong:
-                    raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
+                    raise InputError(f"found '{wrong[0]}', expected one of {', '.join(options[variable])}")
 
 
 def _require_whole(changes: Mapping[str, Any], choices: Choices) -> None:
@@ -317,7 +319,7 @@ def _deep(choices: Choices) -> Iterator[dict[str, Any]]:
     """Changes by single options that may change what an objective reads: humidity, geometry, emissivity."""
     for choice in choices.all:
         for option in choice.options:
-            if any(path.split(".")[0] in _DEEP for path in option.parts):
+            if any(path.split(".")[0] in _DEEP_SECTIONS for path in option.parts):
                 yield dict(option.parts)
             elif any(path.endswith("emissivity") for path in option.numbers):
                 yield dict(option.numbers)
@@ -332,13 +334,13 @@ def _uncertain_emissivities(building: Building, uncertain: Sequence[str]) -> Ite
             yield {path: 0.5 * (parameter.value + end)}
 
 
-def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:
+def _check_validity(file: DesignFile, sites: Sequence[Site], locations: Places, faults: Faults) -> None:
     """Refuse a comfort index that has no value in most of the period, even in a room of 26 degC."""
     for name, objective in file.objectives.items():
         if not isinstance(objective, Comfort):
             continue
         for site in sites:
-            with places.noting(faults, "objectives", name, "comfort"):
+            with locations.noting(faults, "objectives", name, "comfort"):
                 times = pd.date_range(site.start, site.end, freq="1h")
                 hours = objective.comfort.occupied(times)
                 room = np.full(len(times), 26.0)
@@ -359,8 +361,8 @@ def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, fau
                     )
 
 
-def _check_search(file: DesignFile, choices: Choices, places: Places, faults: Faults) -> None:
-    with places.noting(faults, "search"):
+def _check_search(file: DesignFile, choices: Choices, locations: Places, faults: Faults) -> None:
+    with locations.noting(faults, "search"):
         if file.search.method == "grid":
             choices.grid()
         fixed = [choice.name for choice in choices.all if choice.range is None]

@@ -44,21 +44,21 @@ class LayerFacts:
 
     def mass(self, layer: str) -> Array:
         """Mass of a layer of a surface, shape (members,). [kg]"""
-        areas = self._each(layer, lambda building, surface, _: float(building.surfaces[surface].area))
+        areas = self._of_members(layer, lambda building, surface, _: float(building.surfaces[surface].area))
         return self._per_area(layer) * areas
 
     def latent(self, layer: str) -> Array:
         """Latent heat of a square metre of a layer, shape (members,). [J/m2]"""
-        heats = self._each(layer, lambda building, _, k: _latent_heat(building, k[0]))
+        heats = self._of_members(layer, lambda building, _, k: _latent_heat(building, k[0]))
         return self._per_area(layer) * self._replaced("materials.{m}.latent_heat", layer, heats)
 
     def products(self, layer: str) -> list[str | None]:
         """Product of the material of a layer, for each member."""
-        found = []
+        names = []
         for building in self.buildings:
-            material = building.materials[_place(building, layer)[0]]
-            found.append(getattr(material, "product", None))
-        return found
+            material = building.materials[_layer_address(building, layer)[0]]
+            names.append(getattr(material, "product", None))
+        return names
 
     def chosen(self, variable: str) -> Sequence[str]:
         """What each member has chosen."""
@@ -66,47 +66,49 @@ class LayerFacts:
 
     def _per_area(self, layer: str) -> Array:
         """Mass of a square metre, shape (members,). [kg/m2]"""
-        density = self._each(layer, lambda building, _, k: _density(building, k[0]))
+        density = self._of_members(layer, lambda building, _, k: _density(building, k[0]))
         for path in ("materials.{m}.density", "materials.{m}.density.solid"):
             density = self._replaced(path, layer, density)
-        thickness = self._each(layer, _thickness)
+        thickness = self._of_members(layer, _thickness)
         return density * self._replaced("constructions.{c}.layers.{l}.thickness", layer, thickness)
 
-    def _each(self, layer: str, read: object) -> Array:
-        known: dict[int, float] = {}
+    def _of_members(self, layer: str, read: object) -> Array:
+        by_building: dict[int, float] = {}
         for building in self.buildings:
-            if id(building) not in known:
+            if id(building) not in by_building:
                 surface = layer.partition(".")[0]
-                known[id(building)] = read(building, surface, _place(building, layer))  # type: ignore[operator]
-        return np.array([known[id(building)] for building in self.buildings])
+                by_building[id(building)] = read(building, surface, _layer_address(building, layer))  # type: ignore[operator]
+        return np.array([by_building[id(building)] for building in self.buildings])
 
     def _replaced(self, path: str, layer: str, values: Array) -> Array:
         """Values of the buildings, or those that the members have instead."""
-        found = values.copy()
+        replaced = values.copy()
         for k, building in enumerate(self.buildings):
-            material, construction, name = _place(building, layer)
+            material, construction, name = _layer_address(building, layer)
             column = self.numbers.get(path.format(m=material, c=construction, l=name))
             if column is not None:
-                found[k] = column[k]
-        return found
+                replaced[k] = column[k]
+        return replaced
 
 
-def _place(building: Building, layer: str) -> tuple[str, str, str]:
+def _layer_address(building: Building, layer: str) -> tuple[str, str, str]:
     """Material, construction and name of a layer of a surface."""
     surface, _, name = layer.partition(".")
     construction = building.surfaces[surface].construction
-    for one in building.constructions[construction].layers:
-        if one.name == name:
-            return one.material, construction, name
+    for entry in building.constructions[construction].layers:
+        if entry.name == name:
+            return entry.material, construction, name
     raise InputError(
         f"found no layer '{name}' in construction '{construction}' of surface '{surface}' in one of the "
         "designs; expected it in all of them. Keep its name in every variant"
     )
 
 
-def _thickness(building: Building, _: str, place: tuple[str, str, str]) -> float:
-    layers = building.constructions[place[1]].layers
-    return next(float(one.thickness) for one in layers if one.name == place[2] and one.thickness is not None)
+def _thickness(building: Building, _: str, address: tuple[str, str, str]) -> float:
+    layers = building.constructions[address[1]].layers
+    return next(
+        float(entry.thickness) for entry in layers if entry.name == address[2] and entry.thickness is not None
+    )
 
 
 def _density(building: Building, material: str) -> float:
@@ -117,16 +119,16 @@ def _density(building: Building, material: str) -> float:
 
 
 def _latent_heat(building: Building, material: str) -> float:
-    one = building.materials[material]
-    given = getattr(one, "latent_heat", None)
-    if given is not None:
-        return float(given)
-    name = getattr(one, "product", None)
-    known = None if name is None else product(name).number("latent_heat")
-    if known is None:
+    entry = building.materials[material]
+    latent_heat = getattr(entry, "latent_heat", None)
+    if latent_heat is not None:
+        return float(latent_heat)
+    name = getattr(entry, "product", None)
+    product_value = None if name is None else product(name).number("latent_heat")
+    if product_value is None:
         raise InputError(
             f"material '{material}': found no latent heat beside its table; expected latent_heat: [J/kg], "
             f"which "
             "says how much of the table is melting"
         )
-    return float(known)
+    return float(product_value)

@@ -12,8 +12,8 @@ from mascarin.building.part import Shorthand, fault, insist
 from mascarin.comfort import ComfortSettings
 from mascarin.design.checks import require_layer
 from mascarin.design.cooling import CoolingEnergy, PeakCooling
-from mascarin.design.measures import Assessed, Beyond, CycleDays, Highest, Melted
-from mascarin.design.wanted import OfZones, Wanted
+from mascarin.design.objective import Objective, ZoneObjective
+from mascarin.design.reductions import Assessed, Beyond, CycleDays, Highest, Melted
 from mascarin.ensemble import Statistic
 from mascarin.errors import InputError
 from mascarin.study.field_types import Hours
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.comfort import SeatView
     from mascarin.design.layers import LayerFacts
-    from mascarin.design.wanted import Array, Measures
+    from mascarin.design.objective import Array, Reductions
     from mascarin.weather import Climate
 
 #: Higher indoor limits of EN 16798-1:2019, table B.4, by the air speed that occupants control. [m/s] -> [K]
 AIR_SPEED: Final[dict[float, float]] = {0.0: 0.0, 0.6: 1.2, 0.9: 1.8, 1.2: 2.2}
 
 
-class _Limited(OfZones):
+class _Limited(ZoneObjective):
     above: float | None = Field(None, description="Operative temperature above which it is too hot [degC]")
     below: float | None = Field(None, description="Operative temperature below which it is too cold [degC]")
     hours: Hours | None = Field(
@@ -47,8 +47,8 @@ class _Limited(OfZones):
     @model_validator(mode="after")
     def _one_limit(self) -> Self:
         if (self.above is None) == (self.below is None):
-            found = "no limit" if self.above is None else "above and below"
-            insist(fault((), found, "one of above, below [degC]", "Write an objective for each."))
+            actual = "no limit" if self.above is None else "above and below"
+            insist(fault((), actual, "one of above, below [degC]", "Write an objective for each."))
         if self.air_speed not in AIR_SPEED:
             insist(
                 fault(
@@ -89,7 +89,7 @@ class _Limited(OfZones):
             f"operative temperature {side} {self.limit:g} degC{fans}{when}, mean of {', '.join(self.zones)}"
         )
 
-    def _beyond(self, *, weighted: bool) -> Measures:
+    def _beyond(self, *, weighted: bool) -> Reductions:
         return {
             "beyond": Beyond(
                 self._temperatures(), self.limit, self.above is not None, span_of(self.hours), weighted
@@ -107,7 +107,7 @@ class DegreeHours(_Limited):
         """Unit of the value."""
         return "K h"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """Degree-hours."""
         return self._beyond(weighted=True)
 
@@ -122,12 +122,12 @@ class DiscomfortHours(_Limited):
         """Unit of the value."""
         return "h"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """Hours."""
         return self._beyond(weighted=False)
 
 
-class Comfort(OfZones):
+class Comfort(ZoneObjective):
     """Degree-hours outside of the limits of a comfort index."""
 
     kind: Literal["comfort"] = "comfort"
@@ -160,11 +160,11 @@ class Comfort(OfZones):
     def outputs(self, building: Building) -> tuple[str, ...]:
         """Temperatures of the air and of the surfaces, and the humidity where it is simulated."""
         humid = ("relative_humidity",) if self.comfort.humidity == "simulated" else ()
-        found: list[str] = []
+        outputs: list[str] = []
         for zone, view in zip(self.zones, self._views(building), strict=True):
             radiant = (f"{zone}.mean_radiant_temperature",) if view is None else view.outputs
-            found += [f"{zone}.air_temperature", *radiant, *(f"{zone}.{kind}" for kind in humid)]
-        return tuple(dict.fromkeys(found))
+            outputs += [f"{zone}.air_temperature", *radiant, *(f"{zone}.{kind}" for kind in humid)]
+        return tuple(dict.fromkeys(outputs))
 
     def _views(self, building: Building) -> tuple[SeatView | None, ...]:
         """What is seen from the seat, in each zone."""
@@ -174,7 +174,7 @@ class Comfort(OfZones):
         """The outputs, and what is seen from the seat."""
         return (*super().basis(building), *self._views(building))
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """Degree-hours, and hours in which the index has no value."""
         return {
             key: Assessed(self.zones, key, self.side, self.comfort, climate, self._views(building))
@@ -182,7 +182,7 @@ class Comfort(OfZones):
         }
 
 
-class PeakTemperature(OfZones):
+class PeakTemperature(ZoneObjective):
     """Highest operative temperature of some zones."""
 
     kind: Literal["peak_temperature"] = "peak_temperature"
@@ -198,12 +198,12 @@ class PeakTemperature(OfZones):
         """What it is."""
         return f"highest operative temperature of {', '.join(self.zones)}"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """The highest value."""
         return {"peak": Highest(self._temperatures(), span_of(self.hours))}
 
 
-class _OfLayer(Wanted):
+class _LayerObjective(Objective):
     layer: str = Field(description="Phase-change layer: SURFACE.LAYER, such as ceiling.pcm")
     least: ClassVar[bool] = False
 
@@ -220,7 +220,7 @@ class _OfLayer(Wanted):
         require_layer(building, self.layer, melts=True)
 
 
-class LatentUse(_OfLayer):
+class LatentUse(_LayerObjective):
     """Latent heat that a layer takes up in a day, as the mean over the days."""
 
     kind: Literal["latent_use"] = "latent_use"
@@ -235,16 +235,16 @@ class LatentUse(_OfLayer):
         """What it is."""
         return f"latent heat taken up in a day by {self.layer}"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """The fraction that melts in a day."""
         return {"melted": Melted(self._fraction)}
 
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+    def value(self, values: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Latent heat of a square metre times the fraction that melts."""
-        return np.asarray(kept["melted"] * facts.latent(self.layer) / 3600.0, dtype=np.float64)
+        return np.asarray(values["melted"] * facts.latent(self.layer) / 3600.0, dtype=np.float64)
 
 
-class Cycles(_OfLayer):
+class Cycles(_LayerObjective):
     """Days on which a layer really cycles: its liquid fraction changes by at least so much."""
 
     kind: Literal["cycle_days"] = "cycle_days"
@@ -260,12 +260,12 @@ class Cycles(_OfLayer):
         """What it is."""
         return f"days on which the liquid fraction of {self.layer} changes by {self.change:g} or more"
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """The days."""
         return {"days": CycleDays(self._fraction, self.change)}
 
 
-class Mass(Wanted):
+class Mass(Objective):
     """Mass of some layers."""
 
     kind: Literal["mass"] = "mass"
@@ -286,12 +286,12 @@ class Mass(Wanted):
         for layer in self.layers:
             require_layer(building, layer, melts=False)
 
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+    def value(self, values: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Density times thickness times area."""
         return np.asarray(np.sum([facts.mass(layer) for layer in self.layers], axis=0), dtype=np.float64)
 
 
-class Cost(Wanted):
+class Cost(Objective):
     """Cost, of prices that you give."""
 
     kind: Literal["cost"] = "cost"
@@ -320,18 +320,18 @@ class Cost(Wanted):
         for layer in self.per_kg:
             require_layer(building, layer, melts=False)
 
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+    def value(self, values: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Prices of the layers and of the choices."""
         total = np.full(facts.count, self.fixed)
         for layer, price in self.per_kg.items():
             prices = [self.products.get(product or "", price) for product in facts.products(layer)]
             total = total + facts.mass(layer) * np.asarray(prices)
         for variable, prices_of in self.choices.items():
-            total = total + np.array([prices_of.get(one, 0.0) for one in facts.chosen(variable)])
+            total = total + np.array([prices_of.get(label, 0.0) for label in facts.chosen(variable)])
         return np.asarray(total, dtype=np.float64)
 
 
-class Plain(Wanted):
+class Plain(Objective):
     """A statistic of one output, as in ``mascarin sweep``: ``max:room.air_temperature``; small is good."""
 
     kind: Literal["statistic"] = "statistic"
@@ -358,12 +358,12 @@ class Plain(Wanted):
         """The output."""
         return (self._read().output,)
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """The statistic."""
         return {"statistic": self._read()}
 
 
-Objective = Annotated[
+AnyObjective = Annotated[
     Annotated[
         DegreeHours
         | DiscomfortHours
@@ -386,5 +386,5 @@ def span_of(hours: Hours | None) -> tuple[float, float] | None:
     """Hours of the day as numbers. [h]"""
     if hours is None:
         return None
-    first, last = ((int(a) + int(b) / 60.0) for a, b in (one.split(":") for one in hours))
+    first, last = ((int(a) + int(b) / 60.0) for a, b in (clock.split(":") for clock in hours))
     return first, last

@@ -12,22 +12,22 @@ from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin.design import charts
 from mascarin.design.details import REFERENCE, detail, grouped_gains, layers_of, zones_of
-from mascarin.design.measures import BINS
+from mascarin.design.reductions import BINS
 from mascarin.design.results import ALL
 from mascarin.design.runs import UNDEFINED
 from mascarin.report import text
 from mascarin.report.template import environment, frame
 
 if TYPE_CHECKING:
-    from mascarin.design.choices import Choice
     from mascarin.design.details import Detail
     from mascarin.design.ranking import Ranking
     from mascarin.design.results import DesignResults
+    from mascarin.design.variables import Choice
 
 #: Rows of the table of all designs; the rest is in the CSV file.
-_ROWS: Final = 40
+_MAX_ROWS: Final = 40
 #: Options of a variable that a map shows side by side.
-_WIDE: Final = 40
+_MAX_OPTIONS: Final = 40
 
 
 def write_page(results: DesignResults, path: Path) -> Path:
@@ -139,7 +139,7 @@ def _verdict(results: DesignResults) -> list[str]:
                 f"The index of “{column.removesuffix(UNDEFINED)}” has no value in up to "
                 f"{text.significant(worst)} h of a run, outside its validity; these hours do not count."
             )
-    firsts = {results.best[one.order[0]] for climate, one in results.rankings.items() if climate != ALL}
+    firsts = {results.best[ranked.order[0]] for climate, ranked in results.rankings.items() if climate != ALL}
     if len(firsts) > 1:
         said.append("No single design is first in all climates; the table below gives the first of each.")
     said += [f"Warning: {line}." for line in results.warnings]
@@ -154,7 +154,7 @@ def _ties(results: DesignResults, ranking: Ranking, tied: Sequence[int]) -> str:
             "not hold."
         )
     if tied:
-        names = "; ".join(results.label(one) for one in tied[:4]) + ("; …" if len(tied) > 4 else "")
+        names = "; ".join(results.label(k) for k in tied[:4]) + ("; …" if len(tied) > 4 else "")
         return f"{len(tied)} designs cannot be told from it over {ranking.samples} samples: {names}."
     if len(order) < 2:
         return "There is no other design."
@@ -172,9 +172,9 @@ def _ties(results: DesignResults, ranking: Ranking, tied: Sequence[int]) -> str:
 
 def _reference(results: DesignResults, objective: str, climate: str) -> float:
     values = [
-        results.reference[one.name].get(objective, np.nan)
-        for one in results.inputs.sites
-        if climate in (ALL, one.name)
+        results.reference[site.name].get(objective, np.nan)
+        for site in results.inputs.sites
+        if climate in (ALL, site.name)
     ]
     return float(np.mean(values))
 
@@ -184,7 +184,7 @@ def _reference(results: DesignResults, objective: str, climate: str) -> float:
 
 def _rankings(results: DesignResults) -> list[dict[str, Any]]:
     unit = results.inputs.objective(results.ranked_by).unit
-    found = []
+    tables = []
     climates = results.rankings if len(results.inputs.sites) > 1 else {ALL: results.rankings[ALL]}
     for climate in climates:
         ranking = results.rankings[climate]
@@ -207,7 +207,7 @@ def _rankings(results: DesignResults) -> list[dict[str, Any]]:
             )
         names = [f"design {results.best[k]}" for k in ranking.order]
         title = f"Difference from the best design, {climate}"
-        found.append(
+        tables.append(
             {
                 "climate": climate,
                 "rows": rows,
@@ -216,7 +216,7 @@ def _rankings(results: DesignResults) -> list[dict[str, Any]]:
                 "drawing": charts.intervals(ranking, names, title, unit),
             }
         )
-    return found
+    return tables
 
 
 def _climates(results: DesignResults) -> dict[str, Any]:
@@ -225,7 +225,7 @@ def _climates(results: DesignResults) -> dict[str, Any]:
     columns = results.columns
     rows = []
     for site in results.inputs.sites:
-        own = results.best[results.rankings[site.name].order[0]]
+        local_best = results.best[results.rankings[site.name].order[0]]
         cells = []
         for name in columns:
             reference = results.reference[site.name].get(name, np.nan)
@@ -245,7 +245,7 @@ def _climates(results: DesignResults) -> dict[str, Any]:
                 "place": site.words,
                 "days": text.significant(site.days, 4),
                 "cells": cells,
-                "first": results.label(own),
+                "first": results.label(local_best),
             }
         )
     heads = [
@@ -266,7 +266,7 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
     names = list(results.inputs.file.objectives)
     first = results.ranked_by
     winners = results.winners()
-    found = []
+    fronts = []
     for other in [name for name in names if name != first]:
         front = results.front([first, other])
         x, y = results.values(other), results.values(first)
@@ -284,7 +284,7 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
                 np.flatnonzero(front), key=lambda k: y[k] if results.inputs.objective(first).least else -y[k]
             )
         ][:12]
-        found.append(
+        fronts.append(
             {
                 "title": title,
                 "drawing": charts.scatter(x, y, front, winners, axes, title),
@@ -292,7 +292,7 @@ def _fronts(results: DesignResults) -> list[dict[str, Any]]:
                 "heads": axes,
             }
         )
-    return found
+    return fronts
 
 
 def _named(results: DesignResults, objective: str, column: str | None = None) -> str:
@@ -311,8 +311,8 @@ def _maps(results: DesignResults) -> list[dict[str, Any]]:
     across, down = (results.inputs.choices.all[k] for k in pair)
     best = results.designs[results.best[results.rankings[ALL].order[0]]]
     objective = results.inputs.objective(results.ranked_by)
-    place = {design: k for k, design in enumerate(results.designs)}
-    found = []
+    indices = {design: k for k, design in enumerate(results.designs)}
+    maps = []
     climates = (
         [ALL, *[site.name for site in results.inputs.sites]] if len(results.inputs.sites) > 1 else [ALL]
     )
@@ -323,7 +323,7 @@ def _maps(results: DesignResults) -> list[dict[str, Any]]:
             for j in range(len(across.options)):
                 design = list(best)
                 design[pair[0]], design[pair[1]] = float(j), float(i)
-                grid[i, j] = values[place[tuple(design)]]
+                grid[i, j] = values[indices[tuple(design)]]
         title = f"{_named(results, results.ranked_by)}, {climate}"
         labels = (_axis(across), _axis(down))
         columns = [_column(option.label, option.value, across) for option in across.options]
@@ -331,7 +331,7 @@ def _maps(results: DesignResults) -> list[dict[str, Any]]:
         low, high = (
             (float(f(grid)) for f in (np.nanmin, np.nanmax)) if np.isfinite(grid).any() else (np.nan, np.nan)
         )
-        found.append(
+        maps.append(
             {
                 "title": title,
                 "low": text.significant(low),
@@ -339,12 +339,12 @@ def _maps(results: DesignResults) -> list[dict[str, Any]]:
                 "drawing": charts.heat_map(columns, rows, grid, labels, title, least=objective.least),
             }
         )
-    return found
+    return maps
 
 
 def _pair(choices: Sequence[Choice]) -> tuple[int, int] | None:
     """A variable of products, or one with many options, and a variable of numbers."""
-    wide = [k for k, choice in enumerate(choices) if 1 < len(choice.options) <= _WIDE]
+    wide = [k for k, choice in enumerate(choices) if 1 < len(choice.options) <= _MAX_OPTIONS]
     products = [k for k in wide if choices[k].unit == "degC" and choices[k].structural]
     numbers = [k for k in wide if choices[k].paths and k not in products]
     numbers.sort(key=lambda k: not any(path.endswith(".thickness") for path in choices[k].paths))
@@ -365,7 +365,7 @@ def _column(label: str, value: float | None, choice: Choice) -> str:
 def _designs(results: DesignResults) -> dict[str, Any]:
     names = results.columns
     cost = results.cost(results.ranked_by)
-    order = np.argsort(np.where(np.isfinite(cost), cost, np.inf), kind="stable")[:_ROWS]
+    order = np.argsort(np.where(np.isfinite(cost), cost, np.inf), kind="stable")[:_MAX_ROWS]
     labels = results.inputs.choices.labels([results.designs[k] for k in order])
     columns = [results.values(name) for name in names]
     rows = [
@@ -393,20 +393,22 @@ def _designs(results: DesignResults) -> dict[str, Any]:
 def _details(results: DesignResults) -> dict[str, list[Detail]]:
     """The reference, the best design, and that of each climate if it is another one, by climate."""
     best = results.best[results.rankings[ALL].order[0]]
-    found = {}
+    details = {}
     for site in results.inputs.sites:
-        own = results.best[results.rankings[site.name].order[0]]
-        chosen = {f"design {best}": best} | ({f"design {own}": own} if own != best else {})
+        local_best = results.best[results.rankings[site.name].order[0]]
+        chosen = {f"design {best}": best} | (
+            {f"design {local_best}": local_best} if local_best != best else {}
+        )
         runs = [detail(results.inputs, site, None, REFERENCE)]
         runs += [detail(results.inputs, site, results.designs[k], name) for name, k in chosen.items()]
-        found[site.name] = runs
-    return found
+        details[site.name] = runs
+    return details
 
 
 def _cycling(results: DesignResults, details: dict[str, list[Detail]]) -> list[dict[str, Any]]:
     """Days by the change of the liquid fraction, and the range of every day."""
     bins = [key for key in results.nominal.columns if key.startswith("bin ")]
-    found = []
+    sites = []
     for site in results.inputs.sites:
         figures = []
         for output in dict.fromkeys(key.split(" ", 2)[2] for key in bins):
@@ -419,24 +421,24 @@ def _cycling(results: DesignResults, details: dict[str, list[Detail]]) -> list[d
             figures.append({"title": title, "drawing": charts.cycling(counts, names, title)})
         daily = [
             {
-                "title": f"{one.label}, {layer}",
-                "drawing": charts.daily_fraction(one, layer, f"{one.label}, {layer}"),
+                "title": f"{run.label}, {layer}",
+                "drawing": charts.daily_fraction(run, layer, f"{run.label}, {layer}"),
             }
-            for one in details[site.name]
-            for layer in one.fractions
+            for run in details[site.name]
+            for layer in run.fractions
         ]
         if figures or daily:
-            found.append({"name": site.name, "figures": figures, "daily": daily})
-    return found
+            sites.append({"name": site.name, "figures": figures, "daily": daily})
+    return sites
 
 
 def _why(results: DesignResults, details: dict[str, list[Detail]]) -> list[dict[str, Any]]:
     """Mean days of temperature and heat flows, and the heat flows of the period."""
     zone = zones_of(results.inputs)[0]
     layers = layers_of(results.inputs.building)
-    found = []
+    sections = []
     for climate, runs in details.items():
-        curves = {charts.OUTDOORS: runs[0].outdoors} | {one.label: one.temperature[zone] for one in runs}
+        curves = {charts.OUTDOORS: runs[0].outdoors} | {run.label: run.temperature[zone] for run in runs}
         figures = [
             {
                 "title": f"Operative temperature of {zone}",
@@ -444,7 +446,7 @@ def _why(results: DesignResults, details: dict[str, list[Detail]]) -> list[dict[
                 "drawing": charts.day_curves(curves, "degC", f"Operative temperature of {zone}, {climate}"),
             }
         ]
-        groups = {one.label: grouped_gains(one, layers) for one in runs}
+        groups = {run.label: grouped_gains(run, layers) for run in runs}
         for name in next(iter(groups.values())):
             gains = {label: group[name] for label, group in groups.items()}
             if any(np.abs(values).max() > 0.0 for values in gains.values()):
@@ -456,15 +458,15 @@ def _why(results: DesignResults, details: dict[str, list[Detail]]) -> list[dict[
                         "drawing": charts.day_curves(gains, "W", f"{title}, {climate}", around=0.0),
                     }
                 )
-        flows = [name for name in runs[0].flows if any(abs(one.flows[name]) > 3.6e3 for one in runs)]
+        flows = [name for name in runs[0].flows if any(abs(run.flows[name]) > 3.6e3 for run in runs)]
         table = [
-            {"name": name, "values": [text.significant(one.flows[name] / 3.6e6) for one in runs]}
+            {"name": name, "values": [text.significant(run.flows[name] / 3.6e6) for run in runs]}
             for name in flows
         ]
-        found.append(
-            {"name": climate, "figures": figures, "labels": [one.label for one in runs], "flows": table}
+        sections.append(
+            {"name": climate, "figures": figures, "labels": [run.label for run in runs], "flows": table}
         )
-    return found
+    return sections
 
 
 def _method(results: DesignResults) -> dict[str, Any]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 #: Probability with which all intervals together contain the true differences.
 CONFIDENCE: Final = 0.95
 #: Relative differences smaller than this are round-off. [-]
-_ROUNDING: Final = 1e-9
+_ROUNDING_ERROR: Final = 1e-9
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def ranked(values: Array, *, least: bool, negligible: float = 0.0) -> Ranking:
         return np.asarray(quantile * differences.std(axis=1, ddof=1) / np.sqrt(count))
 
     half = half_width(pairs)
-    rounding = _ROUNDING * max(float(np.abs(used).max()), 1e-300)
+    rounding = _ROUNDING_ERROR * max(float(np.abs(used).max()), 1e-300)
     least_difference = max(rounding, negligible * abs(float(mean[best])))
     worse = difference if least else -difference
     # Each design less the one before it.
@@ -156,10 +156,10 @@ def pareto(costs: Array) -> npt.NDArray[np.bool_]:
     >>> pareto(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0]])).tolist()
     [True, True, False]
     """
-    found: npt.NDArray[np.bool_] = np.asarray(np.isfinite(costs).all(axis=1))
-    for k in np.flatnonzero(found):
-        others = costs[found]
-        no_worse = (others <= costs[k]).all(axis=1)
-        better = (others < costs[k]).any(axis=1)
-        found[k] = not bool((no_worse & better).any())
-    return found
+    efficient: npt.NDArray[np.bool_] = np.asarray(np.isfinite(costs).all(axis=1))
+    for k in np.flatnonzero(efficient):
+        front = costs[efficient]
+        no_worse = (front <= costs[k]).all(axis=1)
+        better = (front < costs[k]).any(axis=1)
+        efficient[k] = not bool((no_worse & better).any())
+    return efficient

@@ -12,17 +12,17 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin._io import atomic
+from mascarin.design.objective import column_of_part
 from mascarin.design.ranking import pareto, ranked
-from mascarin.design.wanted import column_of_part
 from mascarin.errors import SolverError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.design.choices import Design
     from mascarin.design.inputs import DesignInputs
     from mascarin.design.ranking import Ranking
+    from mascarin.design.variables import Design
 
     Array = npt.NDArray[np.float64]
 
@@ -73,11 +73,11 @@ class DesignResults:
     @property
     def columns(self) -> dict[str, str]:
         """Columns of the objectives, each followed by its parts, and the objective that they belong to."""
-        found: dict[str, str] = {}
+        columns: dict[str, str] = {}
         for name, objective in self.inputs.file.objectives.items():
             parts = [column_of_part(name, part) for part in objective.PARTS]
-            found |= dict.fromkeys([name, *(one for one in parts if one in self.nominal)], name)
-        return found
+            columns |= dict.fromkeys([name, *(column for column in parts if column in self.nominal)], name)
+        return columns
 
     def values(self, objective: str, climate: str = ALL) -> Array:
         """An objective, or another column, of all designs in a climate or as the mean: shape (designs,)."""
@@ -118,9 +118,9 @@ class DesignResults:
 
         labels = pd.DataFrame(self.inputs.choices.labels(self.designs))
         chosen = labels.iloc[self.nominal["design"].to_numpy()].reset_index(drop=True)
-        kept = self.nominal.drop(columns=["sample"]).reset_index(drop=True)
+        nominal = self.nominal.drop(columns=["sample"]).reset_index(drop=True)
         return pd.concat(
-            [kept[["climate", "design"]], chosen, kept.drop(columns=["climate", "design"])], axis=1
+            [nominal[["climate", "design"]], chosen, nominal.drop(columns=["climate", "design"])], axis=1
         )
 
     def ranking_table(self) -> pd.DataFrame:
@@ -134,15 +134,15 @@ class DesignResults:
             table.insert(0, "rank", np.arange(1, len(table) + 1))
             table.insert(0, "climate", climate)
             labels = self.inputs.choices.labels([self.designs[k] for k in table["design"]])
-            for place, (name, column) in enumerate(labels.items(), start=3):
-                table.insert(place, name, column)
+            for position, (name, column) in enumerate(labels.items(), start=3):
+                table.insert(position, name, column)
             tables.append(table)
         return pd.concat(tables, ignore_index=True)
 
     def summary(self) -> dict[str, Any]:
         """The most important numbers, for JSON."""
         name = self.ranked_by
-        found: dict[str, Any] = {
+        summary: dict[str, Any] = {
             "name": self.inputs.file.name,
             "mascarin_version": __version__,
             "designs": len(self.designs),
@@ -155,7 +155,7 @@ class DesignResults:
             "ranking": {},
         }
         for climate, ranking in self.rankings.items():
-            found["ranking"][climate] = [
+            summary["ranking"][climate] = [
                 {
                     "design": self.best[k],
                     "chosen": self.label(self.best[k]),
@@ -169,9 +169,9 @@ class DesignResults:
                 }
                 for k in ranking.order
             ]
-        found["warnings"] = list(self.warnings)
-        found["reference"] = {climate: dict(values) for climate, values in self.reference.items()}
-        return found
+        summary["warnings"] = list(self.warnings)
+        summary["reference"] = {climate: dict(values) for climate, values in self.reference.items()}
+        return summary
 
     def write(self, out: Path) -> list[Path]:
         """Write all tables and the summary; the files have the same bytes whenever the study is run.
@@ -203,14 +203,14 @@ class DesignResults:
 
 def by_climate(table: pd.DataFrame, objective: str, designs: int) -> dict[str, Array]:
     """An objective by climate, and its mean over them: (designs, samples), or (designs,) without."""
-    found: dict[str, Array] = {}
+    rows_of: dict[str, Array] = {}
     for climate, part in table.groupby("climate", sort=False):
         values = part[objective].to_numpy(dtype=np.float64)
         failed = part["failure"].notna().to_numpy()
         rows = np.where(failed, np.nan, values).reshape(designs, -1)
-        found[str(climate)] = rows[:, 0] if rows.shape[1] == 1 else rows
-    found[ALL] = np.mean(list(found.values()), axis=0)
-    return found
+        rows_of[str(climate)] = rows[:, 0] if rows.shape[1] == 1 else rows
+    rows_of[ALL] = np.mean(list(rows_of.values()), axis=0)
+    return rows_of
 
 
 def shortlist(nominal: pd.DataFrame, objective: str, designs: int, count: int, *, least: bool) -> list[int]:

@@ -17,8 +17,8 @@ import numpy as np
 from mascarin._io import own_files
 from mascarin.building.ties import spread
 from mascarin.design.layers import LayerFacts
-from mascarin.design.measures import BINS, DaysInBin
-from mascarin.design.wanted import column_of_part
+from mascarin.design.objective import column_of_part
+from mascarin.design.reductions import BINS, DaysInBin
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.members import members as read_members
 from mascarin.ensemble.work import dataset
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.design.choices import Design
     from mascarin.design.inputs import DesignInputs, Site
-    from mascarin.design.objectives import Objective
+    from mascarin.design.objectives import AnyObjective
+    from mascarin.design.variables import Design
 
 #: Folder of the stores.
 FOLDER: Final = "runs"
 #: Ending of a column of hours in which an index has no value.
 UNDEFINED: Final = ", hours without a value"
 #: Members from which several processes are quicker than the threads of one.
-_MANY: Final = 200
+_MIN_PARALLEL_RUNS: Final = 200
 
 Report = Callable[[int, int], object]
 
@@ -118,8 +118,8 @@ class Runs:
             path: [value for value in column for _ in range(repeats)]
             for path, column in self.inputs.choices.samples(self.inputs.building, designs).items()
         }
-        for path, drawn in (samples or {}).items():
-            columns[path] = list(drawn) * len(designs)
+        for path, sampled in (samples or {}).items():
+            columns[path] = list(sampled) * len(designs)
         labels = {
             name: [label for label in column for _ in range(repeats)]
             for name, column in self.inputs.choices.labels(designs).items()
@@ -172,16 +172,17 @@ class Runs:
             records, _, _ = simulation.ensemble(simulation.vector({})[None, :])
             series = dataset(simulation.outputs, simulation.index, records)
         facts = LayerFacts([building], {}, {choice.name: ["reference"] for choice in self.inputs.choices.all})
-        found = dict.fromkeys(mode.objectives, float("nan"))
+        results = dict.fromkeys(mode.objectives, float("nan"))
         for name in possible:
             objective = self.inputs.objective(name)
-            measures = objective.measures(site.climate, building)
-            kept = {key: np.asarray(one(series)) for key, one in measures.items()}
-            found[name] = float(objective.value(kept, facts)[0])
-            found |= {
-                column_of_part(name, part): float(one[0]) for part, one in objective.parts(kept).items()
+            reductions = objective.reductions(site.climate, building)
+            reduced = {key: np.asarray(reduction(series)) for key, reduction in reductions.items()}
+            results[name] = float(objective.value(reduced, facts)[0])
+            results |= {
+                column_of_part(name, part): float(part_values[0])
+                for part, part_values in objective.parts(reduced).items()
             }
-        return found
+        return results
 
     def forget_others(self) -> None:
         """Remove stores of this folder that this study has not used, such as those of other inputs."""
@@ -202,24 +203,26 @@ class Runs:
         failures: list[str | None] = [None] * len(table)
         for mode in modes(self.inputs.file.objectives, only):
             building = site.building.replace(dict(mode.changes)) if mode.changes else site.building
-            kept = self._kept(site, building, columns, mode)
+            reduced = self._reduced(site, building, columns, mode)
             for name in mode.objectives:
                 objective = self.inputs.objective(name)
-                own = {key: kept[f"{name}: {key}"] for key in objective.measures(site.climate, building)}
-                table[name] = np.asarray(objective.value(own, facts), dtype=np.float64)
-                for part, values in objective.parts(own).items():
+                of_objective = {
+                    key: reduced[f"{name}: {key}"] for key in objective.reductions(site.climate, building)
+                }
+                table[name] = np.asarray(objective.value(of_objective, facts), dtype=np.float64)
+                for part, values in objective.parts(of_objective).items():
                     table[column_of_part(name, part)] = values
-                if "undefined" in own:
-                    table[f"{name}{UNDEFINED}"] = own["undefined"]
-            for key in [key for key in kept if key.startswith("bin ")]:
-                table[key] = kept[key]
-            if kept:
-                worst, outside = np.fmax(worst, kept["closure"]), np.fmax(outside, kept["outside"])
-                failures = [a or b for a, b in zip(failures, kept["failure"], strict=True)]
+                if "undefined" in of_objective:
+                    table[f"{name}{UNDEFINED}"] = of_objective["undefined"]
+            for key in [key for key in reduced if key.startswith("bin ")]:
+                table[key] = reduced[key]
+            if reduced:
+                worst, outside = np.fmax(worst, reduced["closure"]), np.fmax(outside, reduced["outside"])
+                failures = [a or b for a, b in zip(failures, reduced["failure"], strict=True)]
         table["closure"], table["outside"], table["failure"] = worst, outside, failures
         return table
 
-    def _kept(
+    def _reduced(
         self, site: Site, building: Building, columns: Mapping[str, Sequence[Any]], mode: Mode
     ) -> dict[str, Any]:
         """What is kept of each run of a mode; nothing where its objectives need none."""
@@ -227,8 +230,8 @@ class Runs:
         outputs: dict[str, None] = {}
         for name in mode.objectives:
             objective = self.inputs.objective(name)
-            measures = objective.measures(site.climate, building)
-            functions |= {f"{name}: {key}": one for key, one in measures.items()}
+            reductions = objective.reductions(site.climate, building)
+            functions |= {f"{name}: {key}": reduction for key, reduction in reductions.items()}
             outputs |= dict.fromkeys(objective.outputs(building))
         if not functions:
             return {}
@@ -255,8 +258,8 @@ class Runs:
         self.report(self.done, max(self.expected, self.done))
         self.warnings |= dict.fromkeys(f"{site.name}: {line}" for line in store.warnings())
         table = store.to_dataframe()
-        found: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
-        return found | {
+        arrays: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
+        return arrays | {
             "closure": table["closure"].to_numpy(),
             "outside": table["outside"].to_numpy(),
             "failure": list(table["failure"].where(table["failure"].notna(), None)),
@@ -284,15 +287,15 @@ class Runs:
         return own_files.require_folder(self.out / FOLDER, name)
 
 
-def modes(objectives: Mapping[str, Objective], only: Sequence[str] | None = None) -> list[Mode]:
+def modes(objectives: Mapping[str, AnyObjective], only: Sequence[str] | None = None) -> list[Mode]:
     """Objectives by the changes of the building that they need."""
-    found: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
+    by_changes: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
     for name, objective in objectives.items():
         if only is None or name in only:
             changes = objective.changes()
             key = json.dumps(changes, sort_keys=True, default=str)
-            found.setdefault(key, (changes, []))[1].append(name)
-    return [Mode(changes, tuple(names)) for changes, names in found.values()]
+            by_changes.setdefault(key, (changes, []))[1].append(name)
+    return [Mode(changes, tuple(names)) for changes, names in by_changes.values()]
 
 
 def runs_per_design(inputs: DesignInputs, only: Sequence[str] | None = None) -> int:
@@ -320,16 +323,16 @@ def facts_of(
 
 def one_each(columns: Mapping[str, Sequence[Any]]) -> dict[str, Any]:
     """Columns in which a part, such as a list of layers, is one value and not a row of a table."""
-    found: dict[str, Any] = {}
+    cells: dict[str, Any] = {}
     for path, column in columns.items():
         if any(isinstance(value, list | dict) or value is None for value in column):
-            found[path] = np.empty(len(column), dtype=object)
-            found[path][:] = [None] * len(column)
+            cells[path] = np.empty(len(column), dtype=object)
+            cells[path][:] = [None] * len(column)
             for k, value in enumerate(column):
-                found[path][k] = value
+                cells[path][k] = value
         else:
-            found[path] = column
-    return found
+            cells[path] = column
+    return cells
 
 
 def _with_changes(columns: Mapping[str, Sequence[Any]], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -341,4 +344,4 @@ def _with_changes(columns: Mapping[str, Sequence[Any]], changes: Mapping[str, An
 
 def _workers(count: int) -> int | None:
     cores = os.cpu_count() or 1
-    return cores if count >= _MANY and cores > 1 else None
+    return cores if count >= _MIN_PARALLEL_RUNS and cores > 1 else None

@@ -31,8 +31,8 @@ from mascarin.optimization import (
 )
 
 if TYPE_CHECKING:
-    from mascarin.design.choices import Choices, Design
     from mascarin.design.description import Search
+    from mascarin.design.variables import Choices, Design
 
     #: From designs to costs, shape (designs, objectives); all are minimized.
     Costs = Callable[[Sequence[Design]], Any]
@@ -60,55 +60,55 @@ def searched(choices: Choices, plan: Search, costs: Costs) -> list[Design]:
     InputError
         A package that the search needs is not installed.
     """
-    seen: dict[Design, None] = {}
+    evaluated: dict[Design, None] = {}
 
     def evaluate(designs: Sequence[Design]) -> Any:
-        seen.update(dict.fromkeys(designs))
+        evaluated.update(dict.fromkeys(designs))
         return costs(designs)
 
     if plan.method == "nsga2":
         _nsga2(choices, plan, evaluate)
     else:
         _minimized(choices, plan, evaluate)
-    return list(seen)
+    return list(evaluated)
 
 
 def _minimized(choices: Choices, plan: Search, evaluate: Callable[[Sequence[Design]], Any]) -> None:
     """A search for one objective."""
-    optimizer, places = _optimizer(choices, plan)
+    optimizer, slots = _optimizer(choices, plan)
     used = 0
     while used < plan.evaluations and (points := optimizer.ask()):
-        designs = [_design(point, places) for point in points]
-        found = np.asarray(evaluate(designs), dtype=np.float64)[:, 0]
+        designs = [_design(point, slots) for point in points]
+        costs = np.asarray(evaluate(designs), dtype=np.float64)[:, 0]
         used += len(points)
-        optimizer.tell([Evaluation(p, float(c)) for p, c in zip(points, found, strict=True)])
+        optimizer.tell([Evaluation(p, float(c)) for p, c in zip(points, costs, strict=True)])
 
 
 def _optimizer(choices: Choices, plan: Search) -> tuple[Optimizer, list[tuple[str, int]]]:
     """The optimizer, and where it has each variable: among its continuous or its discrete ones."""
     continuous: list[Continuous] = []
     discrete: list[Discrete] = []
-    places: list[tuple[str, int]] = []
+    slots: list[tuple[str, int]] = []
     for choice in choices.all:
         if choice.range is not None:
             low, high = choice.range
-            places.append(("x", len(continuous)))
+            slots.append(("x", len(continuous)))
             continuous.append(Continuous(choice.name, 0.5 * (low + high), 0.1 * (high - low), low, high))
         else:
-            places.append(("choices", len(discrete)))
+            slots.append(("choices", len(discrete)))
             discrete.append(Discrete(choice.name, len(choice.options) // 2, len(choice.options)))
     space = Space(tuple(continuous), tuple(discrete))
     if plan.method == "cma":
         return CovarianceSearch(
             space, population=plan.population, max_evaluations=plan.evaluations, seed=plan.seed
-        ), places
+        ), slots
     generations = max(plan.evaluations // plan.population, 1)
     rules = SwarmRules(topology="gbest", particles=plan.population, generations=generations, seed=plan.seed)
-    return ParticleSwarm(space, rules), places
+    return ParticleSwarm(space, rules), slots
 
 
-def _design(point: Point, places: Sequence[tuple[str, int]]) -> Design:
-    return tuple(float(getattr(point, kind)[k]) for kind, k in places)
+def _design(point: Point, slots: Sequence[tuple[str, int]]) -> Design:
+    return tuple(float(getattr(point, kind)[k]) for kind, k in slots)
 
 
 def _nsga2(choices: Choices, plan: Search, evaluate: Callable[[Sequence[Design]], Any]) -> None:
@@ -138,9 +138,9 @@ def _nsga2(choices: Choices, plan: Search, evaluate: Callable[[Sequence[Design]]
     algorithm.setup(problem, termination=("n_gen", generations), seed=plan.seed, verbose=False)
     while algorithm.has_next():
         population = algorithm.ask()
-        designs = [tuple(float(one[name]) for name in names) for one in population.get("X")]
-        found = np.asarray(evaluate(designs), dtype=np.float64)
+        designs = [tuple(float(individual[name]) for name in names) for individual in population.get("X")]
+        costs = np.asarray(evaluate(designs), dtype=np.float64)
         # pymoo compares finite numbers only.
-        found = np.where(np.isfinite(found), found, 1e30)
-        Evaluator().eval(StaticProblem(problem, F=found), population)
+        costs = np.where(np.isfinite(costs), costs, 1e30)
+        Evaluator().eval(StaticProblem(problem, F=costs), population)
         algorithm.tell(infills=population)

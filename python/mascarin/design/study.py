@@ -10,18 +10,18 @@ import numpy as np
 
 from mascarin._io import identity, own_files
 from mascarin._io.locks import writing_into
-from mascarin.design.choices import Choice, Choices
 from mascarin.design.inputs import DesignInputs
 from mascarin.design.results import ALL, FILES, DesignResults, by_climate, rank_all, shortlist
 from mascarin.design.runs import FOLDER, Runs, runs_per_design
 from mascarin.design.search import searched
+from mascarin.design.variables import Choice, Choices
 from mascarin.ensemble import latin_hypercube
 from mascarin.progress import reporting
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.design.choices import Design
+    from mascarin.design.variables import Design
     from mascarin.progress import ProgressOption
 
 
@@ -125,20 +125,22 @@ def _designs(inputs: DesignInputs, runs: Runs) -> tuple[list[Design], pd.DataFra
     if plan.method == "grid":
         designs = inputs.choices.grid()
         return designs, runs.values(designs)
-    known: dict[Design, pd.DataFrame] = {}
+    tables: dict[Design, pd.DataFrame] = {}
     names = (
         list(plan.objectives or inputs.file.objectives) if plan.method == "nsga2" else [inputs.file.ranked_by]
     )
 
     def costs(asked: Sequence[Design]) -> Any:
-        new = _by_structure(inputs.choices, [one for one in dict.fromkeys(asked) if one not in known])
+        new = _by_structure(
+            inputs.choices, [design for design in dict.fromkeys(asked) if design not in tables]
+        )
         if new:
             table = runs.values(new)
-            known.update({one: table[table["design"] == k] for k, one in enumerate(new)})
-        return np.array([[_cost(inputs, known[one], name) for name in names] for one in asked])
+            tables.update({design: table[table["design"] == k] for k, design in enumerate(new)})
+        return np.array([[_cost(inputs, tables[design], name) for name in names] for design in asked])
 
     designs = searched(inputs.choices, plan.model_copy(update={"objectives": tuple(names)}), costs)
-    rows = [known[one].assign(design=k) for k, one in enumerate(designs)]
+    rows = [tables[design].assign(design=k) for k, design in enumerate(designs)]
     joined = pd.concat(rows)
     # In the order of a grid: by climate, then by design.
     order = {site.name: k for k, site in enumerate(inputs.sites)}
@@ -169,8 +171,8 @@ def _sampled(inputs: DesignInputs, runs: Runs, best: Sequence[Design]) -> pd.Dat
     plan = inputs.file.uncertainty
     if plan is None:
         return runs.values(best)
-    drawn = latin_hypercube(inputs.building, plan.samples, seed=plan.seed, vary=inputs.uncertain)
-    samples = {str(path): drawn[path].tolist() for path in drawn.columns}
+    table = latin_hypercube(inputs.building, plan.samples, seed=plan.seed, vary=inputs.uncertain)
+    samples = {str(path): table[path].tolist() for path in table.columns}
     return runs.values(best, samples=samples)
 
 

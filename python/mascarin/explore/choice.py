@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from mascarin.simulation.simulation import Simulation
 
 #: Sliders without a choice, and the most that a page has.
-USUAL: Final = 6
-MOST: Final = 40
+DEFAULT_SLIDERS: Final = 6
+MAX_SLIDERS: Final = 40
 #: Zones whose operative temperature is drawn without a choice.
-ZONES: Final = 6
+MAX_ZONES: Final = 6
 
 
 def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:
@@ -49,35 +49,35 @@ def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:
     >>> [one.path for one in named(box(), ["surfaces.*.outside.absorptance"])][0]
     'surfaces.facade.outside.absorptance'
     """
-    known = {one.path: one for one in building.parameters()}
-    found: dict[str, Parameter] = {}
+    by_path = {parameter.path: parameter for parameter in building.parameters()}
+    chosen: dict[str, Parameter] = {}
     for pattern in patterns:
-        paths = _paths(building, pattern, known)
-        fixed = [known[path] for path in paths if known[path].structural]
+        paths = _paths(building, pattern, by_path)
+        fixed = [by_path[path] for path in paths if by_path[path].structural]
         if len(fixed) == len(paths):
             raise InputError(
                 f"--parameters: {pattern}: found a structural number ({fixed[0].reason}), which cannot "
                 "follow a slider; expected one that varies within a compiled run. Give it with --set"
             )
-        found |= {path: known[path] for path in paths if not known[path].structural}
-    if len(found) > MOST:
+        chosen |= {path: by_path[path] for path in paths if not by_path[path].structural}
+    if len(chosen) > MAX_SLIDERS:
         raise InputError(
-            f"--parameters: found {len(found)} parameters; expected {MOST} sliders at most. Narrow the "
-            "pattern"
+            f"--parameters: found {len(chosen)} parameters; expected {MAX_SLIDERS} sliders at most. Narrow "
+            "the pattern"
         )
-    return list(found.values())
+    return list(chosen.values())
 
 
-def _paths(building: Building, pattern: str, known: Mapping[str, Parameter]) -> list[str]:
+def _paths(building: Building, pattern: str, by_path: Mapping[str, Parameter]) -> list[str]:
     """What a pattern matches; what is tied has one slider, that of the tie."""
-    if pattern in known or not is_pattern(pattern):  # the path of a tie has a star, too
+    if pattern in by_path or not is_pattern(pattern):  # the path of a tie has a star, too
         return [building.parameter(pattern).path]
-    paths = list(matching(pattern, known))
-    tied = {member for path in paths for member in known[path].members}
+    paths = list(matching(pattern, by_path))
+    tied = {member for path in paths for member in by_path[path].members}
     return [path for path in paths if path not in tied]
 
 
-def strongest(building: Building, simulation: Simulation, most: int = USUAL) -> list[Parameter]:
+def strongest(building: Building, simulation: Simulation, most: int = DEFAULT_SLIDERS) -> list[Parameter]:
     """Parameters whose ranges change the recorded temperatures most, by one run with derivatives.
 
     Parameters
@@ -96,17 +96,24 @@ def strongest(building: Building, simulation: Simulation, most: int = USUAL) -> 
         width of the range. Where there are no derivatives, those with the widest ranges.
     """
     everything = building.parameters()
-    without = {member for one in everything for member in one.members}
+    without = {member for parameter in everything for member in parameter.members}
     # The sky of the run may be that of the weather: a slider for its parameters could not be saved.
-    without |= {one.path for one in everything} - {one.path for one in simulation.building.parameters()}
+    without |= {parameter.path for parameter in everything} - {
+        parameter.path for parameter in simulation.building.parameters()
+    }
     varying = {
-        one.path: one for one in everything if one.varies and not one.structural and one.path not in without
+        parameter.path: parameter
+        for parameter in everything
+        if parameter.varies and not parameter.structural and parameter.path not in without
     }
     try:
         slopes = simulation.gradient(_mean_of_all).slopes
-        width = {path: abs(slopes.get(path, 0.0)) * (one.high - one.low) for path, one in varying.items()}
+        width = {
+            path: abs(slopes.get(path, 0.0)) * (parameter.high - parameter.low)
+            for path, parameter in varying.items()
+        }
     except SolverError:
-        width = {path: _relative_width(one) for path, one in varying.items()}
+        width = {path: _relative_width(parameter) for path, parameter in varying.items()}
     order = sorted(varying, key=lambda path: -width[path])
     return [varying[path] for path in order[:most] if np.isfinite(width[path])]
 
@@ -117,8 +124,8 @@ def _mean_of_all(series: Mapping[str, Array]) -> tuple[float, Mapping[str, Array
     return total / count, {name: np.full(len(values), 1.0 / count) for name, values in series.items()}
 
 
-def _relative_width(one: Parameter) -> float:
-    return (one.high - one.low) / (abs(one.high) + abs(one.low))
+def _relative_width(parameter: Parameter) -> float:
+    return (parameter.high - parameter.low) / (abs(parameter.high) + abs(parameter.low))
 
 
 def curves(building: Building) -> list[str]:
@@ -135,9 +142,9 @@ def curves(building: Building) -> list[str]:
     >>> curves(box())
     ['room.operative_temperature']
     """
-    found = building.outputs()
-    operative = [one.name for one in found if one.kind == "operative_temperature"][:ZONES]
-    loads = [one.name for one in found if one.kind in ("heating_load", "cooling_load")]
-    kept = {name.rpartition(".")[0] for name in operative}
-    chosen = operative + [name for name in loads if name.rpartition(".")[0] in kept]
-    return chosen or [one.name for one in found if one.kind == "face_temperature"][: 2 * ZONES]
+    outputs = building.outputs()
+    operative = [output.name for output in outputs if output.kind == "operative_temperature"][:MAX_ZONES]
+    loads = [output.name for output in outputs if output.kind in ("heating_load", "cooling_load")]
+    zones = {name.rpartition(".")[0] for name in operative}
+    chosen = operative + [name for name in loads if name.rpartition(".")[0] in zones]
+    return chosen or [output.name for output in outputs if output.kind == "face_temperature"][: 2 * MAX_ZONES]

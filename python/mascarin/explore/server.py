@@ -23,7 +23,7 @@ from mascarin.errors import InputError, MascarinError
 HOST: Final = "127.0.0.1"
 TOKEN: Final = "X-Mascarin-Token"  # noqa: S105  (the name of a header)
 #: Most bytes of a request, and seconds without one after which a connection is closed.
-_MOST, _QUIET = 65_536, 60.0
+_MAX_BODY, _MAX_SILENCE = 65_536, 60.0
 _HEADERS: Final = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "frame-ancestors 'none'",
@@ -96,7 +96,7 @@ class _Handler(BaseHTTPRequestHandler):
     server_version = "Mascarin"
     sys_version = ""
     disable_nagle_algorithm = True
-    timeout = _QUIET
+    timeout = _MAX_SILENCE
 
     @property
     def _server(self) -> Server:
@@ -107,12 +107,12 @@ class _Handler(BaseHTTPRequestHandler):
         if not self._is_own_host():
             return
         try:
-            place = urlsplit(self.path)
+            address = urlsplit(self.path)
         except ValueError:  # such as an open bracket, which would begin an address
-            place = None
-        if place is None or place.path != "/":
+            address = None
+        if address is None or address.path != "/":
             self._say(HTTPStatus.NOT_FOUND, "there is nothing here")
-        elif not self._knows(parse_qs(place.query).get("token", [""])[0]):
+        elif not self._knows(parse_qs(address.query).get("token", [""])[0]):
             self._say(
                 HTTPStatus.FORBIDDEN, "open the address that 'mascarin explore' printed, with its token"
             )
@@ -122,9 +122,9 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Answer a request of the page."""
         length = self.headers.get("Content-Length", "")
-        if not length.isdecimal() or len(length) > len(str(_MOST)) or int(length) > _MOST:
+        if not length.isdecimal() or len(length) > len(str(_MAX_BODY)) or int(length) > _MAX_BODY:
             self.close_connection = True
-            self._say(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a request has at most {_MOST} bytes")
+            self._say(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a request has at most {_MAX_BODY} bytes")
             return
         body = self.rfile.read(int(length))
         if not self._is_own_host():
@@ -158,12 +158,12 @@ class _Handler(BaseHTTPRequestHandler):
         """Whether the request names this server, and comes from its page if it says where it comes from."""
         names = {f"{name}:{self._server.server_port}" for name in (HOST, "localhost")}
         origin = self.headers.get("Origin")
-        own = self.headers.get("Host", "") in names and (
+        matches = self.headers.get("Host", "") in names and (
             origin is None or origin in {f"http://{name}" for name in names}
         )
-        if not own:
+        if not matches:
             self._say(HTTPStatus.FORBIDDEN, "this server answers only to its own address")
-        return own
+        return matches
 
     def _knows(self, token: str) -> bool:
         return secrets.compare_digest(token.encode(), self._server.token.encode())

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate
 
 #: No number of a building is as large.
-_LARGEST: Final = 1e300
+_MAX_VALUE: Final = 1e300
 #: Points of a curve; of longer runs every k-th step is shown.
-_POINTS: Final = 3000
+_MAX_POINTS: Final = 3000
 
 
 class Band(NamedTuple):
@@ -83,19 +83,19 @@ class Session:
     ) -> None:
         self.band = _checked(band or Band())
         chosen = [building.output(name).name for name in outputs] or choice.curves(building)
-        wanted = [one.name for one in building.outputs() if one.kind == "operative_temperature"]
+        operative = [output.name for output in building.outputs() if output.kind == "operative_temperature"]
         self._curves = tuple(chosen)
-        given = dict(options or {}) | {"outputs": list(dict.fromkeys([*chosen, *wanted]))}
+        run_options = dict(options or {}) | {"outputs": list(dict.fromkeys([*chosen, *operative]))}
         if parameters:
             sliders = choice.named(building, parameters)
         else:
-            temperatures = wanted or [name for name in chosen if building.output(name).unit == "degC"]
+            temperatures = operative or [name for name in chosen if building.output(name).unit == "degC"]
             sliders = choice.strongest(
-                building, Simulation(building, climate, **{**given, "outputs": temperatures or chosen})
+                building, Simulation(building, climate, **{**run_options, "outputs": temperatures or chosen})
             )
         self.sliders: tuple[Parameter, ...] = tuple(sliders)
-        ranges = {one.path: (one.low, one.high) for one in sliders if one.low < one.high}
-        self.simulation = Simulation(building, climate, ranges=ranges, **given)
+        ranges = {slider.path: (slider.low, slider.high) for slider in sliders if slider.low < slider.high}
+        self.simulation = Simulation(building, climate, ranges=ranges, **run_options)
         self._lock = threading.Lock()  # runs of one page come one after the other
 
     def run(self, values: Mapping[str, Any], band: Sequence[float] | None = None) -> dict[str, Any]:
@@ -122,11 +122,11 @@ class Session:
             The run did not converge.
         """
         limits = self.band if band is None else _checked(band)
-        given = self._numbers(values)
+        numbers = self._numbers(values)
         with self._lock:
-            results = self.simulation.run(given)
-        every = self._every
-        records = {output.name: results.records[::every, k] for k, output in enumerate(results.outputs)}
+            results = self.simulation.run(numbers)
+        stride = self._stride
+        records = {output.name: results.records[::stride, k] for k, output in enumerate(results.outputs)}
         return {
             "series": {name: np.round(records[name], 4).tolist() for name in self._curves},
             "energy": [
@@ -139,18 +139,18 @@ class Session:
 
     def page(self) -> dict[str, Any]:
         """What the page needs once: sliders, times, curves, and the run of the building as it is."""
-        times = self.simulation.index[:: self._every]
+        times = self.simulation.index[:: self._stride]
         return {
-            "sliders": [_slider(one) for one in self.sliders],
+            "sliders": [_slider(slider) for slider in self.sliders],
             # Local times, as if they were UTC.
-            "times": [round(one.timestamp()) for one in times.tz_localize(None)],
+            "times": [round(time.timestamp()) for time in times.tz_localize(None)],
             "curves": [
                 {"name": name, "unit": units.shown(self.simulation.building.output(name).unit)}
                 for name in self._curves
             ],
             "band": list(self.band),
             "reference": self.run({}),
-            "outdoors": np.round(self.simulation.weather("air_temperature")[:: self._every], 3).tolist(),
+            "outdoors": np.round(self.simulation.weather("air_temperature")[:: self._stride], 3).tolist(),
         }
 
     def save(self, target: Path, base: Path, values: Mapping[str, Any], settings: Mapping[str, float]) -> str:
@@ -179,7 +179,7 @@ class Session:
         """
         if target.resolve() == base.resolve():
             raise InputError(f"--out: found {target}, the building itself; expected another file")
-        nominal = {one.path: one.value for one in self.sliders}
+        nominal = {slider.path: slider.value for slider in self.sliders}
         changed = {path: x for path, x in self._numbers(values).items() if x != nominal[path]}
         self.simulation.vector(changed)
         with self._lock:
@@ -195,21 +195,21 @@ class Session:
         return head + written
 
     def _numbers(self, values: Mapping[str, Any]) -> dict[str, float]:
-        known = {one.path: one for one in self.sliders}
+        sliders = {slider.path: slider for slider in self.sliders}
         for path, value in values.items():
-            if path not in known:
+            if path not in sliders:
                 raise InputError(f"{path}: found no slider of this parameter; expected one of the page")
             if not _is_number(value):
                 raise InputError(f"{path}: found {reprlib.repr(value)}; expected a number")
-            one = known[path]
-            if not one.lower <= value <= one.upper:
-                limits = f"{one.lower:g} to {one.upper:g} {units.shown(one.unit)}".rstrip()
+            slider = sliders[path]
+            if not slider.lower <= value <= slider.upper:
+                limits = f"{slider.lower:g} to {slider.upper:g} {units.shown(slider.unit)}".rstrip()
                 raise InputError(f"{path}: found {value:g}; expected {limits}")
         return {path: float(value) for path, value in values.items()}
 
     @property
-    def _every(self) -> int:
-        return max(1, -(-len(self.simulation.index) // _POINTS))
+    def _stride(self) -> int:
+        return max(1, -(-len(self.simulation.index) // _MAX_POINTS))
 
     def _comfort(self, results: Results, band: Band) -> list[dict[str, Any]]:
         zones = [
@@ -217,14 +217,14 @@ class Session:
         ]
         rows = []
         for zone in zones:
-            found = results.comfort(zone, index="operative", band=list(band)).discomfort
+            discomfort = results.comfort(zone, index="operative", band=list(band)).discomfort
             rows.append(
                 {
                     "zone": zone,
-                    "hot": round(float(found.hot_hours), 2),
-                    "cold": round(float(found.cold_hours), 2),
-                    "hot_degree_hours": round(float(found.hot_degree_hours), 2),
-                    "cold_degree_hours": round(float(found.cold_degree_hours), 2),
+                    "hot": round(float(discomfort.hot_hours), 2),
+                    "cold": round(float(discomfort.cold_hours), 2),
+                    "hot_degree_hours": round(float(discomfort.hot_degree_hours), 2),
+                    "cold_degree_hours": round(float(discomfort.cold_degree_hours), 2),
                 }
             )
         return rows
@@ -232,7 +232,7 @@ class Session:
 
 def _is_number(value: object) -> bool:
     """Whether a value of JSON is a number that a float can hold; integers of JSON have no end."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MAX_VALUE
 
 
 def _checked(band: object) -> Band:
@@ -245,24 +245,24 @@ def _checked(band: object) -> Band:
     return Band(float(ends[0]), float(ends[1]))
 
 
-def _slider(one: Parameter) -> dict[str, Any]:
-    low, high = (one.low, one.high) if one.low < one.high else _about(one)
+def _slider(parameter: Parameter) -> dict[str, Any]:
+    low, high = (parameter.low, parameter.high) if parameter.low < parameter.high else _about(parameter)
     return {
-        "path": one.path,
-        "value": one.value,
-        "low": min(low, one.value),
-        "high": max(high, one.value),
-        "unit": units.shown(one.unit),
-        "description": one.description,
-        "limits": f"{text.significant(one.lower)} to {text.significant(one.upper)}",
-        "note": one.reason or "",
+        "path": parameter.path,
+        "value": parameter.value,
+        "low": min(low, parameter.value),
+        "high": max(high, parameter.value),
+        "unit": units.shown(parameter.unit),
+        "description": parameter.description,
+        "limits": f"{text.significant(parameter.lower)} to {text.significant(parameter.upper)}",
+        "note": parameter.reason or "",
     }
 
 
-def _about(one: Parameter) -> tuple[float, float]:
+def _about(parameter: Parameter) -> tuple[float, float]:
     """A range for a parameter that has none: half to twice its value, within its limits."""
-    ends = sorted((0.5 * one.value, 2.0 * one.value)) if one.value else [0.0, 1.0]
-    return max(ends[0], one.lower), min(ends[1], one.upper)
+    ends = sorted((0.5 * parameter.value, 2.0 * parameter.value)) if parameter.value else [0.0, 1.0]
+    return max(ends[0], parameter.lower), min(ends[1], parameter.upper)
 
 
 def _path(base: Path, folder: Path) -> str:

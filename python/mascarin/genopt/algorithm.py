@@ -28,7 +28,7 @@ class Built:
         Whether a failed evaluation ends the run.
     counts_equal : bool
         Whether repeated costs end the run.
-    own : bool
+    extension : bool
         Whether GenOpt has no algorithm of this name.
     """
 
@@ -36,7 +36,7 @@ class Built:
     name: str
     stop_at_error: bool = True
     counts_equal: bool = False
-    own: bool = False
+    extension: bool = False
 
 
 def build(project: Project, observer: Observer, workers: int) -> Built:
@@ -65,24 +65,28 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
     name = chosen(project)
     rule = ALGORITHMS[name]
     for inner in block.blocks:
-        report.error(inner.place, f"unexpected section '{inner.name}' in 'Algorithm'")
+        report.error(inner.location, f"unexpected section '{inner.name}' in 'Algorithm'")
     order = ["Main", *rule.keys]
-    if rule.own:
+    if rule.extension:
         # GenOpt does not have this algorithm, so that any order of its keys is accepted.
         written = [e.key for e in block.entries if e.key in order]
         order = [*dict.fromkeys(written), *(k for k in order if k not in written)]
-    found = ordered(block, order, report, optional=rule.optional)
-    keys = checked(found, report, own=rule.own)
-    check_groups(found, report)
+    entries = ordered(block, order, report, optional=rule.optional)
+    keys = checked(entries, report, extension=rule.extension)
+    check_groups(entries, report)
     report.raise_if_any()
-    if rule.own:
-        report.notes.append(f"{block.place}: accepted beyond GenOpt: it has no algorithm '{name}'")
+    if rule.extension:
+        report.notes.append(f"{block.location}: accepted beyond GenOpt: it has no algorithm '{name}'")
     space = _space(project, name, rule)
     _check_bounds(project, rule, bounds=rule.bounds or "MultiStart" in keys)
     context = Context(project, space, observer, workers)
     optimizer = rule.build(context, keys)
     return Built(
-        optimizer, name, keys.get("StopAtError", True), counts_equal=name == "NelderMeadONeill", own=rule.own
+        optimizer,
+        name,
+        keys.get("StopAtError", True),
+        counts_equal=name == "NelderMeadONeill",
+        extension=rule.extension,
     )
 
 
@@ -106,24 +110,24 @@ def chosen(project: Project) -> str:
     """
     main, report = project.algorithm.get("Main"), project.report
     if main is None:
-        place = project.algorithm.end or project.algorithm.place
-        report.error(place, "missing specification of 'Main' in 'Algorithm'")
+        location = project.algorithm.end or project.algorithm.location
+        report.error(location, "missing specification of 'Main' in 'Algorithm'")
     elif main.value in REMOVED:
-        report.error(main.place, f"algorithm '{main.value}' was removed; {REMOVED[main.value]}")
+        report.error(main.location, f"algorithm '{main.value}' was removed; {REMOVED[main.value]}")
     elif main.value not in ALGORITHMS:
         hint = did_you_mean(main.value, ALGORITHMS)
-        report.error(main.place, f"algorithm '{main.value}' is not known. {hint}".rstrip())
+        report.error(main.location, f"algorithm '{main.value}' is not known. {hint}".rstrip())
     report.raise_if_any()
     return main.value if main is not None else ""
 
 
 def _second_seed(block: Block) -> Block:
     """The section with a key of its own for the seed of a multi-start beside that of a swarm."""
-    seen, entries = False, []
+    after_multi_start, entries = False, []
     for e in block.entries:
-        seen = seen or e.key == "MultiStart"
+        after_multi_start = after_multi_start or e.key == "MultiStart"
         swarm = any(o.key == "NumberOfParticle" for o in block.entries)
-        key = "MultiStartSeed" if e.key == "Seed" and seen and swarm else e.key
+        key = "MultiStartSeed" if e.key == "Seed" and after_multi_start and swarm else e.key
         entries.append(replace(e, key=key))
     return replace(block, entries=entries)
 
@@ -133,15 +137,19 @@ def _check_bounds(project: Project, rule: Algorithm, *, bounds: bool) -> None:
     report = project.report
     for p in project.continuous:
         if bounds and (p.lower is None or p.upper is None):
-            report.error(p.place, f"Parameter '{p.name}' does not have lower and upper bounds specified.")
+            report.error(p.location, f"Parameter '{p.name}' does not have lower and upper bounds specified.")
         elif bounds and p.lower == p.upper:
-            report.error(p.place, f"Parameter '{p.name}' has equal bounds; Min must be below Max")
+            report.error(p.location, f"Parameter '{p.name}' has equal bounds; Min must be below Max")
         if rule.start:
             text = project.number_text(p.initial)
             if p.upper is not None and p.initial > p.upper:
-                report.error(p.place, f"Initial point not feasible: {p.name}={text}: Upper bound {p.upper!r}")
+                report.error(
+                    p.location, f"Initial point not feasible: {p.name}={text}: Upper bound {p.upper!r}"
+                )
             if p.lower is not None and p.initial < p.lower:
-                report.error(p.place, f"Initial point not feasible: {p.name}={text}: Lower bound {p.lower!r}")
+                report.error(
+                    p.location, f"Initial point not feasible: {p.name}={text}: Lower bound {p.lower!r}"
+                )
     report.raise_if_any()
 
 
@@ -149,7 +157,7 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
     """Parameters of the optimization algorithm."""
     if project.discrete and rule.mixed and project.report.lenient:
         project.report.notes.append(
-            f"{project.discrete[0].place}: accepted beyond GenOpt: discrete parameters with {name}; "
+            f"{project.discrete[0].location}: accepted beyond GenOpt: discrete parameters with {name}; "
             "their other values are tried in turn"
         )
     elif project.discrete and not rule.discrete:
@@ -157,7 +165,7 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
         listed = ", ".join(names[:-1]) + ", and " + names[-1] if len(names) > 1 else names[0]
         verb = "Variables" if len(names) > 1 else "Variable"
         project.report.error(
-            project.discrete[0].place,
+            project.discrete[0].location,
             f"Algorithm '{name}' can only have continuous variables. {verb} {listed} "
             f"{'are' if len(names) > 1 else 'is'} specified as discrete. Choose an algorithm that takes "
             "them, such as PSOCC, GPSPSOCCHJ or MascarinHookeJeeves",

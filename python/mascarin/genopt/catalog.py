@@ -33,7 +33,7 @@ class Algorithm:
         Whether all parameters need both bounds.
     start : bool
         Whether it starts from the initial values.
-    own : bool
+    extension : bool
         Whether GenOpt has no algorithm of this name.
     """
 
@@ -44,7 +44,7 @@ class Algorithm:
     mixed: bool = False
     bounds: bool = False
     start: bool = True
-    own: bool = False
+    extension: bool = False
 
 
 _MULTI = ["MultiStart", "Seed", "NumberOfInitialPoint"]
@@ -123,10 +123,10 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     "Mesh": Algorithm(("StopAtError",), searches.mesh, discrete=True, bounds=True, start=False),
     "Parametric": Algorithm(("StopAtError",), searches.parametric, discrete=True, bounds=True, start=False),
     "MascarinHookeJeeves": Algorithm(
-        _GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, discrete=True, own=True
+        _GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, discrete=True, extension=True
     ),
     "MascarinCMAES": Algorithm(
-        ("Seed", "Sigma", "PopulationSize"), modern.covariance, ("Sigma", "PopulationSize"), own=True
+        ("Seed", "Sigma", "PopulationSize"), modern.covariance, ("Sigma", "PopulationSize"), extension=True
     ),
 }
 """All algorithms by name, GenOpt's own first."""

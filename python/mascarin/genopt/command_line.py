@@ -77,22 +77,22 @@ def split_command(project: Project) -> list[str]:
     for key in ("Prefix", "Suffix"):
         value = project.prefix if key == "Prefix" else project.suffix
         text = text.replace(f"%Simulation.CallParameter.{key}%", value)
-    known = variables(project, project.folder)
+    replacements = variables(project, project.folder)
     for name in re.findall(r"%((?:Simulation|Optimization)\.[\w.]+)%", text):
-        if name not in known:
+        if name not in replacements:
             project.report.error(
-                project.command_place,
-                f"'%{name}%' in the command is not known. {did_you_mean(name, known)}".rstrip(),
+                project.command_location,
+                f"'%{name}%' in the command is not known. {did_you_mean(name, replacements)}".rstrip(),
             )
     if text.count('"') % 2:
-        project.report.error(project.command_place, "the command has an odd number of double quotes")
+        project.report.error(project.command_location, "the command has an odd number of double quotes")
     project.report.raise_if_any()
     words: list[str] = []
     for piece in re.findall(r'(?:[^\s"]|"[^"]*")+', text):
         word = piece.replace('"', "")
         if re.match(r"\.\d+\Z", word):
             project.report.beyond(
-                project.command_place,
+                project.command_location,
                 f"the argument '{word}' begins with a point, so GenOpt takes it for a file and puts "
                 "a directory in front",
                 f"write 0{word}",
@@ -102,7 +102,7 @@ def split_command(project: Project) -> list[str]:
     return words
 
 
-def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -> str:
+def place_word(word: str, values: dict[str, str], folder: Path, file_names: set[str]) -> str:
     """Replace the variables of a word and make its path absolute where GenOpt does so.
 
     Parameters
@@ -113,7 +113,7 @@ def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -
         From `variables`.
     folder : Path
         Directory of the initialization file.
-    own : set of str
+    file_names : set of str
         Names of the files of a run.
 
     Returns
@@ -126,7 +126,7 @@ def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -
         return os.path.normpath(folder / text)
     # The name of a file of the run means that file, also when the directory from which the optimization was
     # started has a file of the same name.
-    literal = text == word and text not in own
+    literal = text == word and text not in file_names
     if literal and text and not Path(text).is_absolute() and exists(text):
         return str(Path(text).absolute())
     return text

@@ -24,7 +24,7 @@ def read_configuration(project: Project) -> None:
     """
     report = project.report
     if not is_file(project.configuration):
-        report.error(project.configuration_place, f"'{project.configuration}' does not exist")
+        report.error(project.configuration_location, f"'{project.configuration}' does not exist")
         return
     root = read(project.configuration, report)
     no_loose_entries(root, report)
@@ -39,16 +39,16 @@ def read_configuration(project: Project) -> None:
     project.errors = [e.value for e in blocks["SimulationError"].entries if e.key == "ErrorMessage"]
     for entry in blocks["SimulationError"].entries:
         if entry.value == "":
-            report.error(entry.place, "an empty ErrorMessage is found in every line; write a text")
+            report.error(entry.location, "an empty ErrorMessage is found in every line; write a text")
     form = ordered(blocks["IO"], ["NumberFormat"], report).get("NumberFormat")
     if form is not None:
         if form.value == "Float":
             project.number_format = "Float"
         elif form.value != "Double":
-            report.error(form.place, f"NumberFormat is '{form.value}'; expected Double or Float")
+            report.error(form.location, f"NumberFormat is '{form.value}'; expected Double or Float")
     start = ordered(blocks["SimulationStart"], ["Command", "WriteInputFileExtension"], report)
     if "Command" in start:
-        project.command, project.command_place = start["Command"].value, start["Command"].place
+        project.command, project.command_location = start["Command"].value, start["Command"].location
     if "WriteInputFileExtension" in start:
         project.keep_extension = boolean(start["WriteInputFileExtension"], report)
     if "ObjectiveFunctionLocation" in blocks:

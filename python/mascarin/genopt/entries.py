@@ -20,7 +20,7 @@ def no_loose_entries(root: Block, report: Report) -> None:
         Takes errors.
     """
     for entry in root.entries:
-        report.error(entry.place, f"'{entry.key}' is outside all sections")
+        report.error(entry.location, f"'{entry.key}' is outside all sections")
 
 
 def any_order(
@@ -45,7 +45,7 @@ def any_order(
     order = [e.key for e in block.entries if e.key in keys]
     sequence = [*dict.fromkeys(order), *(k for k in keys if k not in order)]
     for inner in block.blocks:
-        report.error(inner.place, f"unexpected section '{inner.name}' in '{block.name}'")
+        report.error(inner.location, f"unexpected section '{inner.name}' in '{block.name}'")
     return ordered(block, sequence, report, optional=optional)
 
 
@@ -68,12 +68,12 @@ def integer(entry: Entry, report: Report, *, least: int | None = None) -> int | 
     """
     value = parse_double(entry.value)
     if value is None or not math.isfinite(value):
-        report.error(entry.place, f"'{entry.key}' is '{entry.value}'; expected a whole number")
+        report.error(entry.location, f"'{entry.key}' is '{entry.value}'; expected a whole number")
         return None
     if value != int(value):
-        report.notes.append(f"{entry.place}: '{entry.key} = {entry.value}' is cut to {int(value)}")
+        report.notes.append(f"{entry.location}: '{entry.key} = {entry.value}' is cut to {int(value)}")
     if least is not None and int(value) < least:
-        report.error(entry.place, f"'{entry.key}' is {int(value)}; expected at least {least}")
+        report.error(entry.location, f"'{entry.key}' is {int(value)}; expected at least {least}")
         return None
     return int(value)
 
@@ -95,7 +95,7 @@ def real(entry: Entry, report: Report) -> float | None:
     """
     value = parse_double(entry.value)
     if value is None or not math.isfinite(value):
-        report.error(entry.place, f"'{entry.key}' is '{entry.value}'; expected a number")
+        report.error(entry.location, f"'{entry.key}' is '{entry.value}'; expected a number")
         return None
     return value
 
@@ -138,5 +138,5 @@ def boolean(entry: Entry, report: Report) -> bool:
         The value.
     """
     if entry.value not in ("true", "false"):
-        report.error(entry.place, f"'{entry.key}' is '{entry.value}'; expected true or false")
+        report.error(entry.location, f"'{entry.key}' is '{entry.value}'; expected true or false")
     return entry.value == "true"

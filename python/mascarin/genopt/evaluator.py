@@ -18,10 +18,10 @@ from mascarin.genopt.project import Project
 from mascarin.genopt.records import Key, Log, Record, Replay
 from mascarin.optimization import Evaluation, Point
 
-_SAME = 1e-12
+_RELATIVE_TOLERANCE = 1e-12
 FAILURES = "failed-runs"
 
-_Known = tuple[tuple[float, ...], Record]
+_CachedPoint = tuple[tuple[float, ...], Record]
 Runner = Callable[[Point, Path], Result]
 
 
@@ -52,21 +52,21 @@ class Cache:
             return None
         firsts, entries = self._groups[group]
         first = x[0] if x else 0.0
-        slack = _SAME * abs(first)
-        at = bisect.bisect_left(firsts, first - slack)
-        while at < len(firsts) and firsts[at] <= first + slack:
-            if _same(entries[at][0], x):
-                return entries[at][1]
-            at += 1
+        slack = _RELATIVE_TOLERANCE * abs(first)
+        index = bisect.bisect_left(firsts, first - slack)
+        while index < len(firsts) and firsts[index] <= first + slack:
+            if _same(entries[index][0], x):
+                return entries[index][1]
+            index += 1
         return None
 
     def add(self, group: tuple[object, ...], x: tuple[float, ...], record: Record) -> None:
         """Remember a point."""
         firsts, entries = self._groups.setdefault(group, ([], []))
         first = x[0] if x else 0.0
-        at = bisect.bisect_left(firsts, first)
-        firsts.insert(at, first)
-        entries.insert(at, (x, record))
+        index = bisect.bisect_left(firsts, first)
+        firsts.insert(index, first)
+        entries.insert(index, (x, record))
 
 
 @dataclass
@@ -157,14 +157,14 @@ class Evaluator:
         """
         first_batch = self.count == 0
         step = self._built.optimizer.step_number
-        seen: dict[tuple[object, ...], int] = {}
+        positions: dict[tuple[object, ...], int] = {}
         numbers: list[int] = []
         repeats: list[int | None] = []
         needed: list[Record | None] = []
         for i, p in enumerate(points):
             # Within a batch, points with different step numbers are different points.
-            own = (p.step, p.x, p.choices)
-            first = seen.setdefault(own, i)
+            identity = (p.step, p.x, p.choices)
+            first = positions.setdefault(identity, i)
             repeats.append(None if first == i else first)
             if first != i:
                 numbers.append(numbers[first])
@@ -202,13 +202,15 @@ class Evaluator:
     def _evaluation(self, p: Point, record: Record, number: int, step: int) -> Evaluation:
         """Evaluation of a point from its record."""
         if record.costs is not None:
-            cost, *others = record.costs
-            return Evaluation(replace(p, step=step), cost, tuple(others), number)
-        others = [math.nan] * (len(self._project.objectives) - 1)
+            cost, *outputs = record.costs
+            return Evaluation(replace(p, step=step), cost, tuple(outputs), number)
+        outputs = [math.nan] * (len(self._project.objectives) - 1)
         if self._policy.penalty is not None:
-            return Evaluation(replace(p, step=step), self._policy.penalty, tuple(others), number, failed=True)
+            return Evaluation(
+                replace(p, step=step), self._policy.penalty, tuple(outputs), number, failed=True
+            )
         # GenOpt records a failure that does not stop it with zeros, and with the step number of the point.
-        return Evaluation(p, 0.0, tuple(0.0 for _ in others), number, failed=True)
+        return Evaluation(p, 0.0, tuple(0.0 for _ in outputs), number, failed=True)
 
     # ------------------------------------------------------------------ runs
 
@@ -218,9 +220,9 @@ class Evaluator:
         records: dict[int, Record] = {}
         for i, p, number in new:
             key = self._key(p)
-            found = self._replayed(key) or self._ahead.pop(key, None)
-            if found is not None:
-                records[i] = found
+            earlier = self._replayed(key) or self._ahead.pop(key, None)
+            if earlier is not None:
+                records[i] = earlier
             elif self._pool is None:
                 records[i] = self._attempt(p, self._folder(number))
                 if records[i].costs is None and first_batch and self._stops():
@@ -322,9 +324,9 @@ class Evaluator:
 
     def _replayed(self, key: Key) -> Record | None:
         """Record of an earlier run; a failure counts only where failures do not end the optimization."""
-        while (found := self._replay.take(key)) is not None:
-            if found.costs is not None or not self._stops():
-                return found
+        while (record := self._replay.take(key)) is not None:
+            if record.costs is not None or not self._stops():
+                return record
         return None
 
     # ------------------------------------------------------------------ runs in advance
@@ -352,7 +354,7 @@ class Evaluator:
         if not self._policy.ahead or self._pool is None or free <= 0:
             return
         optimizer = self._built.optimizer
-        for p in optimizer.guesses(free + len(self._running), self._known):
+        for p in optimizer.guesses(free + len(self._running), self._earlier_cost):
             key = self._key(p)
             if free > 0 and key not in self._running and key not in self._ahead:
                 free -= 1
@@ -361,7 +363,7 @@ class Evaluator:
                 self._folders[key] = folder
                 self._running[key] = self._pool.submit(self._attempt, p, folder)
 
-    def _known(self, p: Point) -> float | None:
+    def _earlier_cost(self, p: Point) -> float | None:
         """Cost of a point from any source."""
         record = self._cache.find(self._group(p, p.step), p.x) or self._ahead.get(self._key(p))
         if record is None:
@@ -409,4 +411,4 @@ class Evaluator:
 
 def _same(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
     """Whether all coordinates are equal within rounding."""
-    return all(abs(u - v) <= _SAME * max(abs(u), abs(v)) for u, v in zip(a, b, strict=True))
+    return all(abs(u - v) <= _RELATIVE_TOLERANCE * max(abs(u), abs(v)) for u, v in zip(a, b, strict=True))

@@ -58,8 +58,8 @@ def word_after(lines: Sequence[str], delimiter: str, column: int, separators: st
             end = delimiter.rstrip(" \t")
             if end and text.endswith(end):
                 text = text[: -len(end)]
-            at = text.rfind(delimiter)
-            return _first_word(text[at + len(delimiter) :], separators) if at >= 0 else ""
+            position = text.rfind(delimiter)
+            return _first_word(text[position + len(delimiter) :], separators) if position >= 0 else ""
     return None
 
 

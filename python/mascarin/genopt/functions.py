@@ -142,14 +142,14 @@ def substitute(text: str, values: Mapping[str, str]) -> str:
     return text
 
 
-def resolve(functions: Mapping[str, str], place: Callable[[str], str]) -> dict[str, str]:
+def resolve(functions: Mapping[str, str], location: Callable[[str], str]) -> dict[str, str]:
     """Replace references between functions by their text.
 
     Parameters
     ----------
     functions : mapping of str to str
         Text by name.
-    place : callable
+    location : callable
         File and line of a function, for messages.
 
     Returns
@@ -171,7 +171,7 @@ def resolve(functions: Mapping[str, str], place: Callable[[str], str]) -> dict[s
                 break
             done[name] = text
         else:
-            msg = f"{place(name)}: function '{name}' refers to itself in a circle; break the circle"
+            msg = f"{location(name)}: function '{name}' refers to itself in a circle; break the circle"
             raise InputError(msg)
     return done
 
@@ -185,11 +185,11 @@ def _sum(values: tuple[float, ...]) -> float:
 
 def _expression(text: str, start: int) -> tuple[int, float]:
     """Read one number or call; return the position after it and its value."""
-    found = _TOKEN.match(text, start)
-    if found is None:
+    match = _TOKEN.match(text, start)
+    if match is None:
         msg = f"function '{text}': a number or a call is missing at its end"
         raise InputError(msg)
-    name, bracket, word = found.groups()
+    name, bracket, word = match.groups()
     if bracket is not None:
         msg = f"function '{text}': found '{bracket}', expected a number or a call"
         raise InputError(msg)
@@ -201,8 +201,8 @@ def _expression(text: str, start: int) -> tuple[int, float]:
                 "nested calls like add(2, multiply(3, %x%)), without operators"
             )
             raise InputError(msg)
-        return found.end(), value
-    position, arguments = _arguments(text, found.end())
+        return match.end(), value
+    position, arguments = _arguments(text, match.end())
     return position, _call(text, name, arguments)
 
 
@@ -215,12 +215,12 @@ def _arguments(text: str, position: int) -> tuple[int, list[float]]:
     while True:
         position, value = _expression(text, position)
         arguments.append(value)
-        found = re.compile(r"\s*([,)])").match(text, position)
-        if found is None:
+        match = re.compile(r"\s*([,)])").match(text, position)
+        if match is None:
             msg = f"function '{text}': a comma or a closing bracket is missing after '{text[:position]}'"
             raise InputError(msg)
-        position = found.end()
-        if found[1] == ")":
+        position = match.end()
+        if match[1] == ")":
             return position, arguments
 
 
@@ -231,8 +231,8 @@ def _call(text: str, name: str, arguments: list[float]) -> float:
         raise InputError(msg)
     function, counts = _FUNCTIONS[name]
     if len(arguments) not in counts:
-        wanted = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
-        msg = f"function '{text}': '{name}' takes {wanted} arguments, found {len(arguments)}"
+        expected = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+        msg = f"function '{text}': '{name}' takes {expected} arguments, found {len(arguments)}"
         raise InputError(msg)
     try:
         return float(function(*arguments))

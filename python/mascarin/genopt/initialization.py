@@ -55,17 +55,17 @@ def read_initialization(project: Project) -> None:
     project.output = _files(files["Output"], base, report, ["File", "Path", "SavePath"])
     if len(project.template) != len(project.input):
         report.error(
-            files["Input"].place,
+            files["Input"].location,
             f"{len(project.input)} input files for {len(project.template)} templates; "
             "the first template makes the first input file, and so on",
         )
     _one_file(project, "configuration", files["Configuration"])
     if "CallParameter" in simulation:
-        found = ordered(
+        entries = ordered(
             simulation["CallParameter"], ["Prefix", "Suffix"], report, optional=["Prefix", "Suffix"]
         )
-        project.prefix = found["Prefix"].value if "Prefix" in found else ""
-        project.suffix = found["Suffix"].value if "Suffix" in found else ""
+        project.prefix = entries["Prefix"].value if "Prefix" in entries else ""
+        project.suffix = entries["Suffix"].value if "Suffix" in entries else ""
     if "ObjectiveFunctionLocation" in simulation:
         project.objectives = objectives(simulation["ObjectiveFunctionLocation"], report)
     optimization = expect_blocks(top["Optimization"], ["Files"], report)
@@ -101,48 +101,49 @@ def _resolve_references(root: Block, report: Report) -> None:
                 break
             value = re.sub(rf"(?<!%){re.escape(hit)}(?![\w%])", lambda _, h=hit: values[h], value)  # type: ignore[misc]
         else:
-            report.error(entry.place, f"'{name}' refers to itself in a circle; write the value out")
+            report.error(entry.location, f"'{name}' refers to itself in a circle; write the value out")
         if value != entry.value:
-            block.entries[i] = Entry(entry.key, value, entry.quoted, entry.place, entry.raw)
+            block.entries[i] = Entry(entry.key, value, entry.quoted, entry.location, entry.raw)
 
 
 def _numbered(block: Block, report: Report, kinds: Sequence[str], *, required: str) -> list[dict[str, Entry]]:
     """Entries with numbered keys such as ``File1``, grouped by number."""
     groups: list[dict[str, Entry]] = []
     for entry in block.entries:
-        found = _NUMBERED.match(entry.key)
-        if found is None or found[1] not in kinds:
-            known = [f"{kind}{i}" for kind in kinds for i in (1, 2)]
+        match = _NUMBERED.match(entry.key)
+        if match is None or match[1] not in kinds:
+            keys = [f"{kind}{i}" for kind in kinds for i in (1, 2)]
             report.error(
-                entry.place,
+                entry.location,
                 f"unknown or unexpected keyword '{entry.key}' in '{block.name}'. "
-                f"{did_you_mean(entry.key, known)}".rstrip(),
+                f"{did_you_mean(entry.key, keys)}".rstrip(),
             )
             continue
-        number = int(found[2])
+        number = int(match[2])
         if number == len(groups) + 1:
             groups.append({})
         elif number > len(groups) + 1 or number < 1:
             report.error(
-                entry.place, f"'{entry.key}' comes before number {len(groups) + 1}; number them 1, 2, 3, ..."
+                entry.location,
+                f"'{entry.key}' comes before number {len(groups) + 1}; number them 1, 2, 3, ...",
             )
             continue
         elif number < len(groups):
             report.beyond(
-                entry.place, f"'{entry.key}' comes after number {len(groups)}", "the numbers must rise"
+                entry.location, f"'{entry.key}' comes after number {len(groups)}", "the numbers must rise"
             )
-        if found[1] in groups[number - 1]:
-            report.error(entry.place, f"'{entry.key}' is written a second time; remove one")
+        if match[1] in groups[number - 1]:
+            report.error(entry.location, f"'{entry.key}' is written a second time; remove one")
             continue
-        groups[number - 1][found[1]] = entry
+        groups[number - 1][match[1]] = entry
     for i, group in enumerate(groups, start=1):
         if required not in group:
             report.error(
-                next(iter(group.values())).place,
+                next(iter(group.values())).location,
                 f"missing specification of '{required}{i}' in '{block.name}'",
             )
     if not groups:
-        report.error(block.place, f"missing specification of '{required}1' in '{block.name}'")
+        report.error(block.location, f"missing specification of '{required}1' in '{block.name}'")
     return [g for g in groups if required in g]
 
 
@@ -151,20 +152,20 @@ def _files(block: Block, base: Path, report: Report, kinds: Sequence[str]) -> li
     entries = []
     for group in _numbered(block, report, kinds, required="File"):
         folder = base / group["Path"].value if "Path" in group else base
-        whole = Path(os.path.normpath(folder / group["File"].value))
+        path = Path(os.path.normpath(folder / group["File"].value))
         save = base / group["SavePath"].value if "SavePath" in group else None
-        entries.append(FileEntry(whole.parent, whole.name, save, group["File"].place))
+        entries.append(FileEntry(path.parent, path.name, save, group["File"].location))
     return entries
 
 
 def _one_file(project: Project, which: Literal["configuration", "command_file"], block: Block) -> None:
     """The configuration or the command file."""
-    found = _files(block, project.folder, project.report, ["File", "Path"])
-    if len(found) > 1:
-        project.report.error(found[1].place, f"'{block.name}' takes one file")
-    if found:
-        setattr(project, which, found[0].path)
-        setattr(project, f"{which}_place", found[0].place)
+    files = _files(block, project.folder, project.report, ["File", "Path"])
+    if len(files) > 1:
+        project.report.error(files[1].location, f"'{block.name}' takes one file")
+    if files:
+        setattr(project, which, files[0].path)
+        setattr(project, f"{which}_location", files[0].location)
 
 
 def _check_inside(project: Project) -> None:
@@ -172,13 +173,13 @@ def _check_inside(project: Project) -> None:
     for entry in (*project.input, *project.log, *project.output):
         if not entry.path.is_relative_to(project.folder):
             project.report.error(
-                entry.place,
+                entry.location,
                 f"'{entry.path}' is outside the directory of the initialization file; every run has its own "
                 f"directory below '{project.folder}': move the file there (templates may be anywhere)",
             )
     for entry in project.template:
         if not is_file(entry.path):
-            project.report.error(entry.place, f"template '{entry.path}' does not exist")
+            project.report.error(entry.location, f"template '{entry.path}' does not exist")
 
 
 def objectives(block: Block, report: Report) -> list[Objective]:
@@ -199,24 +200,24 @@ def objectives(block: Block, report: Report) -> list[Objective]:
     out: list[Objective] = []
     groups = _numbered(block, report, ["Name", "Delimiter", "FirstCharacterAt", "Function"], required="Name")
     for i, group in enumerate(groups, start=1):
-        name, place = group["Name"].value, group["Name"].place
+        name, location = group["Name"].value, group["Name"].location
         if any(o.name == name for o in out):
-            report.error(place, f"the name '{name}' is used twice")
+            report.error(location, f"the name '{name}' is used twice")
         if ("Delimiter" in group) == ("Function" in group):
-            report.error(place, f"'Name{i}' needs either 'Delimiter{i}' or 'Function{i}'")
+            report.error(location, f"'Name{i}' needs either 'Delimiter{i}' or 'Function{i}'")
             continue
         column = 0
         if "FirstCharacterAt" in group:
             column = integer(group["FirstCharacterAt"], report, least=0) or 0
             if "Function" in group:
-                report.error(place, f"'FirstCharacterAt{i}' belongs to a delimiter, not to a function")
+                report.error(location, f"'FirstCharacterAt{i}' belongs to a delimiter, not to a function")
         out.append(
             Objective(
                 name,
                 group["Delimiter"].value if "Delimiter" in group else None,
                 column,
                 group["Function"].value if "Function" in group else None,
-                place,
+                location,
             )
         )
     return out

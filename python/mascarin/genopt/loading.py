@@ -35,15 +35,15 @@ def load(path: str | Path, *, lenient: bool = False) -> Project:
     project = Project(ini, report=Report(lenient))
     read_initialization(project)
     project.report.raise_if_any()
-    own = list(project.objectives)
+    from_initialization = list(project.objectives)
     read_configuration(project)
     project.report.raise_if_any()
-    if own and project.objectives != own:
-        place = project.objectives[0].place
+    if from_initialization and project.objectives != from_initialization:
+        location = project.objectives[0].location
         project.report.notes.append(
-            f"{place}: ObjectiveFunctionLocation is also in the initialization file; that one is used"
+            f"{location}: ObjectiveFunctionLocation is also in the initialization file; that one is used"
         )
-        project.objectives = own
+        project.objectives = from_initialization
     if not project.objectives:
         project.report.error(
             str(project.ini), "ObjectiveFunctionLocation is missing here and in the configuration file"

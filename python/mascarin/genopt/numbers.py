@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 _JAVA_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?\Z")
 _SINGLE = struct.Struct("<f")
-_EXACT = 1e22
+_MAX_EXACT = 1e22
 
 
 def double_text(value: float) -> str:
@@ -105,7 +105,7 @@ def normalised(text: str) -> str:
     value = parse_double(text) if not text.endswith(tuple("fFdD")) else None
     if value is None or not math.isfinite(value):
         return text
-    return str(int(value)) if value == int(value) and abs(value) < _EXACT else double_text(value)
+    return str(int(value)) if value == int(value) and abs(value) < _MAX_EXACT else double_text(value)
 
 
 def _to_single(value: float) -> float:
@@ -137,10 +137,10 @@ def _layout(value: float, digits_of: Callable[[float], str]) -> str:
         return sign + "0.0"
     text = digits_of(size)
     mantissa, _, exponent = text.partition("e")
-    whole, _, fraction = mantissa.partition(".")
-    digits = (whole + fraction).lstrip("0")
-    point = len(whole) + int(exponent or 0)
-    if whole.strip("0") == "":
+    integer, _, fraction = mantissa.partition(".")
+    digits = (integer + fraction).lstrip("0")
+    point = len(integer) + int(exponent or 0)
+    if integer.strip("0") == "":
         point = len(digits) - len(fraction) + int(exponent or 0)
     digits = digits.rstrip("0") or "0"
     if 1e-3 <= size < 1e7:

@@ -77,7 +77,7 @@ class Program:
         self._words = split_command(project)
         files = (*project.input, *project.log, *project.output)
         self._own_names = {Path(e.name).name for e in files}
-        self._found: dict[str, int] = {}
+        self._output_index: dict[str, int] = {}
         self._running: set[subprocess.Popen[bytes]] = set()
         self._lock = threading.Lock()
         self._closed = False
@@ -90,15 +90,15 @@ class Program:
         project = self._project
         outputs = [o.function for o in project.objectives if o.function is not None]
         names = [*project.names, *(["stepNumber"] if project.settings.write_step else [])]
-        places = {p.name: p.place for p in project.continuous}
-        places.update((p.name, p.place) for p in project.discrete)
+        locations = {p.name: p.location for p in project.continuous}
+        locations.update((p.name, p.location) for p in project.discrete)
         for name in names:
             mark = f"%{name}%"
             if not any(mark in t for t in (*self._templates, *project.functions.values(), *outputs)):
-                place = places.get(name, str(project.command_file))
+                location = locations.get(name, str(project.command_file))
                 listed = ", ".join(f"'{e.path}'" for e in project.template)
                 project.report.error(
-                    place,
+                    location,
                     f"'{mark}' must occur in at least one simulation input template file, or in at least one "
                     f"function object; searched {listed}. Write it where the value belongs",
                 )
@@ -106,7 +106,7 @@ class Program:
             mark = f"%{name}%"
             if not any(mark in t for t in (*self._templates, *outputs)) and not self._used_inside(name):
                 project.report.error(
-                    project.function_places[name], f"function '{mark}' is not used; use or remove it"
+                    project.function_locations[name], f"function '{mark}' is not used; use or remove it"
                 )
         project.report.raise_if_any()
         return names
@@ -122,23 +122,23 @@ class Program:
         project = self._project
         words = self.command(Path(project.folder) / f"{RUN_PREFIX}1")
         if not words:
-            project.report.error(project.command_place, "the command is empty; name a program")
+            project.report.error(project.command_location, "the command is empty; name a program")
         elif shutil.which(words[0]) is None:
             project.report.error(
-                project.command_place,
+                project.command_location,
                 f"the program '{words[0]}' is not found or cannot be executed; give its full path",
             )
         for word in words:
             if re.search(r"\s", word) and os.name == "posix":
                 project.report.notes.append(
-                    f"{project.command_place}: accepted beyond GenOpt: '{word}' stays one argument, "
+                    f"{project.command_location}: accepted beyond GenOpt: '{word}' stays one argument, "
                     "GenOpt would split it at its blanks"
                 )
         for entry in (*project.input, *project.log, *project.output):
             stale = Path.cwd() / entry.name
             if entry.name in words and stale.exists():
                 project.report.beyond(
-                    project.command_place,
+                    project.command_location,
                     f"'{stale}' has the name of a file of the run, so GenOpt started in this directory would "
                     "give it to every run instead of the file of the run",
                     "remove it or start from another directory",
@@ -290,13 +290,13 @@ class Program:
             lines_of(self._text(self._inside(entry, folder), folder, "output"))
             for entry in self._project.output
         ]
-        found = {
+        numbers = {
             o.name: self._extract(o, o.delimiter, outputs, folder)
             for o in self._project.objectives
             if o.delimiter is not None
         }
-        known = {**values, **{name: double_text(v) for name, v in found.items()}}
-        return tuple(self._cost(o, found, known, folder) for o in self._project.objectives)
+        texts = {**values, **{name: double_text(v) for name, v in numbers.items()}}
+        return tuple(self._cost(o, numbers, texts, folder) for o in self._project.objectives)
 
     def _text(self, path: Path, folder: Path, role: str) -> str:
         """A file the program should have written."""
@@ -308,11 +308,11 @@ class Program:
                 f"the program ended without error but {role} file '{path}' is missing ({error.strerror})",
             ) from error
 
-    def _cost(self, o: Objective, found: dict[str, float], known: dict[str, str], folder: Path) -> float:
+    def _cost(self, o: Objective, numbers: dict[str, float], texts: dict[str, str], folder: Path) -> float:
         """Value of one objective."""
         if o.function is None:
-            return found[o.name]
-        text = functions.substitute(o.function, known)
+            return numbers[o.name]
+        text = functions.substitute(o.function, texts)
         value = functions.evaluate(text)
         if value != value or abs(value) == float("inf"):
             raise self._failed(folder, f"cost '{o.name}' is {double_text(value)}: {o.function} = {text}")
@@ -320,19 +320,19 @@ class Program:
 
     def _extract(self, o: Objective, delimiter: str, outputs: Sequence[list[str]], folder: Path) -> float:
         """A number after its delimiter, from the first file that has it."""
-        known = self._found.get(o.name)
-        order = range(len(outputs)) if known is None else [known]
+        file_index = self._output_index.get(o.name)
+        order = range(len(outputs)) if file_index is None else [file_index]
         for i in order:
             word = word_after(outputs[i], delimiter, o.column, self._separators)
             if word is not None:
                 value = self._number(o, word, self._inside(self._project.output[i], folder), folder)
-                self._found[o.name] = i
+                self._output_index[o.name] = i
                 return value
         files = ", ".join(f"'{self._inside(self._project.output[i], folder)}'" for i in order)
         raise self._failed(
             folder,
             f"the value of '{o.name}' could not be found in {files}. Objective function delimiter is "
-            f"'{delimiter}' ({o.place}); check it and the file",
+            f"'{delimiter}' ({o.location}); check it and the file",
         )
 
     def _number(self, o: Objective, word: str, path: Path, folder: Path) -> float:
@@ -374,7 +374,7 @@ def _read_template(entry: FileEntry) -> str:
     try:
         lines = lines_of(require_regular(entry.path).read_text(**_ENCODING))
     except OSError as error:
-        msg = f"{entry.place}: cannot read template '{entry.path}': {error.strerror}"
+        msg = f"{entry.location}: cannot read template '{entry.path}': {error.strerror}"
         raise InputError(msg) from error
     return "".join(line + "\n" for line in lines)
 

@@ -22,14 +22,14 @@ class FileEntry:
         Its name.
     save : Path or None
         Directory in which the file of every run is kept.
-    place : str
+    location : str
         File and line of its name.
     """
 
     folder: Path
     name: str
     save: Path | None
-    place: str
+    location: str
 
     @property
     def path(self) -> Path:
@@ -51,7 +51,7 @@ class Objective:
         Column in which the delimiter starts, counted from 1; 0 for anywhere [-].
     function : str or None
         Function object, when the number is computed.
-    place : str
+    location : str
         File and line.
     """
 
@@ -59,7 +59,7 @@ class Objective:
     delimiter: str | None
     column: int
     function: str | None
-    place: str
+    location: str
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class ContinuousInput:
     step: float
     lower: float | None
     upper: float | None
-    place: str
+    location: str
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class DiscreteInput:
     name: str
     initial: int
     values: tuple[str, ...]
-    place: str
+    location: str
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class Project:
         How continuous values are written, "Double" or "Float".
     command : str
         The command line with its variables.
-    command_place : str
+    command_location : str
         File and line of the command.
     keep_extension : bool
         Whether the extension of input files is written in the command.
@@ -124,7 +124,7 @@ class Project:
         Parameters.
     functions : dict of str to str
         Input functions without references to each other.
-    function_places : dict of str to str
+    function_locations : dict of str to str
         File and line of each function.
     settings : Settings
         General settings.
@@ -140,21 +140,21 @@ class Project:
     log: list[FileEntry] = field(default_factory=list)
     output: list[FileEntry] = field(default_factory=list)
     configuration: Path = Path()
-    configuration_place: str = ""
+    configuration_location: str = ""
     command_file: Path = Path()
-    command_file_place: str = ""
+    command_file_location: str = ""
     prefix: str = ""
     suffix: str = ""
     errors: list[str] = field(default_factory=list)
     number_format: Literal["Double", "Float"] = "Double"
     command: str = ""
-    command_place: str = ""
+    command_location: str = ""
     keep_extension: bool = True
     objectives: list[Objective] = field(default_factory=list)
     continuous: list[ContinuousInput] = field(default_factory=list)
     discrete: list[DiscreteInput] = field(default_factory=list)
     functions: dict[str, str] = field(default_factory=dict)
-    function_places: dict[str, str] = field(default_factory=dict)
+    function_locations: dict[str, str] = field(default_factory=dict)
     settings: Settings = field(default_factory=lambda: Settings(1, False, 5, 0))
     algorithm: Block = field(default_factory=lambda: Block("", ""))
     report: Report = field(default_factory=Report)

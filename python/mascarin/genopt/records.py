@@ -371,8 +371,8 @@ def _compare(path: Path, line: bytes, digests: Mapping[str, str]) -> None:
             "without --resume"
         )
         raise InputError(msg) from error
-    before = head["project"]
-    changed = sorted(k for k in {*before, *digests} if before.get(k) != digests.get(k))
+    recorded = head["project"]
+    changed = sorted(k for k in {*recorded, *digests} if recorded.get(k) != digests.get(k))
     if changed:
         msg = (
             f"{path}: results of another project: changed since then: {', '.join(changed)}. "
@@ -402,7 +402,7 @@ def _record(entry: Mapping[str, Any]) -> Record:
     )
 
 
-def _check(found: Mapping[str, Any]) -> None:
+def _check(record: Mapping[str, Any]) -> None:
     """Refuse a line whose values have other types.
 
     Raises
@@ -411,14 +411,14 @@ def _check(found: Mapping[str, Any]) -> None:
         It is damaged.
     """
     own_files.require(
-        found,
+        record,
         {
             "step": int, "x": list, "choices": list, "costs": (list, type(None)), "seconds": (int, float),
             "attempts": int, "reason": str, "number": int,
         },
     )  # fmt: skip
     for key, kinds in (("x", (int, float)), ("choices", (int,)), ("costs", (int, float))):
-        for value in found[key] or ():
+        for value in record[key] or ():
             if not isinstance(value, kinds) or isinstance(value, bool):
                 raise own_files.DamagedError(f"{key}: found {type(value).__name__}")
 

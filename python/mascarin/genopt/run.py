@@ -369,10 +369,10 @@ class _Watch:
         self._done += 1
         if record.costs is not None and (self._best is None or record.costs[0] < self._best):
             self._best = record.costs[0]
-        left = self._optimizer.remaining
+        remaining = self._optimizer.remaining
         exact = self._optimizer.expected is not None
-        total = self._done + left if left is not None else max(self._most, self._done)
-        about = "" if exact else "about " if left is not None else "at most "
+        total = self._done + remaining if remaining is not None else max(self._most, self._done)
+        about = "" if exact else "about " if remaining is not None else "at most "
         best = "" if self._best is None else f", lowest {self._name} {self._best:.6g}"
         self._progress.update(self._done, total, f"{self._done} of {about}{total}{best}")
 

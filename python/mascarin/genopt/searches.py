@@ -114,11 +114,11 @@ def _sufficient(context: Context, keys: Keys) -> SufficientDecrease | None:
     project = context.project
     names = [o.name for o in project.objectives]
     entry = project.algorithm.get("Phi")
-    place = entry.place if entry else project.algorithm.place
+    location = entry.location if entry else project.algorithm.location
     variables = [n for n in ("Delta", "stepNumber", *names) if f"%{n}%" in text]
     trial = functions.evaluate(functions.substitute(text, dict.fromkeys(variables, "1")))
     if not variables and trial != 0.0:
-        project.report.error(place, "Phi without variables must be 0; use %Delta%, %stepNumber% or a cost")
+        project.report.error(location, "Phi without variables must be 0; use %Delta%, %stepNumber% or a cost")
         project.report.raise_if_any()
 
     def phi(delta: float, step: int, e: Evaluation) -> float:
@@ -277,9 +277,9 @@ def _check_logarithms(context: Context) -> None:
     report = context.project.report
     for p in context.project.continuous:
         if p.step < 0 and not (p.lower is not None and p.lower > 0 and p.upper is not None and p.upper > 0):
-            report.error(p.place, f"'{p.name}': logarithmic spacing needs Min and Max above zero")
+            report.error(p.location, f"'{p.name}': logarithmic spacing needs Min and Max above zero")
         if p.step != int(p.step):
             report.notes.append(
-                f"{p.place}: Step of '{p.name}' is a number of intervals, cut to {int(p.step)}"
+                f"{p.location}: Step of '{p.name}' is a number of intervals, cut to {int(p.step)}"
             )
     report.raise_if_any()

@@ -17,7 +17,7 @@ class Number:
 
     Parameters
     ----------
-    whole : bool
+    integer : bool
         Whether it is an integer.
     low, high : float
         Limits.
@@ -25,7 +25,7 @@ class Number:
         Whether a limit itself is excluded.
     """
 
-    whole: bool = False
+    integer: bool = False
     low: float = -math.inf
     high: float = math.inf
     open_low: bool = False
@@ -40,25 +40,25 @@ class Number:
         return ""
 
 
-_COUNT = Number(whole=True, low=1)
-_WHOLE = Number(whole=True)
+_COUNT = Number(integer=True, low=1)
+_INTEGER = Number(integer=True)
 _NOT_NEGATIVE = Number(low=0)
 _POSITIVE = Number(low=0, open_low=True)
 _FRACTION = Number(low=0, high=1, open_low=True, open_high=True)
 _PULL = Number(low=0, high=4, open_low=True, open_high=True)
 
 _NUMBERS = {
-    "Seed": _WHOLE,
-    "MultiStartSeed": _WHOLE,
+    "Seed": _INTEGER,
+    "MultiStartSeed": _INTEGER,
     "NumberOfInitialPoint": _COUNT,
     "Zeta": _NOT_NEGATIVE,
     "Alpha": _FRACTION,
-    "MeshSizeDivider": Number(whole=True, low=2),
-    "InitialMeshSizeExponent": Number(whole=True, low=0),
+    "MeshSizeDivider": Number(integer=True, low=2),
+    "InitialMeshSizeExponent": Number(integer=True, low=0),
     "MeshSizeExponentIncrement": _COUNT,
     "NumberOfStepReduction": _COUNT,
     "NeighborhoodSize": _COUNT,
-    "NumberOfParticle": Number(whole=True, low=2),
+    "NumberOfParticle": Number(integer=True, low=2),
     "NumberOfGeneration": _COUNT,
     "CognitiveAcceleration": _PULL,
     "SocialAcceleration": _PULL,
@@ -69,19 +69,19 @@ _NUMBERS = {
     "FinalInertiaWeight": _NOT_NEGATIVE,
     "Accuracy": _POSITIVE,
     "StepSizeFactor": _POSITIVE,
-    "BlockRestartCheck": Number(whole=True, low=0),
+    "BlockRestartCheck": Number(integer=True, low=0),
     "Beta": _FRACTION,
     "Gamma": _POSITIVE,
-    "K0": _WHOLE,
-    "KStar": _WHOLE,
-    "LMax": Number(whole=True, low=0),
-    "Kappa": Number(whole=True, low=0),
+    "K0": _INTEGER,
+    "KStar": _INTEGER,
+    "LMax": Number(integer=True, low=0),
+    "Kappa": Number(integer=True, low=0),
     "EpsilonM": _POSITIVE,
     "EpsilonX": _POSITIVE,
     "AbsDiffFunction": _POSITIVE,
     "IntervalReduction": _FRACTION,
     "Sigma": _POSITIVE,
-    "PopulationSize": Number(whole=True, low=4),
+    "PopulationSize": Number(integer=True, low=4),
     "MaxEvaluations": _COUNT,
 }
 _BOOLEANS = {"ModifyStoppingCriterion", "StopAtError"}
@@ -92,16 +92,16 @@ class Keys(dict[str, Any]):
     """Checked settings of the section by key."""
 
 
-def checked(found: dict[str, Entry], report: Report, *, own: bool) -> Keys:
+def checked(entries: dict[str, Entry], report: Report, *, extension: bool) -> Keys:
     """Check the values of the section.
 
     Parameters
     ----------
-    found : dict of str to Entry
+    entries : dict of str to Entry
         Entries by key.
     report : Report
         Takes errors and notes.
-    own : bool
+    extension : bool
         Whether GenOpt has no algorithm of this name.
 
     Returns
@@ -110,70 +110,72 @@ def checked(found: dict[str, Entry], report: Report, *, own: bool) -> Keys:
         Numbers, booleans and words by key.
     """
     keys = Keys()
-    for key, entry in found.items():
+    for key, entry in entries.items():
         if key in _NUMBERS:
-            value = _number(entry, _NUMBERS[key], report, own=own)
+            value = _number(entry, _NUMBERS[key], report, extension=extension)
             if value is not None:
                 keys[key] = value
         elif key in _BOOLEANS:
             if entry.value not in ("true", "false"):
-                report.error(entry.place, f"'{key}' is '{entry.value}'; expected true or false")
+                report.error(entry.location, f"'{key}' is '{entry.value}'; expected true or false")
             keys[key] = entry.value == "true"
         else:
             if key in _WORDS and entry.value not in _WORDS[key]:
                 hint = did_you_mean(entry.value, _WORDS[key])
-                report.error(entry.place, f"'{key}' is '{entry.value}', which is not known. {hint}".rstrip())
+                report.error(
+                    entry.location, f"'{key}' is '{entry.value}', which is not known. {hint}".rstrip()
+                )
             keys[key] = entry.value
     if "FinalInertiaWeight" in keys and keys["FinalInertiaWeight"] > keys.get("InitialInertiaWeight", 0.0):
         report.error(
-            found["FinalInertiaWeight"].place, "'FinalInertiaWeight' is above 'InitialInertiaWeight'"
+            entries["FinalInertiaWeight"].location, "'FinalInertiaWeight' is above 'InitialInertiaWeight'"
         )
     return keys
 
 
-def _number(entry: Entry, rule: Number, report: Report, *, own: bool) -> float | int | None:
+def _number(entry: Entry, rule: Number, report: Report, *, extension: bool) -> float | int | None:
     """A number within its limits."""
     value = parse_double(entry.value)
     if value is None or not math.isfinite(value):
-        report.error(entry.place, f"'{entry.key}' is '{entry.value}'; expected a number")
+        report.error(entry.location, f"'{entry.key}' is '{entry.value}'; expected a number")
         return None
-    if entry.has_exponent and not own:
+    if entry.has_exponent and not extension:
         report.beyond(
-            entry.place,
+            entry.location,
             f"'{entry.raw}' is read as a number with a unit in this section",
             f'write {entry.value} or "{entry.raw}"',
         )
-    if rule.whole:
+    if rule.integer:
         if value != int(value):
-            report.notes.append(f"{entry.place}: '{entry.key} = {entry.value}' is cut to {int(value)}")
+            report.notes.append(f"{entry.location}: '{entry.key} = {entry.value}' is cut to {int(value)}")
         value = int(value)
     problem = rule.problem(value)
     if problem:
-        report.error(entry.place, f"'{entry.key}' is {entry.value}; {problem}")
+        report.error(entry.location, f"'{entry.key}' is {entry.value}; {problem}")
         return None
     return value
 
 
-def check_groups(found: dict[str, Entry], report: Report) -> None:
+def check_groups(entries: dict[str, Entry], report: Report) -> None:
     """Check optional keys that need each other or exclude each other.
 
     Parameters
     ----------
-    found : dict of str to Entry
+    entries : dict of str to Entry
         Entries by key.
     report : Report
         Takes errors.
     """
-    seed = "MultiStartSeed" if "NumberOfParticle" in found else "Seed"
-    for first, others in (("MultiStart", [seed, "NumberOfInitialPoint"]), ("Zeta", ["Phi"])):
-        if first in found:
-            for key in others:
-                if key not in found:
-                    report.error(found[first].place, f"'{first}' also needs '{key}'")
+    seed = "MultiStartSeed" if "NumberOfParticle" in entries else "Seed"
+    for first, partners in (("MultiStart", [seed, "NumberOfInitialPoint"]), ("Zeta", ["Phi"])):
+        if first in entries:
+            for key in partners:
+                if key not in entries:
+                    report.error(entries[first].location, f"'{first}' also needs '{key}'")
     for key, first in (("NumberOfInitialPoint", "MultiStart"), ("Phi", "Zeta"), ("Alpha", "Zeta")):
-        if key in found and first not in found and "K0" not in found:
-            report.error(found[key].place, f"'{key}' needs '{first}' in front")
-    if "AbsDiffFunction" in found and "IntervalReduction" in found:
+        if key in entries and first not in entries and "K0" not in entries:
+            report.error(entries[key].location, f"'{key}' needs '{first}' in front")
+    if "AbsDiffFunction" in entries and "IntervalReduction" in entries:
         report.error(
-            found["IntervalReduction"].place, "give 'AbsDiffFunction' or 'IntervalReduction', not both"
+            entries["IntervalReduction"].location, "give 'AbsDiffFunction' or 'IntervalReduction', not both"
         )

@@ -14,7 +14,7 @@ from mascarin.genopt.numbers import normalised
 _WORD = re.compile(r"[\w.:/\\*%+\-\x80-\U0010ffff]+")
 _NUMBER_WITH_EXPONENT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)[eE][+-]?\d+\Z")
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", '"': '"', "'": "'", "\\": "\\"}
-_MOST_ERRORS = 30
+_MAX_ERRORS = 30
 
 
 @dataclass
@@ -33,17 +33,17 @@ class Report:
     errors: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
-    def error(self, place: str, text: str) -> None:
+    def error(self, location: str, text: str) -> None:
         """Add an error."""
-        if len(self.errors) < _MOST_ERRORS:
-            self.errors.append(f"{place}: {text}")
+        if len(self.errors) < _MAX_ERRORS:
+            self.errors.append(f"{location}: {text}")
 
-    def beyond(self, place: str, text: str, remedy: str) -> None:
+    def beyond(self, location: str, text: str, remedy: str) -> None:
         """Add something that GenOpt cannot run: a note when lenient, else an error."""
         if self.lenient:
-            self.notes.append(f"{place}: accepted beyond GenOpt: {text}")
+            self.notes.append(f"{location}: accepted beyond GenOpt: {text}")
         else:
-            self.error(place, f"{text}; {remedy} (or accept it with --lenient)")
+            self.error(location, f"{text}; {remedy} (or accept it with --lenient)")
 
     def raise_if_any(self) -> None:
         """Raise an error with all errors found.
@@ -69,7 +69,7 @@ class Entry:
         The text of the value, without quotes.
     quoted : bool
         Whether the value was in quotes.
-    place : str
+    location : str
         File and line.
     raw : str
         The value as written in the file.
@@ -78,7 +78,7 @@ class Entry:
     key: str
     value: str
     quoted: bool
-    place: str
+    location: str
     raw: str = ""
 
     @property
@@ -95,7 +95,7 @@ class Block:
     ----------
     name : str
         The name.
-    place : str
+    location : str
         File and line of the name.
     end : str
         File and line of the closing brace.
@@ -108,7 +108,7 @@ class Block:
     """
 
     name: str
-    place: str
+    location: str
     end: str = ""
     entries: list[Entry] = field(default_factory=list)
     blocks: list[Block] = field(default_factory=list)
@@ -174,38 +174,38 @@ class _Reader:
         self._tokens: list[_Token] = list(self._tokenise())
         self._at = 0
 
-    def _place(self, line: int) -> str:
+    def _location(self, line: int) -> str:
         return f"{self._path}:{line}"
 
     def _fail(self, line: int, text: str) -> _Bad:
-        self._report.error(self._place(line), text)
+        self._report.error(self._location(line), text)
         return _Bad()
 
     # ------------------------------------------------------------------ tokens
 
     def _tokenise(self) -> Iterator[_Token]:
         """Words, strings and marks; comments are skipped."""
-        text, at, line = self._text, 0, 1
-        while at < len(text):
-            c = text[at]
+        text, position, line = self._text, 0, 1
+        while position < len(text):
+            c = text[position]
             if c.isspace():
                 line += c == "\n"
-                at += 1
-            elif text.startswith("//", at):
-                at = end if (end := text.find("\n", at)) >= 0 else len(text)
-            elif text.startswith("/*", at):
-                end = self._comment(at, line)
-                line += text.count("\n", at, end)
-                at = end
+                position += 1
+            elif text.startswith("//", position):
+                position = end if (end := text.find("\n", position)) >= 0 else len(text)
+            elif text.startswith("/*", position):
+                end = self._comment(position, line)
+                line += text.count("\n", position, end)
+                position = end
             elif c == '"':
-                value, at = self._string(at, line)
+                value, position = self._string(position, line)
                 yield _Token(value, "string", line)
             elif c in "{}=;":
                 yield _Token(c, "mark", line)
-                at += 1
-            elif found := _WORD.match(text, at):
-                yield _Token(found[0], "word", line)
-                at = found.end()
+                position += 1
+            elif match := _WORD.match(text, position):
+                yield _Token(match[0], "word", line)
+                position = match.end()
             else:
                 raise self._fail(line, f"unexpected character '{c}'; write the value in double quotes")
         yield _Token("", "end", line)
@@ -219,14 +219,14 @@ class _Reader:
         last = line + text.count("\n", start, end)
         if end > start + 2 and not text[end - 1].isspace():
             self._report.beyond(
-                self._place(last),
+                self._location(last),
                 "no blank before '*/', with which GenOpt does not end",
                 "put a blank before it",
             )
         if "'" in text[start:end]:
             quote = line + text.count("\n", start, text.index("'", start))
             self._report.beyond(
-                self._place(quote),
+                self._location(quote),
                 "apostrophe in a '/* */' comment, with which GenOpt may not end",
                 "remove it, or use '//'",
             )
@@ -234,23 +234,23 @@ class _Reader:
 
     def _string(self, start: int, line: int) -> tuple[str, int]:
         """Text of a quoted string and the position after it."""
-        text, at, out = self._text, start + 1, []
-        while at < len(text) and text[at] not in '"\n':
-            if text[at] != "\\":
-                out.append(text[at])
-                at += 1
+        text, position, out = self._text, start + 1, []
+        while position < len(text) and text[position] not in '"\n':
+            if text[position] != "\\":
+                out.append(text[position])
+                position += 1
                 continue
-            octal = re.compile(r"\\([0-3]?[0-7]{1,2})").match(text, at)
+            octal = re.compile(r"\\([0-3]?[0-7]{1,2})").match(text, position)
             if octal:
                 out.append(chr(int(octal[1], 8)))
-                at = octal.end()
+                position = octal.end()
             else:
-                c = text[at + 1 : at + 2]
+                c = text[position + 1 : position + 2]
                 out.append(_ESCAPES.get(c, c))
-                at += 2
-        if at >= len(text) or text[at] != '"':
+                position += 2
+        if position >= len(text) or text[position] != '"':
             raise self._fail(line, "string without end on its line; close it with a double quote")
-        return "".join(out), at + 1
+        return "".join(out), position + 1
 
     # ------------------------------------------------------------------ structure
 
@@ -261,13 +261,13 @@ class _Reader:
 
     def file(self) -> Block:
         """The whole file."""
-        root = Block("", self._place(1))
+        root = Block("", self._location(1))
         while self._tokens[self._at].kind != "end":
             token = self._next()
             if token.text == "}" and token.kind == "mark":
                 raise self._fail(token.line, "closing brace without an opening one; remove it")
             self._item(root, token)
-        root.end = self._place(self._tokens[-1].line)
+        root.end = self._location(self._tokens[-1].line)
         return root
 
     def _item(self, parent: Block, name: _Token) -> None:
@@ -284,12 +284,12 @@ class _Reader:
             parent.blocks.append(block)
             parent.order.append(block)
         else:
-            found = after.text or "the end of the file"
-            raise self._fail(after.line, f"expected '=' or '{{' after '{name.text}', found '{found}'")
+            actual = after.text or "the end of the file"
+            raise self._fail(after.line, f"expected '=' or '{{' after '{name.text}', found '{actual}'")
 
     def _block(self, name: _Token) -> Block:
         """The inside of a block, up to its closing brace."""
-        block = Block(name.text, self._place(name.line))
+        block = Block(name.text, self._location(name.line))
         while True:
             token = self._next()
             if token.kind == "end":
@@ -297,7 +297,7 @@ class _Reader:
                     token.line, f"'{name.text}' opened in line {name.line} is not closed; add '}}'"
                 )
             if token.text == "}" and token.kind == "mark":
-                block.end = self._place(token.line)
+                block.end = self._location(token.line)
                 return block
             self._item(block, token)
 
@@ -305,18 +305,18 @@ class _Reader:
         """A value and its semicolon."""
         value = self._next()
         if value.kind in ("mark", "end"):
-            found = value.text or "the end of the file"
-            raise self._fail(value.line, f"'{key.text}' has no value, found '{found}'; write it in quotes")
+            actual = value.text or "the end of the file"
+            raise self._fail(value.line, f"'{key.text}' has no value, found '{actual}'; write it in quotes")
         end = self._next()
         if end.text != ";" or end.kind != "mark":
-            found = end.text or "the end of the file"
+            actual = end.text or "the end of the file"
             raise self._fail(
                 end.line,
-                f"expected ';' after the value of '{key.text}', found '{found}'; "
+                f"expected ';' after the value of '{key.text}', found '{actual}'; "
                 "a value with blanks needs double quotes",
             )
         text = value.text if value.kind == "string" else normalised(value.text)
-        return Entry(key.text, text, value.kind == "string", self._place(key.line), value.text)
+        return Entry(key.text, text, value.kind == "string", self._location(key.line), value.text)
 
 
 def ordered(
@@ -342,32 +342,32 @@ def ordered(
     dict of str to Entry
         The first entry of each known key.
     """
-    found: dict[str, Entry] = {}
+    entries: dict[str, Entry] = {}
     highest = -1
     for entry in block.entries:
         if entry.key not in keys:
             report.error(
-                entry.place,
+                entry.location,
                 f"unknown or unexpected keyword '{entry.key}' in '{block.name}'. "
                 f"{did_you_mean(entry.key, keys)}".rstrip(),
             )
             continue
-        if entry.key in found and not repeated:
-            report.error(entry.place, f"'{entry.key}' is written a second time; remove one")
+        if entry.key in entries and not repeated:
+            report.error(entry.location, f"'{entry.key}' is written a second time; remove one")
             continue
         position = keys.index(entry.key)
         if position < highest:
             report.beyond(
-                entry.place,
+                entry.location,
                 f"'{entry.key}' comes after '{keys[highest]}'",
                 f"GenOpt needs the order {', '.join(keys)}",
             )
         highest = max(highest, position)
-        found.setdefault(entry.key, entry)
+        entries.setdefault(entry.key, entry)
     for key in keys:
-        if key not in found and key not in optional:
-            report.error(block.end or block.place, f"missing specification of '{key}' in '{block.name}'")
-    return found
+        if key not in entries and key not in optional:
+            report.error(block.end or block.location, f"missing specification of '{key}' in '{block.name}'")
+    return entries
 
 
 def expect_blocks(
@@ -391,28 +391,28 @@ def expect_blocks(
     dict of str to Block
         The blocks.
     """
-    found: dict[str, Block] = {}
+    blocks: dict[str, Block] = {}
     highest = -1
     for inner in block.blocks:
         if inner.name not in names:
             report.error(
-                inner.place,
+                inner.location,
                 f"unknown or unexpected section '{inner.name}'. {did_you_mean(inner.name, names)}".rstrip(),
             )
             continue
-        if inner.name in found:
-            report.error(inner.place, f"section '{inner.name}' is written a second time; remove one")
+        if inner.name in blocks:
+            report.error(inner.location, f"section '{inner.name}' is written a second time; remove one")
             continue
         position = names.index(inner.name)
         if position < highest:
             report.beyond(
-                inner.place,
+                inner.location,
                 f"section '{inner.name}' comes after '{names[highest]}'",
                 f"GenOpt needs the order {', '.join(names)}",
             )
         highest = max(highest, position)
-        found[inner.name] = inner
+        blocks[inner.name] = inner
     for name in names:
-        if name not in found and name not in optional:
-            report.error(block.end or block.place, f"missing section '{name}'")
-    return found
+        if name not in blocks and name not in optional:
+            report.error(block.end or block.location, f"missing section '{name}'")
+    return blocks

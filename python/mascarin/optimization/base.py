@@ -18,7 +18,7 @@ CONVERGED = "required accuracy is reached"
 EXHAUSTED = "maximum number of evaluations is reached"
 """Reason of a search that was ended by its limit."""
 
-Known = Callable[[Point], float | None]
+CostOf = Callable[[Point], float | None]
 """Cost of a point if it has been evaluated already, else None."""
 
 
@@ -148,7 +148,7 @@ class Optimizer(ABC):
     def _search(self) -> Steps:
         """The algorithm itself, as a generator of batches."""
 
-    def guesses(self, limit: int, known: Known) -> list[Point]:
+    def guesses(self, limit: int, cost_of: CostOf) -> list[Point]:
         """Points that the search will probably need next, for processors without other work.
 
         Evaluating them does not change the result of the search, only the time that it takes.
@@ -157,7 +157,7 @@ class Optimizer(ABC):
         ----------
         limit : int
             Largest number of points wanted [-].
-        known : callable
+        cost_of : callable
             Cost of a point that has been evaluated, None for another.
 
         Returns
@@ -229,10 +229,10 @@ class Optimizer(ABC):
             return list(self._asked)
         self._asked = [p for p in dict.fromkeys(self._pending) if p not in self._memory]
         if ahead > 0:
-            wanted = set(self._asked)
-            for p in self.guesses(ahead, self._known):
-                if p not in wanted:
-                    wanted.add(p)
+            points = set(self._asked)
+            for p in self.guesses(ahead, self._known_cost):
+                if p not in points:
+                    points.add(p)
                     self._asked.append(p)
         return list(self._asked)
 
@@ -272,10 +272,10 @@ class Optimizer(ABC):
         self._start()
         self._drain()
 
-    def _known(self, point: Point) -> float | None:
+    def _known_cost(self, point: Point) -> float | None:
         """Cost of a point that was evaluated before."""
-        found = self._memory.get(point)
-        return None if found is None else found.cost
+        evaluation = self._memory.get(point)
+        return None if evaluation is None else evaluation.cost
 
     def _start(self) -> None:
         """Run the algorithm up to its first batch."""

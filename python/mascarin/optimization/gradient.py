@@ -114,27 +114,27 @@ class ArmijoGradient(Optimizer):
         """Directions, line searches and refinements, one after the other."""
         rules, m = self._rules, 0
         y = [0.0] * len(self._origin)
-        (here,) = yield [self._point(y)]
-        self._scale = here.cost if here.cost != 0.0 else 1.0
-        self._both(here, "Initial point.")
+        (current,) = yield [self._point(y)]
+        self._scale = current.cost if current.cost != 0.0 else 1.0
+        self._both(current, "Initial point.")
         while not self._spent():
             if rules.beta**m < rules.epsilon_m:
                 self.observer.minimum("Minimum point.")
                 return CONVERGED
             epsilon = rules.beta ** (rules.k0 + m)
-            h = yield from self._direction(y, here, epsilon)
+            h = yield from self._direction(y, current, epsilon)
             (probe,) = yield from self._reported([_along(y, h, epsilon)], ["Decrease computation."])
-            slope = self._change(probe, here) / epsilon
+            slope = self._change(probe, current) / epsilon
             if slope >= 0.0:
                 m += 1
                 continue
-            length, new = yield from self._line_search(y, h, here, slope)
-            if self._spent() or -self._change(new, here) < rules.gamma * epsilon:
+            length, new = yield from self._line_search(y, h, current, slope)
+            if self._spent() or -self._change(new, current) < rules.gamma * epsilon:
                 m += 1
                 continue
-            y, here = _along(y, h, length), new
+            y, current = _along(y, h, length), new
             distance = length * math.hypot(*h)
-            self._both(here, f"Successfull iterate. ||dX|| = {self._text(distance)}")
+            self._both(current, f"Successfull iterate. ||dX|| = {self._text(distance)}")
             if distance < rules.epsilon_x:
                 self.observer.minimum("Minimum point.")
                 return CONVERGED
@@ -142,15 +142,15 @@ class ArmijoGradient(Optimizer):
         return EXHAUSTED
 
     def _direction(
-        self, y: list[float], here: Evaluation, epsilon: float
+        self, y: list[float], current: Evaluation, epsilon: float
     ) -> Generator[list[Point], list[Evaluation], list[float]]:
         """Negative gradient by forward differences."""
         ahead = [[v + epsilon * (i == j) for j, v in enumerate(y)] for i in range(len(y))]
-        found = yield from self._reported(ahead, ["Search direction computation."] * len(y))
-        return [-self._change(e, here) / epsilon for e in found]
+        evaluations = yield from self._reported(ahead, ["Search direction computation."] * len(y))
+        return [-self._change(e, current) / epsilon for e in evaluations]
 
     def _line_search(
-        self, y: list[float], h: list[float], here: Evaluation, slope: float
+        self, y: list[float], h: list[float], current: Evaluation, slope: float
     ) -> Generator[list[Point], list[Evaluation], tuple[float, Evaluation]]:
         """The longest step with the required decrease, or the next longer one if its cost is lower."""
         rules, k, loops, start, restarted = self._rules, self._k, 0, self._k, False
@@ -162,7 +162,7 @@ class ArmijoGradient(Optimizer):
             return f"Line search. lambda = {self._text(length(exponent))}."
 
         def decreases(e: Evaluation, exponent: int) -> bool:
-            return self._change(e, here) <= length(exponent) * rules.alpha * slope
+            return self._change(e, current) <= length(exponent) * rules.alpha * slope
 
         short, long = yield from self._pair(y, h, k, label)
         while not self._spent():
@@ -191,12 +191,12 @@ class ArmijoGradient(Optimizer):
         ends = [_along(y, h, self._rules.beta**j) for j in (k, k - 1)]
         return (yield from self._reported(ends, [label(k), label(k - 1)]))
 
-    def _reported(self, places: list[list[float]], comments: list[str]) -> _Batch:
+    def _reported(self, coordinates: list[list[float]], comments: list[str]) -> _Batch:
         """Evaluate points together and report each."""
-        found = yield [self._point(y) for y in places]
-        for e, comment in zip(found, comments, strict=True):
+        evaluations = yield [self._point(y) for y in coordinates]
+        for e, comment in zip(evaluations, comments, strict=True):
             self.observer.sub(e, comment)
-        return found
+        return evaluations
 
     def _point(self, y: list[float]) -> Point:
         """Parameter values for normalized coordinates around the initial point."""

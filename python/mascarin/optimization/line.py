@@ -49,39 +49,39 @@ class IntervalSearch(Optimizer):
         return self._points
 
     @abstractmethod
-    def _kept(self, done: int) -> float:
+    def _reduction(self, done: int) -> float:
         """Part of the interval that is kept after `done` evaluations. [-]"""
 
     def _search(self) -> Steps:
         """Compare two inner points and remove the end beside the higher cost."""
         c = self.space.continuous[0]
         low, high = c.lower, c.upper
-        width = self._kept(2) * (high - low)
-        left, right = yield from self._evaluate([high - width, low + width])
+        width = self._reduction(2) * (high - low)
+        low_point, high_point = yield from self._evaluate([high - width, low + width])
         done = 2
         while done < self._points:
-            close = self._difference is not None and abs(left.cost - right.cost) < self._difference
-            width = self._kept(done + 1) * width
-            if right.cost < left.cost:
-                low, left = left.point.x[0], right
-                (right,) = yield from self._evaluate([low + width])
+            close = self._difference is not None and abs(low_point.cost - high_point.cost) < self._difference
+            width = self._reduction(done + 1) * width
+            if high_point.cost < low_point.cost:
+                low, low_point = low_point.point.x[0], high_point
+                (high_point,) = yield from self._evaluate([low + width])
             else:
-                high, right = right.point.x[0], left
-                (left,) = yield from self._evaluate([high - width])
+                high, high_point = high_point.point.x[0], low_point
+                (low_point,) = yield from self._evaluate([high - width])
             done += 1
             if close:
                 break
-        if right.cost < left.cost:
-            low = left.point.x[0]
+        if high_point.cost < low_point.cost:
+            low = low_point.point.x[0]
         else:
-            high = right.point.x[0]
+            high = high_point.point.x[0]
         self._overview(low, high, c.upper - c.lower)
         return "the interval is reduced"
 
     def _evaluate(self, values: list[float]) -> _Batch:
         """Evaluate and report points of the line."""
-        found = yield [Point((v,), (), self.step_number) for v in values]
-        for e in found:
+        evaluations = yield [Point((v,), (), self.step_number) for v in values]
+        for e in evaluations:
             self.observer.sub(e, _COMMENT)
             self._recent = [*self._recent[-2:], e.cost]
             if len(self._recent) == 3 and len(set(self._recent)) == 1:
@@ -90,16 +90,16 @@ class IntervalSearch(Optimizer):
                     f"'{self.space.continuous[0].name}' has no effect there, so choose other bounds"
                 )
                 raise SolverError(msg)
-        return found
+        return evaluations
 
-    def _overview(self, low: float, high: float, whole: float) -> None:
+    def _overview(self, low: float, high: float, full_length: float) -> None:
         """Report the remaining interval."""
         rows = [
             ("Lower border of uncertainty interval        ", low),
             ("Upper border of uncertainty interval        ", high),
             ("Mid point of uncertainty interval           ", (low + high) / 2.0),
             ("Length of uncertainty interval              ", high - low),
-            ("Normalized reduction of uncertainty interval", (high - low) / whole),
+            ("Normalized reduction of uncertainty interval", (high - low) / full_length),
         ]
         self.observer.summary(
             ["Result overview", "***************", *(f"{k}: {self._text(v)}" for k, v in rows)]
@@ -135,7 +135,7 @@ class GoldenSection(IntervalSearch):
     True
     """
 
-    def _kept(self, done: int) -> float:
+    def _reduction(self, done: int) -> float:
         """The golden ratio."""
         return _GOLDEN
 
@@ -169,7 +169,7 @@ class FibonacciSearch(IntervalSearch):
     True
     """
 
-    def _kept(self, done: int) -> float:
+    def _reduction(self, done: int) -> float:
         """Ratio of two successive Fibonacci numbers, down to 2/3 at the last point.
 
         The next ratio, 1/2, would evaluate the same point a second time.

@@ -25,8 +25,8 @@ def decimal_rounding(space: Space) -> Callable[[float, int], float]:
     callable
         Rounded value for a value and the index of its parameter.
     """
-    places = [9 - math.floor(math.log10(abs(c.step))) if c.step != 0 else 15 for c in space.continuous]
-    return lambda value, i: round(value, places[i])
+    decimals = [9 - math.floor(math.log10(abs(c.step))) if c.step != 0 else 15 for c in space.continuous]
+    return lambda value, i: round(value, decimals[i])
 
 
 @dataclass(frozen=True)

@@ -89,29 +89,29 @@ class MeshSearch(Optimizer):
 
     def _search(self) -> Steps:
         """All starts, one after the other."""
-        several = len(self._starts) > 1
+        multi_start = len(self._starts) > 1
         converged = False
         lowest = math.inf
         for k, start in enumerate(self._starts):
             self._current = k
             self._before = self._count
             self.step_number = 1
-            if several:
+            if multi_start:
                 self.observer.note(f"Start search for point number {k + 1}.")
-            reason, end = yield from self._descend(start, several=several)
+            reason, end = yield from self._descend(start, multi_start=multi_start)
             converged = converged or reason == CONVERGED
-            if several:
+            if multi_start:
                 self.observer.note(f"Minimum cost obtained for this point {self._text(end.cost)}.")
                 if k > 0:
                     verb = "further decreased" if end.cost < lowest else "did not further decrease"
                     self.observer.note(f"Search {verb} the cost.")
             lowest = min(lowest, end.cost)
-        if several and self._report_minimum:
+        if multi_start and self._report_minimum:
             self.observer.minimum("Minimum point.")
         return CONVERGED if converged else EXHAUSTED
 
     def _descend(
-        self, start: Point, *, several: bool
+        self, start: Point, *, multi_start: bool
     ) -> Generator[list[Point], list[Evaluation], tuple[str, Evaluation]]:
         """One search from one start."""
         exponent, done = self._exponent, 0
@@ -121,22 +121,22 @@ class MeshSearch(Optimizer):
         self._both(best, "Initial point.")
         iteration = 0
         while True:
-            far = yield from self._global_search(best, previous, iteration)
-            near: list[Evaluation] = []
-            if not far or not self._better(_lowest(far), best):
-                near = yield from self._local_search(best)
-            candidates = near + far
-            found = _lowest(candidates) if candidates else best
+            global_trials = yield from self._global_search(best, previous, iteration)
+            local_trials: list[Evaluation] = []
+            if not global_trials or not self._better(_lowest(global_trials), best):
+                local_trials = yield from self._local_search(best)
+            candidates = local_trials + global_trials
+            candidate = _lowest(candidates) if candidates else best
             iteration += 1
             self._reduced = done
             previous = best
-            if candidates and self._better(found, best):
-                where = "Local" if _index(candidates, found) < len(near) else "Global"
-                best = found
+            if candidates and self._better(candidate, best):
+                where = "Local" if _index(candidates, candidate) < len(local_trials) else "Global"
+                best = candidate
                 self._both(best, f"{where} search reduced cost{self._sufficiently_dot}")
             elif done == self._reductions:
                 self._both(best, f"{self._failed} Maximum number of step reductions reached.")
-                if several:
+                if multi_start:
                     self._both(best, "Best iterate of current search.")
                 elif self._report_minimum:
                     self.observer.minimum("Minimum point.")
@@ -231,11 +231,11 @@ class MeshSearch(Optimizer):
         """
         trials: list[Evaluation] = []
         for j, d in enumerate(self.space.discrete):
-            here = low.point.choices
+            base_choices = low.point.choices
             for k in range(d.size):
-                if k == here[j] or self._exhausted:
+                if k == base_choices[j] or self._exhausted:
                     continue
-                choices = (*here[:j], k, *here[j + 1 :])
+                choices = (*base_choices[:j], k, *base_choices[j + 1 :])
                 trial = yield from self._evaluate(low.point.x, choices, tuple)
                 trials.append(trial)
                 better = self._better(trial, low)
@@ -251,15 +251,15 @@ class MeshSearch(Optimizer):
         name = self.space.continuous[i].name
         x = self._moved(base.point.x, i, self._signs[i])
         trial = yield from self._evaluate(x, base.point.choices, self._plan_poll(base.point.x, x, i))
-        at = f"at {name}{'-' if self._signs[i] else '+'}d{name}."
+        direction = f"at {name}{'-' if self._signs[i] else '+'}d{name}."
         amount = "sufficiently " if self._sufficient else ""
         feasible = trial.cost != OUTSIDE
         if self._better(trial, base):
             if feasible:
-                self.observer.sub(trial, f"Cost {amount}reduced     {at}")
+                self.observer.sub(trial, f"Cost {amount}reduced     {direction}")
             return trial
         if feasible:
-            self.observer.sub(trial, f"Cost not {amount}reduced {at}")
+            self.observer.sub(trial, f"Cost not {amount}reduced {direction}")
         self._signs[i] = 1 - self._signs[i]
         return base
 
@@ -294,10 +294,10 @@ class MeshSearch(Optimizer):
     def remaining(self) -> int | None:
         """Estimate: a round of neighbors for each mesh size left; later starts as earlier ones."""
         around = 2 * len(self._signs) + sum(d.size - 1 for d in self.space.discrete if self._discrete_moves)
-        here = (self._reductions - self._reduced + 1) * around
-        used = self._before / self._current if self._current else self._count + here
+        current = (self._reductions - self._reduced + 1) * around
+        used = self._before / self._current if self._current else self._count + current
         later = (len(self._starts) - self._current - 1) * used
-        total = round(here + later)
+        total = round(current + later)
         return total if self._limit is None else min(total, max(self._limit - self._count, 0))
 
     @property
@@ -368,6 +368,6 @@ def _lowest(evaluations: Sequence[Evaluation]) -> Evaluation:
     return min(evaluations, key=lambda e: e.cost)
 
 
-def _index(evaluations: Sequence[Evaluation], wanted: Evaluation) -> int:
+def _index(evaluations: Sequence[Evaluation], evaluation: Evaluation) -> int:
     """Position of the very object, not of an equal one."""
-    return next(i for i, e in enumerate(evaluations) if e is wanted)
+    return next(i for i, e in enumerate(evaluations) if e is evaluation)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from itertools import chain, islice
 
-from mascarin.optimization.base import Known
+from mascarin.optimization.base import CostOf
 from mascarin.optimization.mesh_search import OUTSIDE, MeshSearch, Trials
 from mascarin.optimization.space import Evaluation, Point
 
@@ -58,14 +58,14 @@ class PatternSearch(MeshSearch):
     True
     """
 
-    def guesses(self, limit: int, known: Known) -> list[Point]:
+    def guesses(self, limit: int, cost_of: CostOf) -> list[Point]:
         """Neighbors that this search would try next, and the next points of later starts.
 
         Parameters
         ----------
         limit : int
             Largest number of points wanted. [-]
-        known : callable
+        cost_of : callable
             Cost of a point that has been evaluated, None for another.
 
         Returns
@@ -74,18 +74,20 @@ class PatternSearch(MeshSearch):
             At most `limit` points that are neither known nor pending.
         """
         skip = set(self._pending)
-        shadows = self._follow(known)
+        shadows = self._follow(cost_of)
         ahead = chain(
             chain.from_iterable(s._pending for s in shadows),
             self._plan(),
             chain.from_iterable(s._plan() for s in shadows),
         )
         fresh = (
-            p for p in dict.fromkeys(ahead) if p not in skip and self.space.feasible(p.x) and known(p) is None
+            p
+            for p in dict.fromkeys(ahead)
+            if p not in skip and self.space.feasible(p.x) and cost_of(p) is None
         )
         return list(islice(fresh, limit))
 
-    def _follow(self, known: Known) -> list[MeshSearch]:
+    def _follow(self, cost_of: CostOf) -> list[MeshSearch]:
         """Advance a copy of every later start as far as known costs allow.
 
         The copies assume that the earlier starts do not change the preferred directions. Where that is
@@ -98,11 +100,11 @@ class PatternSearch(MeshSearch):
             del self._shadows[k]
         for shadow in self._shadows.values():
             while points := shadow.ask():
-                costs = [known(p) for p in points]
-                found = [Evaluation(p, c) for p, c in zip(points, costs, strict=True) if c is not None]
-                if len(found) < len(points):
+                costs = [cost_of(p) for p in points]
+                evaluations = [Evaluation(p, c) for p, c in zip(points, costs, strict=True) if c is not None]
+                if len(evaluations) < len(points):
                     break
-                shadow.tell(found)
+                shadow.tell(evaluations)
         return list(self._shadows.values())
 
     def _shadow(self, start: Point) -> PatternSearch:

@@ -43,7 +43,7 @@ class _Vertex:
         return self.e.cost
 
 
-_One = Generator[list[Point], list[Evaluation], _Vertex]
+_VertexSteps = Generator[list[Point], list[Evaluation], _Vertex]
 
 
 class NelderMead(Optimizer):
@@ -186,9 +186,9 @@ class NelderMead(Optimizer):
         self._report_sub(low, _BASE)
         for i, step in enumerate(self._free_steps(low)):
             for sign in (1.0, -1.0):
-                near = yield from self._probe(low, i, sign * self._factor * step)
-                if near.f < low.f:
-                    return near
+                neighbor = yield from self._probe(low, i, sign * self._factor * step)
+                if neighbor.f < low.f:
+                    return neighbor
         return None
 
     def _free_steps(self, corner: _Vertex) -> list[float]:
@@ -196,14 +196,14 @@ class NelderMead(Optimizer):
         pairs = zip(self.space.continuous, corner.e.point.x, strict=True)
         return [free_step(c, x) for c, x in pairs]
 
-    def _probe(self, low: _Vertex, i: int, step: float) -> _One:
+    def _probe(self, low: _Vertex, i: int, step: float) -> _VertexSteps:
         """A neighbor whose cost differs; the distance grows while it does not."""
         for k in range(6):
             t = (*low.t[:i], low.t[i] + step * math.exp(k), *low.t[i + 1 :])
-            near = yield from self._vertex(t)
-            self._report_sub(near, _STRETCH if k else _CHECK)
-            if near.f != low.f:
-                return near
+            neighbor = yield from self._vertex(t)
+            self._report_sub(neighbor, _STRETCH if k else _CHECK)
+            if neighbor.f != low.f:
+                return neighbor
         msg = (
             f"the cost {low.f!r} does not change with parameter '{self.space.continuous[i].name}' "
             "(nullspace); remove it, or take larger steps"
@@ -234,12 +234,12 @@ class NelderMead(Optimizer):
         a, b, c = centers
         return sum((y - x) * (z - y) for x, y, z in zip(a, b, c, strict=True)) <= 0.0
 
-    def _vertex(self, t: _Free) -> _One:
+    def _vertex(self, t: _Free) -> _VertexSteps:
         """Evaluate a point of free variables."""
         (e,) = yield [Point(original(self.space, t), (), self.step_number)]
         return _Vertex(t, e)
 
-    def _trial(self, t: _Free, comment: str) -> _One:
+    def _trial(self, t: _Free, comment: str) -> _VertexSteps:
         """Evaluate and report a point."""
         v = yield from self._vertex(t)
         self._report_sub(v, comment)

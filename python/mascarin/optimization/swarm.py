@@ -76,9 +76,9 @@ class SwarmRules:
 
     def __post_init__(self) -> None:
         """Refuse impossible settings."""
-        known = ("gbest", "lbest", "vonNeumann")
-        if self.topology not in known:
-            msg = f"topology '{self.topology}' is not known: expected one of {', '.join(known)}"
+        topologies = ("gbest", "lbest", "vonNeumann")
+        if self.topology not in topologies:
+            msg = f"topology '{self.topology}' is not known: expected one of {', '.join(topologies)}"
             raise InputError(msg)
         if self.particles < 2 or self.generations < 1 or self.neighbors < 1:
             msg = (
@@ -115,8 +115,8 @@ class SwarmRules:
             return [j % n for j in range(i - self.neighbors, i + self.neighbors + 1)]
         side = math.isqrt(n)
         row, column = divmod(i, side)
-        near = [(row - 1, column), (row, column - 1), (row, column), (row, column + 1), (row + 1, column)]
-        return [(r % side) * side + c % side for r, c in near]
+        cells = [(row - 1, column), (row, column - 1), (row, column), (row, column + 1), (row + 1, column)]
+        return [(r % side) * side + c % side for r, c in cells]
 
     def weight(self, generation: int) -> float:
         """Inertia weight of a generation, decreasing linearly. [-]
@@ -205,20 +205,23 @@ class ParticleSwarm(Optimizer):
         points = self._populate()
         velocities = [[0.0] * len(self.space.continuous) for _ in points]
         bits = [[[0.0] * w for w in self._widths] for _ in points]
-        own: list[Evaluation] = []
+        personal_best: list[Evaluation] = []
         reported: list[Evaluation] = []
         for generation in range(1, rules.generations + 1):
             if self._penalty and generation > 1:
                 self.step_number += 1
-                own = yield [replace(e.point, step=self.step_number) for e in own]
+                personal_best = yield [replace(e.point, step=self.step_number) for e in personal_best]
             swarm = yield [self._on_mesh(p) for p in points]
             for e in swarm:
                 self.observer.sub(e, f"Generation {generation}.")
                 self.observer.main(e, f"Generation {generation}.")
-            own = [a if not own or a.cost < b.cost else b for a, b in zip(swarm, own or swarm, strict=True)]
+            personal_best = [
+                a if not personal_best or a.cost < b.cost else b
+                for a, b in zip(swarm, personal_best or swarm, strict=True)
+            ]
             reported += swarm
             if generation < rules.generations:
-                points = self._move_all(swarm, own, velocities, bits, generation)
+                points = self._move_all(swarm, personal_best, velocities, bits, generation)
         # The latest of equals, among those of the last step number.
         last = [e for e in reversed(reported) if e.point.step == reported[-1].point.step]
         return min(last, key=lambda e: e.cost)
@@ -235,7 +238,7 @@ class ParticleSwarm(Optimizer):
     def _move_all(
         self,
         swarm: Sequence[Evaluation],
-        own: Sequence[Evaluation],
+        personal_best: Sequence[Evaluation],
         velocities: list[list[float]],
         bits: list[list[list[float]]],
         generation: int,
@@ -246,8 +249,8 @@ class ParticleSwarm(Optimizer):
         to_best = self.rules.social * self._random.uniform()
         moved = []
         for i, e in enumerate(swarm):
-            best = min((own[j] for j in self.rules.neighborhood(i)), key=lambda b: b.cost).point
-            mine = own[i].point
+            best = min((personal_best[j] for j in self.rules.neighborhood(i)), key=lambda b: b.cost).point
+            mine = personal_best[i].point
             x = self._move_one(e.point.x, mine.x, best.x, velocities[i], (to_own, to_best), generation)
             choices = self._flip(e.point.choices, mine.choices, best.choices, bits[i], (to_own, to_best))
             moved.append(replace(e.point, x=x, choices=choices))
@@ -292,14 +295,18 @@ class ParticleSwarm(Optimizer):
         most, out = self.rules.discrete_speed, []
         for k, d in enumerate(self.space.discrete):
             width = self._widths[k]
-            here, own, there = (_gray(v, width) for v in (choices[k], mine[k], best[k]))
-            drawn = []
+            current_bits, personal_bits, best_bits = (_gray(v, width) for v in (choices[k], mine[k], best[k]))
+            bits = []
             for b in range(width):
-                v = velocity[k][b] + toward[0] * (own[b] - here[b]) + toward[1] * (there[b] - here[b])
+                v = (
+                    velocity[k][b]
+                    + toward[0] * (personal_bits[b] - current_bits[b])
+                    + toward[1] * (best_bits[b] - current_bits[b])
+                )
                 v = min(max(v, -most), most)
                 velocity[k][b] = v
-                drawn.append(1 if self._random.uniform() < 1.0 / (1.0 + math.exp(-v)) else 0)
-            out.append(min(_index(drawn), d.size - 1))
+                bits.append(1 if self._random.uniform() < 1.0 / (1.0 + math.exp(-v)) else 0)
+            out.append(min(_index(bits), d.size - 1))
         return tuple(out)
 
     def _on_mesh(self, p: Point) -> Point:

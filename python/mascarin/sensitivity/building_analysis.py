@@ -101,24 +101,24 @@ def factors_of(
         building, mapping_of("distributions", distributions, "names by path: {path: 'normal'}")
     )
     group_of = _members(building, mapping_of("groups", groups, "lists of paths by name: {name: [path]}"))
-    fixed = _every(building, names_of("leave_out", leave_out))
-    chosen = None if only is None else _every(building, only)
+    fixed = _expanded_paths(building, names_of("leave_out", leave_out))
+    chosen = None if only is None else _expanded_paths(building, only)
     tied = tied_set_points(building)
-    found: list[Factor] = []
+    factors: list[Factor] = []
     for parameter in building.parameters():
         path = parameter.path
-        if path in tied and path not in spans and tied[path] in [factor.path for factor in found]:
+        if path in tied and path not in spans and tied[path] in [factor.path for factor in factors]:
             continue  # it follows the equal set point, see VectorRuns.varied
         low, high = spans.get(path, (parameter.low, parameter.high))
-        wanted = path not in fixed and (chosen is None or path in chosen)
-        if parameter.reason is None and wanted and low < high:
+        included = path not in fixed and (chosen is None or path in chosen)
+        if parameter.reason is None and included and low < high:
             shape = shapes.get(path, "uniform")
-            found.append(Factor(path, low, high, parameter.unit, shape, group_of.get(path)))
-    if not found:
+            factors.append(Factor(path, low, high, parameter.unit, shape, group_of.get(path)))
+    if not factors:
         raise InputError(
             "found no parameter with a range, expected at least one; give ranges: {path: [low, high]}"
         )
-    return found
+    return factors
 
 
 @described
@@ -215,11 +215,11 @@ def sensitivity_analysis(
     if vary is not None and not isinstance(vary, Mapping):
         vary = names_of("vary", vary)
     building = in_climate(building, climate, measurements=measurements, varied=[*fixed, *(vary or ())])
-    given = {building.parameter(path).path: value for path, value in spread(building, fixed).items()}
-    only, ranges = _chosen(building, vary, given)
+    fixed_values = {building.parameter(path).path: value for path, value in spread(building, fixed).items()}
+    only, ranges = _chosen(building, vary, fixed_values)
     chosen = factors_of(
         building, ranges=ranges, distributions=distributions, groups=groups,
-        leave_out=[*names_of("leave_out", leave_out), *given], only=only,
+        leave_out=[*names_of("leave_out", leave_out), *fixed_values], only=only,
     )  # fmt: skip
     finite_number("confidence", confidence, 0.0, 1.0)  # before the runs
     require_precision(precision, scheme)
@@ -229,21 +229,21 @@ def sensitivity_analysis(
         scheme=scheme, initial=initial, first_period=first_period, measurements=measurements,
         ranges={factor.path: (factor.low, factor.high) for factor in chosen},
     )  # fmt: skip
-    every = max(1, round(seconds_of(interval, "interval") / simulation.step_seconds))
+    stride = max(1, round(seconds_of(interval, "interval") / simulation.step_seconds))
     taken = collector(
         runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
-    lines = _run_all(simulation, runs, taken, every, precision, progress)
+    lines = _run_all(simulation, runs, taken, stride, precision, progress)
     analysis = taken.result(confidence=confidence)
     said = (*analysis.warnings, *lines, *of_base(of_nominal(simulation)))
-    return replace(analysis, times=simulation.index[::every], warnings=said)
+    return replace(analysis, times=simulation.index[::stride], warnings=said)
 
 
 def _run_all(
     simulation: Simulation,
     runs: Plan,
     taken: Collector[Any, Any],
-    every: int,
+    stride: int,
     precision: Precision,
     progress: ProgressOption,
 ) -> list[str]:
@@ -252,24 +252,24 @@ def _run_all(
     residuals, outside = np.full(len(runs), np.nan), np.full(len(runs), np.nan)
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
-            run = run_samples(simulation, runs.paths, x, first, every=every, precision=precision)
+            run = run_samples(simulation, runs.paths, x, first, record_every=stride, precision=precision)
             taken.add(first, run.records)
             last = first + len(x)
             residuals[first:last], outside[first:last] = run.residuals, run.outside
             if first == 0 and precision == "single":
-                remarks = _single_precision(simulation, runs.paths, x, run.records, every)
+                remarks = _single_precision(simulation, runs.paths, x, run.records, stride)
             report(last, len(runs))
-    return [*ensemble_warnings(residuals, outside, precision=precision), *remarks]
+    return [*ensemble_warnings(residuals, outside, 0, precision), *remarks]
 
 
 def _single_precision(
-    simulation: Simulation, paths: Sequence[str], samples: Array, single: Array, every: int
+    simulation: Simulation, paths: Sequence[str], samples: Array, single: Array, stride: int
 ) -> list[str]:
     """How far outputs of some runs in single precision are from those in double precision: a line each."""
     some = members_to_check(len(samples))
-    double = run_samples(simulation, paths, samples[some], 0, every=every).records
+    double = run_samples(simulation, paths, samples[some], 0, record_every=stride).records
     outputs = simulation.outputs
-    names, units = [one.name for one in outputs], [one.unit for one in outputs]
+    names, units = [output.name for output in outputs], [output.unit for output in outputs]
     return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
 
 
@@ -319,7 +319,7 @@ def run_samples(
     first: int,
     *,
     start: int = 0,
-    every: int = 1,
+    record_every: int = 1,
     precision: Precision = "double",
 ) -> EnsembleRun:
     """Run consecutive members of a plan.
@@ -334,7 +334,7 @@ def run_samples(
         Parameter values. [unit of each]
     first : int
         Number of the first run, for messages.
-    start, every : int
+    start, record_every : int
         First recorded row and spacing of the recorded rows, in steps.
     precision : str
         ``double`` or ``single``.
@@ -350,7 +350,7 @@ def run_samples(
         A run failed; the text names its parameters.
     """
     vectors = simulation.varied(paths, samples)
-    run = simulation.ensemble(vectors, record_from=start, record_every=every, precision=precision)
+    run = simulation.ensemble(vectors, record_from=start, record_every=record_every, precision=precision)
     if run.failures:
         failed = run.failures[0]
         raise SolverError(
@@ -394,34 +394,36 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
     return low, high
 
 
-def _resolved(building: Building, given: Mapping[str, _T] | None) -> dict[str, _T]:
+def _resolved(building: Building, by_pattern: Mapping[str, _T] | None) -> dict[str, _T]:
     """The same mapping by the full paths of the building; what is given later counts."""
     return {
         building.parameter(path).path: value
-        for pattern, value in (given or {}).items()
+        for pattern, value in (by_pattern or {}).items()
         for path in expanded(building, [pattern])
     }
 
 
-def _every(building: Building, paths: Sequence[str]) -> set[str]:
+def _expanded_paths(building: Building, paths: Sequence[str]) -> set[str]:
     """Full paths of all that is named, patterns included."""
     return {building.parameter(path).path for path in expanded(building, paths)}
 
 
 def _members(building: Building, groups: Mapping[str, Sequence[str]]) -> dict[str, str]:
     """Group of each path that has one."""
-    found: dict[str, str] = {}
+    group_of: dict[str, str] = {}
     for name, paths in groups.items():
-        for given in expanded(building, names_of(f"groups: {name}", paths)):
-            path = building.parameter(given).path
-            if path in found:
-                raise InputError(f"{given}: is in the groups {found[path]} and {name}; expected one of them")
-            found[path] = name
-    return found
+        for member in expanded(building, names_of(f"groups: {name}", paths)):
+            path = building.parameter(member).path
+            if path in group_of:
+                raise InputError(
+                    f"{member}: is in the groups {group_of[path]} and {name}; expected one of them"
+                )
+            group_of[path] = name
+    return group_of
 
 
 def _chosen(
-    building: Building, vary: Vary | None, given: Mapping[str, float]
+    building: Building, vary: Vary | None, fixed: Mapping[str, float]
 ) -> tuple[list[str] | None, dict[str, tuple[float, float]]]:
     """Full paths that vary (None for all), and their ranges where given."""
     if vary is None:
@@ -437,7 +439,7 @@ def _chosen(
         for path in expanded(building, [pattern])
     }
     paths = list(wide)
-    both = [path for path in paths if path in given]
+    both = [path for path in paths if path in fixed]
     if both:
         raise InputError(f"{both[0]}: is in vary and in parameters; a fixed value does not vary: remove one")
     return paths, {path: span for path, span in wide.items() if span is not None}

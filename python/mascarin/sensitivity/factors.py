@@ -156,12 +156,12 @@ def check_factors(factors: Sequence[Factor]) -> tuple[Factor, ...]:
     if not factors:
         msg = "a sensitivity analysis needs at least one parameter with a range"
         raise InputError(msg)
-    seen: set[str] = set()
+    paths: set[str] = set()
     for factor in factors:
-        if factor.path in seen:
+        if factor.path in paths:
             msg = f"parameter '{factor.path}' is listed twice"
             raise InputError(msg)
-        seen.add(factor.path)
+        paths.add(factor.path)
     return tuple(factors)
 
 

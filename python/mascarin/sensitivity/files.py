@@ -43,12 +43,12 @@ def save_all(
     list of Path
         What was written.
     """
-    drawn = {"tornado": tornado(result, output)}
+    drawings = {"tornado": tornado(result, output)}
     if isinstance(result, SpectralSensitivity):
-        drawn["spectrum"] = spectrum(result, output)
+        drawings["spectrum"] = spectrum(result, output)
         if result.variance_t[:, result.output_index(output)].any():
-            drawn["day"] = day(result, output, hour=hour)
-    return [save(figure, folder / f"{stem}-{kind}.svg") for kind, figure in drawn.items()]
+            drawings["day"] = day(result, output, hour=hour)
+    return [save(figure, folder / f"{stem}-{kind}.svg") for kind, figure in drawings.items()]
 
 
 def spectrum(result: SpectralSensitivity, output: str, *, replicate: int = 0) -> Figure:
@@ -68,11 +68,13 @@ def spectrum(result: SpectralSensitivity, output: str, *, replicate: int = 0) ->
     matplotlib.figure.Figure
         The figure.
     """
-    found = result.spectrum(output, replicate)
+    power_spectrum = result.spectrum(output, replicate)
     figure = _figure(9.0, 4.2)
     ax = figure.add_axes((0.07, 0.14, 0.48, 0.74))
     title = f"{output}, replicate {replicate + 1} of {result.design.replicates}"
-    legend = figures.spectrum(ax, found.power, found.threshold, lines(found), title=title)
+    legend = figures.spectrum(
+        ax, power_spectrum.power, power_spectrum.threshold, lines(power_spectrum), title=title
+    )
     figure.legend(*legend, loc="upper left", bbox_to_anchor=_LEGEND, fontsize=7.5, frameon=False)
     return figure
 
@@ -109,8 +111,8 @@ def day(result: SpectralSensitivity, output: str, *, hour: ArrayLike | None = No
         (f"{result.names[i]}  {100.0 * result.index[i, s]:.1f} %", looks[result.names[i]]) for i in order
     ]
     remainder = 100.0 * (1.0 - result.index[order, s].sum())
-    rest = f"others and interactions  {remainder:.1f} %"
-    legend = figures.indices_over_time(upper, x, index[order], named, remainder=rest)
+    remainder_label = f"others and interactions  {remainder:.1f} %"
+    legend = figures.indices_over_time(upper, x, index[order], named, remainder=remainder_label)
     figure.legend(*legend, loc="upper left", bbox_to_anchor=_LEGEND, fontsize=8, frameon=False)
     upper.set_title(output, loc="left", fontsize=10)
     upper.tick_params(labelbottom=False)
@@ -141,13 +143,13 @@ def tornado(result: Sensitivity, output: str, *, top: int = 15) -> Figure:
     names = [result.names[i] for i in order]
     figure = _figure(9.0, 1.2 + 0.28 * order.size)
     bottom, height = 0.55 / figure.get_figheight(), 1.0 - 1.0 / figure.get_figheight()
-    left = figure.add_axes((0.38, bottom, 0.31, height))
-    right = figure.add_axes((0.72, bottom, 0.25, height), sharey=left)
+    effect_axes = figure.add_axes((0.38, bottom, 0.31, height))
+    index_axes = figure.add_axes((0.72, bottom, 0.25, height), sharey=effect_axes)
     rms = result.effect_rms[order, s] if isinstance(result, SpectralSensitivity) else None
-    figures.effects(left, names, result.effect[order, s], result.units[s], rms=rms)
+    figures.effects(effect_axes, names, result.effect[order, s], result.units[s], rms=rms)
     figure.text(0.02, 1.0 - 0.28 / figure.get_figheight(), output, fontsize=10)
     figures.indices(
-        right, names, result.index[order, s], result.low[order, s], result.high[order, s],
+        index_axes, names, result.index[order, s], result.low[order, s], result.high[order, s],
         significant=result.significant[order, s], title=result.axis_title, labeled=False,
     )  # fmt: skip
     return figure

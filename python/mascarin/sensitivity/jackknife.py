@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_SUBSETS: Final = 1024  # largest number of subsets, the empty one included
+_MAX_SUBSETS: Final = 1024  # largest number of subsets, the empty one included
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,12 +166,12 @@ def _typical(values: Floats, confidence: float) -> tuple[Floats, Floats]:
 @lru_cache(maxsize=8)
 def _subsets(count: int) -> Floats:
     """Weights (B, count) of the means of all subsets that are not empty, or of a random choice of them."""
-    if 2**count <= _SUBSETS:
+    if 2**count <= _MAX_SUBSETS:
         numbers = np.arange(1, 2**count, dtype=np.int64)
         member = (numbers[:, None] >> np.arange(count)) & 1
     else:
-        drawn = np.random.default_rng(count).integers(0, 2, (4 * _SUBSETS, count))
-        drawn = np.unique(drawn[drawn.any(axis=1)], axis=0)
-        order = np.random.default_rng(count).permutation(len(drawn))
-        member = drawn[order[: _SUBSETS - 1]]
+        candidates = np.random.default_rng(count).integers(0, 2, (4 * _MAX_SUBSETS, count))
+        candidates = np.unique(candidates[candidates.any(axis=1)], axis=0)
+        order = np.random.default_rng(count).permutation(len(candidates))
+        member = candidates[order[: _MAX_SUBSETS - 1]]
     return np.asarray(member / member.sum(axis=1, keepdims=True), dtype=np.float64)

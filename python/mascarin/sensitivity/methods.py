@@ -23,9 +23,9 @@ Plan = spectral.Design | salib.SalibPlan
 """The runs of a method: names of parameters, replicates, samples."""
 
 #: More repetitions narrow no interval that anybody reads; each has a design of its own.
-MOST_REPLICATES: Final = 1000
+MAX_REPLICATES: Final = 1000
 #: Runs of an analysis: years of computing time for any building.
-MOST_RUNS: Final = 100_000_000
+MAX_RUNS: Final = 100_000_000
 
 
 def plan(
@@ -80,14 +80,14 @@ def plan(
         whole_number("samples", samples, 1)
     if order is not None:
         whole_number("order", order, 1)
-    if replicates > MOST_REPLICATES:
-        raise InputError(f"replicates: found {replicates}, expected at most {MOST_REPLICATES}")
+    if replicates > MAX_REPLICATES:
+        raise InputError(f"replicates: found {replicates}, expected at most {MAX_REPLICATES}")
     # A replicate has at least as many runs as samples, and two for each harmonic.
     least = replicates * max(samples or 1, 2 * (order or 1))
-    if least > MOST_RUNS:
+    if least > MAX_RUNS:
         raise InputError(
             f"found {replicates} replicates with samples {samples} and order {order}: {least:.3g} runs or "
-            f"more, expected at most {MOST_RUNS:.0e}. Take fewer samples or replicates, or a lower order"
+            f"more, expected at most {MAX_RUNS:.0e}. Take fewer samples or replicates, or a lower order"
         )
     if method == "spectral":
         return spectral.design(factors, replicates=replicates, order=order, runs=samples, seed=seed)

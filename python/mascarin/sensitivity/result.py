@@ -25,8 +25,8 @@ Floats = NDArray[np.float64]
 FIRST_ORDER: Final = "first-order index S1"
 """What `Sensitivity.index` is, for all methods but Morris'."""
 
-_OUTPUTS_SHOWN: Final = 3
-_ROWS_SHOWN: Final = 10
+_MAX_OUTPUTS: Final = 3
+_MAX_ROWS: Final = 10
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -114,8 +114,8 @@ class Sensitivity:
     @property
     def interactions(self) -> Floats:
         """Part of the variance that no parameter explains alone, 1 minus the sum of S1, shape (S,). [-]"""
-        rest: Floats = 1.0 - self.index.sum(axis=0)
-        return rest
+        unexplained: Floats = 1.0 - self.index.sum(axis=0)
+        return unexplained
 
     def output_index(self, output: str) -> int:
         """Return the position of an output.
@@ -355,12 +355,14 @@ class Sensitivity:
     def _repr_html_(self) -> str:
         from matplotlib.figure import Figure
 
-        drawn: dict[str, Figure] = {}
-        for output in self.outputs[:_OUTPUTS_SHOWN]:
+        by_output: dict[str, Figure] = {}
+        for output in self.outputs[:_MAX_OUTPUTS]:
             figure = Figure(figsize=(8.0, 3.5), layout="constrained")
-            self.plot("indices", output=output, ax=figure.subplots(), top=_ROWS_SHOWN)
-            drawn[output] = figure
-        return display.page(self._title, self._rows(), tables={"Indices": self.to_dataframe()}, figures=drawn)
+            self.plot("indices", output=output, ax=figure.subplots(), top=_MAX_ROWS)
+            by_output[output] = figure
+        return display.page(
+            self._title, self._rows(), tables={"Indices": self.to_dataframe()}, figures=by_output
+        )
 
     @property
     def _title(self) -> str:
@@ -369,8 +371,8 @@ class Sensitivity:
 
     def _rows(self) -> list[tuple[str, str]]:
         """Names and values of the short description: the largest indices of the first outputs."""
-        shown = self.outputs[:_OUTPUTS_SHOWN]
-        each = max(1, _ROWS_SHOWN // len(shown))
+        shown = self.outputs[:_MAX_OUTPUTS]
+        each = max(1, _MAX_ROWS // len(shown))
         rows = []
         for output in shown:
             s = self.output_index(output)
@@ -420,17 +422,17 @@ class Sensitivity:
 
     def _indices(self) -> Mapping[str, Floats]:
         """The columns that SALib has too."""
-        found = {"S1": self.index, "S1_conf": 0.5 * (self.high - self.low)}
+        columns = {"S1": self.index, "S1_conf": 0.5 * (self.high - self.low)}
         if self.total is not None and self.total_low is not None and self.total_high is not None:
-            found |= {"ST": self.total, "ST_conf": 0.5 * (self.total_high - self.total_low)}
-        return found
+            columns |= {"ST": self.total, "ST_conf": 0.5 * (self.total_high - self.total_low)}
+        return columns
 
     def _arrays(self) -> Mapping[str, Floats]:
         """All columns of numbers, each of shape (G, S)."""
-        found = {**self._indices(), "S1_low": self.low, "S1_high": self.high}
+        columns = {**self._indices(), "S1_low": self.low, "S1_high": self.high}
         if self.total_low is not None and self.total_high is not None:
-            found |= {"ST_low": self.total_low, "ST_high": self.total_high}
-        return {**found, "effect": self.effect}
+            columns |= {"ST_low": self.total_low, "ST_high": self.total_high}
+        return {**columns, "effect": self.effect}
 
     def _arrays_over_time(self) -> Mapping[str, Floats]:
         """Arrays of shape (G, T, S), where the method gives them."""
@@ -438,10 +440,10 @@ class Sensitivity:
 
     def _study_arrays(self) -> dict[str, Floats]:
         """Arrays by the keys of ``study.json``."""
-        found = {"share": self.index, "low": self.low, "high": self.high, "effect": self.effect}
+        arrays = {"share": self.index, "low": self.low, "high": self.high, "effect": self.effect}
         if self.total is not None and self.total_low is not None and self.total_high is not None:
-            found |= {"total": self.total, "total_low": self.total_low, "total_high": self.total_high}
-        return found
+            arrays |= {"total": self.total, "total_low": self.total_low, "total_high": self.total_high}
+        return arrays
 
     def _study_extras(self) -> dict[str, Floats]:
         """Further columns of the study's table."""

@@ -170,7 +170,7 @@ def analyze(
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        run = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
+        run = run_samples(simulation, runs.paths, samples, first, start=skipped, record_every=every)
         last = first + len(samples)
         judged[:, first:last] = run.residuals, run.outside
         workspace.keep(name, first, {"values": run.records, "judged": judged[:, first:last]})

@@ -49,7 +49,7 @@ class Algorithm:
         Lines below ``Main`` for a plan.
     single : bool
         Whether it searches along one parameter only.
-    several : bool
+    several_parameters : bool
         Whether it needs at least two parameters.
     intervals : bool
         Whether ``Step`` is a number of intervals.
@@ -58,7 +58,7 @@ class Algorithm:
     main: str
     lines: Callable[[Plan], list[str]]
     single: bool = False
-    several: bool = False
+    several_parameters: bool = False
     intervals: bool = False
 
 
@@ -140,7 +140,7 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     "hybrid": Algorithm(
         "GPSPSOCCHJ", lambda plan: [*_swarm(plan), _CONSTRICTION, *_mesh(), *_refinement(plan)]
     ),
-    "nelder-mead": Algorithm("NelderMeadONeill", _simplex, several=True),
+    "nelder-mead": Algorithm("NelderMeadONeill", _simplex, several_parameters=True),
     "gradient": Algorithm("DiscreteArmijoGradient", _gradient),
     "golden-section": Algorithm("GoldenSection", _line, single=True),
     "fibonacci": Algorithm("Fibonacci", _line, single=True),
@@ -182,7 +182,7 @@ def chosen(name: str, parameters: int) -> Algorithm:
             f"--algorithm {name}: searches along one parameter, and the study identifies {parameters}; "
             "choose hooke-jeeves, or identify only one parameter"
         )
-    if algorithm.several and parameters < 2:
+    if algorithm.several_parameters and parameters < 2:
         raise InputError(
             f"--algorithm {name}: needs two parameters or more, and the study identifies {parameters}; "
             "choose hooke-jeeves or golden-section"

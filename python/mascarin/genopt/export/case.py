@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-_FORMAT: Final = 2
+_FORMAT: Final = 3
 _PACKAGE: Final = Path(__file__).resolve().parent.parent
 _KIND: Final = "compiled case"
 
@@ -46,13 +46,13 @@ class Costs:
         The minimized cost: the sum of the others. [unit of the cost]
     parts : dict of str to float
         Cost of each sensor by its name, then that of the priors when there are any. [unit of the cost]
-    kept : tuple of str
+    defaults : tuple of str
         Parameters that were not given and kept the value of the study.
     """
 
     total: float
     parts: dict[str, float]
-    kept: tuple[str, ...] = ()
+    defaults: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ class Case:
     ----------
     run : CompiledRun
         The building in its climate over the identification period.
-    seen : Observed
+    observed : Observed
         How the series of the sensors follow from its outputs.
     positions : ndarray of int, shape (F,)
         Positions of the free parameters in the parameter vector. [-]
-    place : ndarray, shape (n,)
+    instants : ndarray, shape (n,)
         Positions of the compared instants. [steps]
     parameters : tuple of FitParameter, length F
         The free parameters.
@@ -101,9 +101,9 @@ class Case:
     """
 
     run: CompiledRun
-    seen: Observed
+    observed: Observed
     positions: npt.NDArray[np.int64]
-    place: Array
+    instants: Array
     parameters: tuple[FitParameter, ...]
     sensors: tuple[FitSensor, ...]
     cost: CostName
@@ -132,14 +132,14 @@ class Case:
         records, _, failures = self.run.ensemble(vectors)
         self._reasons[:] = [failure.reason for failure in failures]
         series = [
-            instants(records[..., c], self.place)
+            instants(records[..., c], self.instants)
             if kind == "instant"
-            else means(records[..., c], self.place, self.seen.reach)
-            for c, kind in zip(self.seen.columns, self.seen.kinds, strict=True)
+            else means(records[..., c], self.instants, self.observed.reach)
+            for c, kind in zip(self.observed.columns, self.observed.kinds, strict=True)
         ]
         return np.stack(series, axis=-1)
 
-    def vector(self, given: Mapping[str, float]) -> tuple[Array, tuple[str, ...]]:
+    def vector(self, values: Mapping[str, float]) -> tuple[Array, tuple[str, ...]]:
         """Values of the free parameters, and the paths of those that were not given.
 
         Raises
@@ -147,16 +147,16 @@ class Case:
         InputError
             An unknown path, or a value that the parameter cannot have.
         """
-        known = [p.path for p in self.parameters]
-        for path in given:
-            if path not in known:
+        paths = [p.path for p in self.parameters]
+        for path in values:
+            if path not in paths:
                 raise InputError(
                     f"found: parameter '{path}'; expected one that the study identifies. "
-                    f"{did_you_mean(path, known)} Or add it to identification.parameters of the study."
+                    f"{did_you_mean(path, paths)} Or add it to identification.parameters of the study."
                 )
         x = np.empty(len(self.parameters))
         for k, parameter in enumerate(self.parameters):
-            x[k] = given.get(parameter.path, self.run.values[self.positions[k]])
+            x[k] = values.get(parameter.path, self.run.values[self.positions[k]])
             low, high = parameter.limits
             if not low <= x[k] <= high:
                 unit = f" {parameter.unit}" if parameter.unit else ""
@@ -164,14 +164,14 @@ class Case:
                     f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}: "
                     "narrow Min and Max of the command file"
                 )
-        return x, tuple(path for path in known if path not in given)
+        return x, tuple(path for path in paths if path not in values)
 
-    def evaluate(self, given: Mapping[str, float]) -> Costs:
+    def evaluate(self, values: Mapping[str, float]) -> Costs:
         """Cost of one set of values.
 
         Parameters
         ----------
-        given : mapping of str to float
+        values : mapping of str to float
             Path -> value; those that are missing keep the value of the study. [unit of each]
 
         Raises
@@ -181,18 +181,18 @@ class Case:
         SolverError
             The building cannot be simulated with these values.
         """
-        x, kept = self.vector(given)
+        x, defaults = self.vector(values)
         cost = Cost(self.problem, self.cost)
         of_sensors = cost.of_sensors(self.problem.residuals(x[None]))
         total = float(cost.total(x[None], of_sensors)[0])
         if not np.isfinite(total):
-            at = ", ".join(f"{p.path}={v:g}" for p, v in zip(self.parameters, x, strict=True))
+            point = ", ".join(f"{p.path}={v:g}" for p, v in zip(self.parameters, x, strict=True))
             reason = self._reasons[0] if self._reasons else "the model gives no number for a sensor."
-            raise SolverError(f"{reason} Parameters: {at}")
+            raise SolverError(f"{reason} Parameters: {point}")
         parts = {s.name: float(c) for s, c in zip(self.sensors, of_sensors[0], strict=True)}
         if "cost_priors" in self.names:
             parts["priors"] = 0.5 * float(np.sum(cost.prior_residuals(x[None]) ** 2))
-        return Costs(total, parts, kept)
+        return Costs(total, parts, defaults)
 
     # --- the file -----------------------------------------------------------------------------------------
 
@@ -201,7 +201,7 @@ class Case:
         header = {
             "format": _FORMAT,
             "run": self.run.header(),
-            "seen": asdict(self.seen),
+            "observed": asdict(self.observed),
             "parameters": [asdict(p) for p in self.parameters],
             "sensors": [
                 [s.name, s.standard_uncertainty, s.relative_standard_uncertainty, s.unit, s.weight]
@@ -215,7 +215,7 @@ class Case:
             "forcing": self.run.forcing,
             "values": self.run.values,
             "positions": self.positions,
-            "place": self.place,
+            "instants": self.instants,
             "measured": self.problem.measured,
             "mask": self.problem.mask,
         }
@@ -258,9 +258,9 @@ def _case(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> Case:
     )
     return Case(
         run=CompiledRun.read(header["run"], arrays["forcing"], arrays["values"]),
-        seen=Observed(**header["seen"]),
+        observed=Observed(**header["observed"]),
         positions=arrays["positions"],
-        place=arrays["place"],
+        instants=arrays["instants"],
         parameters=tuple(_parameter(p) for p in header["parameters"]),
         sensors=sensors,
         cost=cast("CostName", header["cost"]),
@@ -311,7 +311,7 @@ def _hash(name: str) -> str:
 def _program_state() -> str:
     """Hash of sizes and times of all code: a case is made again after every change of the program."""
     digest = hashlib.sha256()
-    stack, found = [str(_PACKAGE)], []
+    stack, states = [str(_PACKAGE)], []
     while stack:
         with os.scandir(stack.pop()) as entries:
             for entry in entries:
@@ -319,6 +319,6 @@ def _program_state() -> str:
                     stack.append(entry.path)
                 elif entry.name.endswith((".py", ".so", ".pyd")):
                     state = entry.stat()
-                    found.append(f"{entry.path[len(str(_PACKAGE)) :]} {state.st_size} {state.st_mtime_ns}")
-    digest.update("\n".join(sorted(found)).encode("utf-8", "surrogateescape"))
+                    states.append(f"{entry.path[len(str(_PACKAGE)) :]} {state.st_size} {state.st_mtime_ns}")
+    digest.update("\n".join(sorted(states)).encode("utf-8", "surrogateescape"))
     return digest.hexdigest()

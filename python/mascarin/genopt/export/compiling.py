@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from mascarin.study.description import StudyFile
 
 
-def compiled(study: Path, kept: Path | None = None, *, allow_outside: bool = False) -> Case:
+def compiled(study: Path, saved: Path | None = None, *, allow_outside: bool = False) -> Case:
     """The case of a study: the saved one if it is valid, else a new one, which is then saved.
 
     Parameters
     ----------
     study : Path
         The study file.
-    kept : Path, optional
+    saved : Path, optional
         File of the case.
     allow_outside : bool
         Whether the study may name files outside its folder.
@@ -36,11 +36,11 @@ def compiled(study: Path, kept: Path | None = None, *, allow_outside: bool = Fal
         The study cannot be used.
     """
     name = str(study.resolve())
-    case = None if kept is None else open_case(kept, name)
+    case = None if saved is None else open_case(saved, name)
     if case is None:
         case = compile_study(Study(study, allow_outside=allow_outside))
-        if kept is not None:
-            case.save(kept)
+        if saved is not None:
+            case.save(saved)
     return case
 
 
@@ -69,19 +69,19 @@ def compile_study(study: Study) -> Case:
                 f"{path}: found a tied parameter, expected parameters of one number in a GenOpt project; "
                 "leave it out, or write each number alone"
             )
-    seconds, at = epoch_seconds(simulation.index), epoch_seconds(observation.times)
+    seconds, observed_seconds = epoch_seconds(simulation.index), epoch_seconds(observation.times)
     step = seconds[1] - seconds[0]
     columns = [observation.names.index(sensor.name) for sensor in problem.sensors]
-    seen = Observed(
+    observed = Observed(
         columns=columns,
         kinds=[observation.kinds[c] for c in columns],
         reach=float(observation.interval / step),
     )
     return Case(
         run=simulation.compiled,
-        seen=seen,
+        observed=observed,
         positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
-        place=((at - seconds[0]) / step)[np.flatnonzero(study.rows)],
+        instants=((observed_seconds - seconds[0]) / step)[np.flatnonzero(study.rows)],
         parameters=problem.parameters,
         sensors=problem.sensors,
         cost=study.sought.cost,
@@ -97,5 +97,5 @@ def _files(path: Path, file: StudyFile) -> list[str]:
     names = [file.building, climate.epw, climate.tmy, measured, file.measurements.table]
     beside = Beside(path.parent, allow_outside=True)  # they have been read
     named = [find(name, beside) for name in names if name is not None]
-    found = [*files_of(path), *files_of(named[0]), *named[1:]]
-    return sorted({str(one.resolve()) for one in found})
+    sources = [*files_of(path), *files_of(named[0]), *named[1:]]
+    return sorted({str(source.resolve()) for source in sources})

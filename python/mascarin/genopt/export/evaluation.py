@@ -93,7 +93,7 @@ def _evaluated(parameters: Path, study: Path | None, allow_outside: bool) -> tup
         if str(parameters) in str(error):
             raise
         raise InputError(f"{parameters}: {error}") from None
-    notes = [f"kept the value of the study: {', '.join(costs.kept)}"] if costs.kept else []
+    notes = [f"kept the value of the study: {', '.join(costs.defaults)}"] if costs.defaults else []
     return result_lines(costs), notes
 
 
@@ -106,25 +106,25 @@ def _case(project: Path | None, study: Path | None, parameters: Path, allow_outs
             "--study"
         )
     if study is not None or project is None:
-        kept, chosen = None, study
+        saved, chosen = None, study
     else:
-        kept, chosen = project / COMPILED, read_settings(project)
+        saved, chosen = project / COMPILED, read_settings(project)
     if chosen is None:
         raise InputError(f"{parameters}: found no study")
-    if kept is not None:
-        case = open_case(kept, str(chosen.resolve()))
+    if saved is not None:
+        case = open_case(saved, str(chosen.resolve()))
         if case is not None:
             return case
     # Imported here, because it imports everything that reads studies.
     from mascarin.genopt.export.compiling import compiled
 
-    return compiled(chosen, kept, allow_outside=allow_outside)
+    return compiled(chosen, saved, allow_outside=allow_outside)
 
 
 def _failure(text: str) -> list[str]:
     """Lines of the log after a failure; the mark is in the first line, which optimization programs show."""
-    first, *others = text.splitlines() or [""]
-    return [f"{FAILURE}: {first}", *others]
+    first, *following = text.splitlines() or [""]
+    return [f"{FAILURE}: {first}", *following]
 
 
 def _write_log(log: Path, lines: list[str]) -> None:

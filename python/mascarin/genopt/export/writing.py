@@ -156,9 +156,9 @@ def _check_folder(out: Path, *, force: bool) -> None:
     if out.exists() and not out.is_dir():
         raise InputError(f"{out}: is a file; expected a folder for the project: choose another -o")
     if out.is_dir() and not force:
-        there = sorted(entry.name for entry in out.iterdir())
-        if there:
-            listed = ", ".join(there[:3]) + (", ..." if len(there) > 3 else "")
+        names = sorted(entry.name for entry in out.iterdir())
+        if names:
+            listed = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
             raise InputError(
                 f"{out}: the folder is not empty (it has {listed}), expected an empty or a new one. Choose "
                 f"another -o, or give --force to overwrite {', '.join(FILES)} and keep the rest"
@@ -239,12 +239,12 @@ def _short(value: float, rounding: str, digits: int = _DIGITS) -> Decimal:
     return Context(prec=digits, rounding=rounding).create_decimal(repr(value)).normalize()
 
 
-def _program(given: str | None) -> str:
+def _program(program: str | None) -> str:
     """How the simulation program is started.
 
     GenOpt starts it without a shell and searches for it on the path; a full path is written only if needed.
     """
-    if given is None:
+    if program is None:
         if shutil.which("mascarin") is not None:
             return "mascarin"
         beside = shutil.which("mascarin", path=str(Path(sys.executable).parent))
@@ -253,21 +253,21 @@ def _program(given: str | None) -> str:
                 "the program 'mascarin' is not on the path and GenOpt could not start it; add its folder "
                 "to PATH, or give its full path with --program"
             )
-        given = Path(beside).as_posix()
-    if re.search(r"[\s\"\\]", given):
+        program = Path(beside).as_posix()
+    if re.search(r"[\s\"\\]", program):
         raise InputError(
-            f"--program: found '{given}', with blanks, quotes or backslashes, which GenOpt cannot start; put "
-            "its folder on the PATH and give 'mascarin', or write slashes"
+            f"--program: found '{program}', with blanks, quotes or backslashes, which GenOpt cannot start; "
+            "put its folder on the PATH and give 'mascarin', or write slashes"
         )
-    return given
+    return program
 
 
-def _reference(given: str, path: Path, out: Path) -> str:
+def _reference(study: str, path: Path, out: Path) -> str:
     """Reference to the study: relative to the folder, by the name of a shipped one, or absolute."""
     from mascarin.examples import STUDIES
 
-    if STUDIES.get(given) == path:
-        return given
+    if STUDIES.get(study) == path:
+        return study
     try:
         return Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()
     except ValueError:
@@ -279,7 +279,7 @@ def _reference(given: str, path: Path, out: Path) -> str:
 
 
 def _initialization(names: Sequence[str]) -> str:
-    places = "".join(
+    locations = "".join(
         f'    Name{k} = "{name}";\n    Delimiter{k} = "{name}=";\n    FirstCharacterAt{k} = 1;\n'
         for k, name in enumerate(names, start=1)
     )
@@ -293,7 +293,7 @@ Simulation {{
     Configuration {{ File1 = "{_CONFIGURATION}"; }}
   }}
   ObjectiveFunctionLocation {{
-{places}  }}
+{locations}  }}
 }}
 Optimization {{
   Files {{

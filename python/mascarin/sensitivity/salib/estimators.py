@@ -13,7 +13,7 @@ from mascarin.sensitivity.factors import Floats
 from mascarin.sensitivity.salib.library import salib
 from mascarin.sensitivity.salib.plans import LEVELS, SalibName, SalibPlan
 
-_LEFT_OUT: Final = 1e-6
+_MAX_OMITTED_VARIANCE: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,10 +87,10 @@ class _RbdFast(Estimator):
     def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
         first = np.zeros(len(self.plan.groups))
         for component in (y @ basis).T:
-            found = salib("analyze.rbd_fast").analyze(
+            result = salib("analyze.rbd_fast").analyze(
                 self.plan.problem, u, component, M=self.plan.order, num_resamples=2, seed=_unused()
             )
-            first += np.array(found["S1"], dtype=np.float64) * component.var()
+            first += np.array(result["S1"], dtype=np.float64) * component.var()
         return self._part(first, first, float(y.var(axis=0).sum()), self._slopes(u, y))
 
 
@@ -103,12 +103,12 @@ class _Sobol(Estimator):
         for component in (y @ basis).T:
             if np.ptp(component) == 0.0:
                 continue
-            found = salib("analyze.sobol").analyze(
+            result = salib("analyze.sobol").analyze(
                 self.plan.problem, component, calc_second_order=False, num_resamples=2, seed=_unused()
             )
             size = component[free].var()
-            first += np.asarray(found["S1"]) * size
-            total += np.asarray(found["ST"]) * size
+            first += np.asarray(result["S1"]) * size
+            total += np.asarray(result["ST"]) * size
         return self._part(first, total, float(y[free].var(axis=0).sum()), self._slopes(u[free], y[free]))
 
 
@@ -116,8 +116,10 @@ class _Morris(Estimator):
     def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
         single = np.bincount(self.plan.group_of) == 1
         squares = (self._squares if single.all() else self._squares_of_groups)(u, y @ basis)
-        found = self._effects(u, y.mean(axis=1))
-        effect, size, spread = (np.array(found[key], dtype=np.float64) for key in ("mu", "mu_star", "sigma"))
+        effects = self._effects(u, y.mean(axis=1))
+        effect, size, spread = (
+            np.array(effects[key], dtype=np.float64) for key in ("mu", "mu_star", "sigma")
+        )
         # The factors of a group move in different directions.
         effect[~single] = np.nan
         spread[~single] = np.nan
@@ -128,8 +130,8 @@ class _Morris(Estimator):
         if not components.shape[1]:
             return np.zeros(len(self.plan.groups))
         count = self.plan.size
-        found = [self._effects(u, component) for component in components.T]
-        mean, spread = (np.array([f[key] for f in found], dtype=np.float64) for key in ("mu", "sigma"))
+        effects = [self._effects(u, component) for component in components.T]
+        mean, spread = (np.array([f[key] for f in effects], dtype=np.float64) for key in ("mu", "sigma"))
         return np.asarray(np.sum(mean**2 + spread**2 * (count - 1) / count, axis=0))
 
     def _squares_of_groups(self, u: Floats, components: Floats) -> Floats:
@@ -177,8 +179,8 @@ def components(y: Floats) -> Floats:
     total = float(value.sum())
     if total <= 0.0:
         return np.asarray(vector[:, :0])
-    kept = int(np.searchsorted(np.cumsum(value), (1.0 - _LEFT_OUT) * total)) + 1
-    return np.asarray(vector[:, : min(kept, value.size)])
+    count = int(np.searchsorted(np.cumsum(value), (1.0 - _MAX_OMITTED_VARIANCE) * total)) + 1
+    return np.asarray(vector[:, : min(count, value.size)])
 
 
 def _unused() -> np.random.Generator:

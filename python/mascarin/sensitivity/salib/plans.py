@@ -132,12 +132,12 @@ class SalibPlan:
         # With a seed of 0, or none, SALib would use numpy's global state.
         rng = np.random.default_rng([self.seed, replicate])
         if self.method == "rbd-fast":
-            drawn = salib("sample.latin").sample(self.problem, self.size, seed=rng)
+            samples = salib("sample.latin").sample(self.problem, self.size, seed=rng)
         elif self.method == "sobol":
-            drawn = salib("sample.sobol").sample(self.problem, self.size, calc_second_order=False, seed=rng)
+            samples = salib("sample.sobol").sample(self.problem, self.size, calc_second_order=False, seed=rng)
         else:
-            drawn = salib("sample.morris").sample(self.problem, self.size, num_levels=LEVELS, seed=rng)
-        return np.asarray(drawn, dtype=np.float64)
+            samples = salib("sample.morris").sample(self.problem, self.size, num_levels=LEVELS, seed=rng)
+        return np.asarray(samples, dtype=np.float64)
 
     @property
     def problem(self) -> dict[str, Any]:

@@ -129,8 +129,10 @@ def _analyzed(
     confidence: float,
 ) -> SpectralSensitivity:
     """Put the replicates together."""
-    found = [_of_output(plan, parts, s, confidence) for s in range(len(outputs))]
-    arrays: dict[str, Any] = {name: np.stack([one[name] for one in found], axis=-1) for name in found[0]}
+    by_output = [_of_output(plan, parts, s, confidence) for s in range(len(outputs))]
+    arrays: dict[str, Any] = {
+        name: np.stack([output_arrays[name] for output_arrays in by_output], axis=-1) for name in by_output[0]
+    }
     constant = arrays.pop("constant")
     return SpectralSensitivity(
         method="spectral",
@@ -181,7 +183,7 @@ def _of_output(plan: Design, parts: Sequence[Replicate], s: int, confidence: flo
         significant = above_zero(numerator.summed(), total, strict) & (index > 1e-12)
         sums = [part.variance[:, s].sum() for part in parts]
         raw = np.mean([part.raw[:, s] for part in parts], axis=0) / np.mean(sums)
-        spectra = np.stack([line / one for line, one in zip(lines, sums, strict=True)])
+        spectra = np.stack([line / size for line, size in zip(lines, sums, strict=True)])
     return {
         "index": index,
         "low": low,

@@ -14,10 +14,10 @@ from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped,
 
 Integers = NDArray[np.int64]
 
-SMALLEST_SPREAD: Final = 32
+MIN_SPREAD: Final = 32
 """With few parameters frequencies are drawn from 1 to this number, so that lines are far apart. [-]"""
 
-_CANDIDATES: Final = 16
+_MAX_CANDIDATES: Final = 16
 _SPACED_UP_TO: Final = 40  # groups; above, every choice of frequencies is crowded
 
 
@@ -179,7 +179,7 @@ def _pool(
             )
             raise InputError(msg)
     else:
-        spread = max(count, SMALLEST_SPREAD)
+        spread = max(count, MIN_SPREAD)
         if grouped:
             # The noise of a group is estimated from lines that belong to no parameter: some must remain.
             spread = max(spread, (5 * count + 3) // 4)
@@ -201,16 +201,16 @@ def _assigned(pool: Integers, count: int, order: int, rng: np.random.Generator) 
     """A random frequency for each group; where there is a choice, the least crowded of several draws."""
     if pool.size == count or count > _SPACED_UP_TO:
         return rng.permutation(pool)[:count]
-    candidates = [rng.permutation(pool)[:count] for _ in range(_CANDIDATES)]
+    candidates = [rng.permutation(pool)[:count] for _ in range(_MAX_CANDIDATES)]
     crowds = [_crowding(w, order) for w in candidates]
     return candidates[int(np.argmin(crowds))]
 
 
 def _crowding(w: Integers, order: int) -> float:
     """Number of harmonics and low-order interactions that fall on the lines of parameters. [-]"""
-    own = np.outer(np.arange(1, order + 1), w).ravel()
-    lines = np.unique(own)
-    crowd = 3.0 * (own.size - lines.size)
+    harmonics = np.outer(np.arange(1, order + 1), w).ravel()
+    lines = np.unique(harmonics)
+    crowd = 3.0 * (harmonics.size - lines.size)
     i, j = np.triu_indices(w.size, 1)
     for a in (1, 2):
         for b in (1, 2):

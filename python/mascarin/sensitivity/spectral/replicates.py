@@ -66,14 +66,14 @@ def transform(plan: Design, replicate: int, y: Floats) -> Replicate:
     single = np.array([plan.members(g)[0] for g in range(len(plan.groups))])
     phase = plan.phases[replicate][single] - 0.5 * np.pi
     harmonics = np.arange(1, m + 1)
-    own = np.outer(w, harmonics)
+    lines = np.outer(w, harmonics)
     turn = np.exp(-1j * np.outer(phase, harmonics))
-    coefficients = spectrum[own - 1] * turn[:, :, None, None]
+    coefficients = spectrum[lines - 1] * turn[:, :, None, None]
     squared = spectrum.real**2 + spectrum.imag**2
-    power = 0.5 * squared[own - 1].sum(axis=1)
+    power = 0.5 * squared[lines - 1].sum(axis=1)
     raw = power.sum(axis=1)
     sizes = np.bincount(plan.group_of)
-    free = np.setdiff1d(np.arange(1, squared.shape[0] + 1), own)
+    free = np.setdiff1d(np.arange(1, squared.shape[0] + 1), lines)
     floor = 0.5 * m * squared[free - 1].mean(axis=0) if free.size and (sizes > 1).any() else 0.0
     return Replicate(
         real=coefficients.real,

@@ -179,9 +179,10 @@ class SpectralSensitivity(Sensitivity):
         output = self.outputs[s]
         if kind == "spectrum":
             title = f"{output}, replicate {replicate + 1} of {self.design.replicates}"
-            found = self.spectrum(output, replicate)
+            spectrum = self.spectrum(output, replicate)
             ax.legend(
-                *figures.spectrum(ax, found.power, found.threshold, lines(found), title=title), fontsize=7
+                *figures.spectrum(ax, spectrum.power, spectrum.threshold, lines(spectrum), title=title),
+                fontsize=7,
             )
         elif kind == "day":
             hours = local_hours(self.times)

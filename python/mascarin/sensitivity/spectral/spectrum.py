@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-CHANCE: Final = 0.05
+SIGNIFICANCE_LEVEL: Final = 0.05
 """Probability that any line exceeds the threshold in a spectrum of noise. [-]"""
 
-_HARMONICS: Final = 6  # highest harmonic that can name a peak
-_SEEN_IN: Final = 0.75  # fraction of the replicates in which a line must be above the threshold
+_MAX_HARMONIC: Final = 6  # highest harmonic that can name a peak
+#: Least fraction of the replicates in which a line must be above the threshold.
+_MIN_REPLICATE_FRACTION: Final = 0.75
 _ALL_PAIRS_UP_TO: Final = 40  # parameters; above, one of a pair must have a strong line of its own
-_STRONGEST: Final = 10
+_MAX_STRONG_PARAMETERS: Final = 10
 
 PeakKind = Literal["fundamental", "harmonic", "interaction", "unnamed"]
 
@@ -47,7 +48,7 @@ class Peak:
         Its name for a figure: ``a``, ``2 × a``, ``a + b``; empty when unnamed.
     parameters : tuple of str
         The parameters in it.
-    others : tuple of str
+    weaker_labels : tuple of str
         Labels of weaker explanations that fall on the same line here.
     """
 
@@ -56,7 +57,7 @@ class Peak:
     kind: PeakKind
     label: str
     parameters: tuple[str, ...]
-    others: tuple[str, ...] = ()
+    weaker_labels: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,41 +123,41 @@ class Spectrum:
             With its named peaks.
         """
         threshold = line_threshold(spectra.shape[1])
-        found: dict[int, list[_Component]] = {}
+        by_line: dict[int, list[_Component]] = {}
         for component in _components(spectra, frequencies, runs, names, threshold):
-            found.setdefault(int(component.lines[replicate]), []).append(component)
+            by_line.setdefault(int(component.lines[replicate]), []).append(component)
         power = spectra[replicate]
         peaks = []
         for line in np.flatnonzero(power > threshold) + 1:
-            components = sorted(found.get(int(line), []), key=lambda component: -component.power)
+            components = sorted(by_line.get(int(line), []), key=lambda component: -component.power)
             peaks.append(_peak(int(line), float(power[line - 1]), components))
         return Spectrum(
             output, replicate, power, threshold, frequencies[replicate], tuple(names), tuple(peaks)
         )
 
 
-def line_threshold(lines: int, chance: float = CHANCE) -> float:
-    """Return the value that the largest of many lines of noise exceeds with probability `chance`.
+def line_threshold(lines: int, level: float = SIGNIFICANCE_LEVEL) -> float:
+    """Return the value that the largest of many lines of noise exceeds with probability `level`.
 
     Parameters
     ----------
     lines : int
         Number m of lines. [-]
-    chance : float
+    level : float
         Probability. [-]
 
     Returns
     -------
     float
-        Part of the whole power; the quantile of Beta(1, m - 1) at ``1 - chance / m``. [-]
+        Part of the whole power; the quantile of Beta(1, m - 1) at ``1 - level / m``. [-]
     """
     if lines < 2:
         return 1.0
-    return 1.0 - math.pow(chance / lines, 1.0 / (lines - 1))
+    return 1.0 - math.pow(level / lines, 1.0 / (lines - 1))
 
 
 def power_threshold(
-    order: int, runs: int, replicates: int = 1, parameters: int = 1, chance: float = CHANCE
+    order: int, runs: int, replicates: int = 1, parameters: int = 1, level: float = SIGNIFICANCE_LEVEL
 ) -> float:
     """Return the value that the power on the lines of any parameter exceeds by chance.
 
@@ -170,7 +171,7 @@ def power_threshold(
         Number of replicates R averaged. [-]
     parameters : int
         Number of parameters tested. [-]
-    chance : float
+    level : float
         Probability. [-]
 
     Returns
@@ -183,7 +184,7 @@ def power_threshold(
     lines = (runs - 1) // 2
     if lines <= order:
         return 1.0
-    tail = chance / parameters
+    tail = level / parameters
     return float(stats.beta.isf(tail, replicates * order, replicates * (lines - order)))
 
 
@@ -208,18 +209,18 @@ def _components(
     # Line 0 and, with an even number of runs, the last one are not in the spectrum.
     padded = np.pad(spectra, ((0, 0), (1, runs // 2 - spectra.shape[1])))
     rows = np.arange(spectra.shape[0])[:, None]
-    needed = math.ceil(_SEEN_IN * spectra.shape[0])
+    needed = math.ceil(_MIN_REPLICATE_FRACTION * spectra.shape[0])
 
     def significant(lines: Integers) -> tuple[Integers, Integers, Floats]:
         folded = _folded(lines, runs)
-        found = padded[rows, folded]
-        seen = np.flatnonzero((found > threshold).sum(axis=0) >= needed)
-        return seen, folded, found.mean(axis=0)
+        powers = padded[rows, folded]
+        columns = np.flatnonzero((powers > threshold).sum(axis=0) >= needed)
+        return columns, folded, powers.mean(axis=0)
 
     strength = np.zeros(len(names))
-    for harmonic in range(1, _HARMONICS + 1):
-        seen, lines, power = significant(harmonic * frequencies)
-        for i in seen:
+    for harmonic in range(1, _MAX_HARMONIC + 1):
+        columns, lines, power = significant(harmonic * frequencies)
+        for i in columns:
             strength[i] += power[i]
             kind: PeakKind = "fundamental" if harmonic == 1 else "harmonic"
             label = _times(harmonic, names[i])
@@ -228,8 +229,8 @@ def _components(
     if not first.size:
         return
     for a, b, sign in itertools.product((1, 2), (1, 2), (1, -1)):
-        seen, lines, power = significant(a * frequencies[:, first] + sign * b * frequencies[:, second])
-        for p in seen:
+        columns, lines, power = significant(a * frequencies[:, first] + sign * b * frequencies[:, second])
+        for p in columns:
             i, j = names[first[p]], names[second[p]]
             label = f"{_times(a, i)} {'+' if sign > 0 else '−'} {_times(b, j)}"
             yield _Component("interaction", label, (i, j), lines[:, p], float(power[p]))
@@ -240,7 +241,7 @@ def _pairs(strength: Floats) -> tuple[Integers, Integers]:
     first, second = np.triu_indices(strength.size, 1)
     if strength.size > _ALL_PAIRS_UP_TO:
         strong = np.zeros(strength.size, dtype=np.bool_)
-        strong[np.argsort(-strength)[:_STRONGEST]] = True
+        strong[np.argsort(-strength)[:_MAX_STRONG_PARAMETERS]] = True
         strong &= strength > 0.0
         keep = strong[first] | strong[second]
         first, second = first[keep], second[keep]
@@ -249,8 +250,8 @@ def _pairs(strength: Floats) -> tuple[Integers, Integers]:
 
 def _folded(lines: Integers, runs: int) -> Integers:
     """Line among 0 ... N // 2 on which a frequency appears with N runs (aliasing)."""
-    rest = np.mod(np.abs(lines), runs)
-    folded: Integers = np.minimum(rest, runs - rest)
+    remainder = np.mod(np.abs(lines), runs)
+    folded: Integers = np.minimum(remainder, runs - remainder)
     return folded
 
 

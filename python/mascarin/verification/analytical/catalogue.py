@@ -28,8 +28,8 @@ def cases(topic: Topic | None = None) -> list[Case]:
     'Stefan, one phase'
     """
     topics = (conduction, phase, melting, zones, moisture, radiation, sun)
-    every = [case for one in topics for case in one.CASES]
-    return [case for case in every if topic is None or topic in case.topics]
+    catalogue = [case for module in topics for case in module.CASES]
+    return [case for case in catalogue if topic is None or topic in case.topics]
 
 
 def run(topic: Topic, progress: ProgressOption = False) -> list[Check]:

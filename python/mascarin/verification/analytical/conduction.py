@@ -53,15 +53,15 @@ class Layer(NamedTuple):
 def materials(layers: Sequence[Layer]) -> str:
     """Write the materials and the construction `wall` of a list of layers as YAML."""
     lines = ["materials:"]
-    for k, one in enumerate(layers):
+    for k, layer in enumerate(layers):
         lines.append(
-            f"  m{k}: {{conductivity: {one.conductivity}, density: {one.density}, "
-            f"specific_heat: {one.specific_heat}}}"
+            f"  m{k}: {{conductivity: {layer.conductivity}, density: {layer.density}, "
+            f"specific_heat: {layer.specific_heat}}}"
         )
     lines += ["constructions:", "  wall:", "    layers:"]
     lines += [
-        f"      - {{material: m{k}, thickness: {one.thickness}, nodes: {one.nodes}}}"
-        for k, one in enumerate(layers)
+        f"      - {{material: m{k}, thickness: {layer.thickness}, nodes: {layer.nodes}}}"
+        for k, layer in enumerate(layers)
     ]
     return "\n".join(lines) + "\n"
 
@@ -84,14 +84,14 @@ def _semi_infinite(name: str) -> Iterator[Check]:
     outputs = [f"at{k}.temperature" for k in range(len(_DEPTHS))]
     series = setup.run(text, 60.0, {"surface": surface}, step=step, outputs=outputs).records
     for k, depth in enumerate(_DEPTHS):
-        found = setup.harmonic(series[:, k], step, setup.DAY)
+        oscillation = setup.harmonic(series[:, k], step, setup.DAY)
         x = depth / _THICK.depth
         expected = AMPLITUDE * math.exp(-x)
         bound = MARGIN * (_THICK.error_at(depth) + STEP_ERROR * (OMEGA * step) ** 2 * x)
-        at = f"at {1000 * depth:g} mm"
-        yield Check.near(name, f"amplitude {at}", "K", abs(found), expected, within=bound * expected)
-        lag, hours = -math.atan2(found.imag, found.real), 1.0 / OMEGA / setup.HOUR
-        yield Check.near(name, f"lag {at}", "h", lag * hours, x * hours, within=bound * hours)
+        where = f"at {1000 * depth:g} mm"
+        yield Check.near(name, f"amplitude {where}", "K", abs(oscillation), expected, within=bound * expected)
+        lag, hours = -math.atan2(oscillation.imag, oscillation.real), 1.0 / OMEGA / setup.HOUR
+        yield Check.near(name, f"lag {where}", "h", lag * hours, x * hours, within=bound * hours)
 
 
 # --- the periodic response of a wall of layers -------------------------------------------------------------
@@ -125,21 +125,21 @@ def transfer(layers: Sequence[Layer]) -> Complex:
     def surface(coefficient: float) -> Complex:
         return np.array([[1.0, -1.0 / coefficient], [0.0, 1.0]], dtype=np.complex128)
 
-    whole = surface(_INNER)
-    for one in reversed(layers):
-        x = (1.0 + 1j) * one.thickness / one.depth
-        impedance = one.depth / (one.conductivity * (1.0 + 1j))
+    product = surface(_INNER)
+    for layer in reversed(layers):
+        x = (1.0 + 1j) * layer.thickness / layer.depth
+        impedance = layer.depth / (layer.conductivity * (1.0 + 1j))
         matrix = np.array(
             [[np.cosh(x), -impedance * np.sinh(x)], [-np.sinh(x) / impedance, np.cosh(x)]],
             dtype=np.complex128,
         )
-        whole = matrix @ whole
-    return surface(_OUTER) @ whole
+        product = matrix @ product
+    return surface(_OUTER) @ product
 
 
 def conductance(layers: Sequence[Layer]) -> float:
     """Compute the thermal transmittance with surface resistances. [W/(m2 K)]"""
-    return 1.0 / (1.0 / _OUTER + 1.0 / _INNER + sum(one.thickness / one.conductivity for one in layers))
+    return 1.0 / (1.0 / _OUTER + 1.0 / _INNER + sum(layer.thickness / layer.conductivity for layer in layers))
 
 
 def _response(layers: Sequence[Layer], step: float, *, inside: bool) -> tuple[complex, float]:
@@ -162,7 +162,7 @@ def _periodic(name: str) -> Iterator[Check]:
     step = 300.0
     z = transfer(_WALL)
     u = conductance(_WALL)
-    relative = MARGIN * (sum(one.error for one in _WALL) + STEP_ERROR * (OMEGA * step) ** 2)
+    relative = MARGIN * (sum(layer.error for layer in _WALL) + STEP_ERROR * (OMEGA * step) ** 2)
     hours = 1.0 / OMEGA / setup.HOUR
     through, mean = _response(_WALL, step, inside=False)
     into, _ = _response(_WALL, step, inside=True)
@@ -202,7 +202,7 @@ def _convective_step(name: str) -> Iterator[Check]:
         f"outside: {{measured: air, convection: {h}}}, inside: {{adiabatic: true}}}}\n"
         f"sensors: {{deep: {{surface: w, depth: {depth}}}}}\n"
     )
-    found = setup.run(
+    temperatures = setup.run(
         text,
         end,
         {"air": setup.steady(20.0 + rise)},
@@ -213,7 +213,10 @@ def _convective_step(name: str) -> Iterator[Check]:
     cell = layer.thickness / layer.nodes
     # Second order in both: cell over the depth k/h, step over the time.
     bound = MARGIN * rise * ((cell * h / layer.conductivity) ** 2 + (cell / reach) ** 2 + (step / end) ** 2)
-    for what, x, value in (("of the surface", 0.0, found[0]), (f"at {1000 * depth:g} mm", depth, found[1])):
+    for what, x, value in (
+        ("of the surface", 0.0, temperatures[0]),
+        (f"at {1000 * depth:g} mm", depth, temperatures[1]),
+    ):
         u, v = x / (2.0 * reach), h * reach / layer.conductivity
         # exp(h x/k + h^2 a t/k^2) erfc(u + v), in a form that does not overflow.
         ratio = erfc(u) - math.exp(-u * u) * erfcx(u + v)
@@ -227,7 +230,7 @@ def _order_in_space(name: str) -> Iterator[Check]:
     expected = -1.0 / transfer(_WALL)[0, 1]
     errors = []
     for coarseness in (4, 2, 1):
-        layers = [one._replace(nodes=max(one.nodes // coarseness // 2, 1)) for one in _WALL]
+        layers = [layer._replace(nodes=max(layer.nodes // coarseness // 2, 1)) for layer in _WALL]
         errors.append(abs(_response(layers, 60.0, inside=False)[0] - expected) / abs(expected))
     for k, (coarse, fine) in enumerate(pairwise(errors)):
         order = math.log2(coarse / fine)

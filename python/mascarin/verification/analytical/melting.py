@@ -85,9 +85,9 @@ def _hysteresis(name: str) -> Iterator[Check]:
     for model, fractions in answers.items():
         run, clock = _driven_slab(model, _PARTIAL)
         for (hour, _), expected in zip(_PARTIAL[1:4], fractions, strict=True):
-            found = float(run.records[np.searchsorted(clock, hour), 0])
+            liquid = float(run.records[np.searchsorted(clock, hour), 0])
             # The slab lags by C d^2/(8 k) dT/dt, 5e-4 K; a fraction changes by 0.71 per kelvin.
-            yield Check.near(name, f"liquid after {hour:g} h, {model}", "-", found, expected, within=5e-4)
+            yield Check.near(name, f"liquid after {hour:g} h, {model}", "-", liquid, expected, within=5e-4)
         heat = run.records[:, 1]
         gained = abs(float(heat[-1] - heat[0])) / float(np.ptp(heat))
         yield Check.most(name, f"heat gained from solid to solid, {model}", "-", gained, high=1e-9)

@@ -92,10 +92,10 @@ humidity:
     return setup.run(text, days * setup.DAY, columns, step=step, outputs=outputs, initial=WARM)
 
 
-def _last_day(found: Results, step: float) -> tuple[float, float]:
+def _last_day(results: Results, step: float) -> tuple[float, float]:
     """Relative humidity at the begin and at the end of the source on the last day. [-]"""
     per_day = round(setup.DAY / step)
-    day = found.records[-per_day - 1 :, 0]
+    day = results.records[-per_day - 1 :, 0]
     return float(day[round(BEGIN * per_day / 24)]), float(day[round(END * per_day / 24)])
 
 
@@ -130,11 +130,11 @@ def _layer(source: float) -> tuple[float, float]:
     share = (END - BEGIN) / 24.0
     on, off = (expm(matrix * hours * setup.HOUR) for hours in (END - BEGIN, 24 - END + BEGIN))
     # Steady states with the source on and off, as differences from the mean.
-    rest = [np.linalg.solve(-matrix, [source * part / DRY, 0.0]) for part in (1.0 - share, -share)]
+    steady = [np.linalg.solve(-matrix, [source * part / DRY, 0.0]) for part in (1.0 - share, -share)]
     # x_end = r_on + E_on (x_begin - r_on), x_begin = r_off + E_off (x_end - r_off)
-    constant = rest[0] - on @ rest[0] + on @ (rest[1] - off @ rest[1])
+    constant = steady[0] - on @ steady[0] + on @ (steady[1] - off @ steady[1])
     end = np.linalg.solve(np.eye(2) - on @ off, constant)
-    begin = rest[1] + off @ (end - rest[1])
+    begin = steady[1] + off @ (end - steady[1])
     return mean + float(begin[0]), mean + float(end[0])
 
 
@@ -159,7 +159,7 @@ def _with_sorption(name: str) -> Iterator[Check]:
     for source, words in ((0.01 * SOURCE, "5 g/h"), (SOURCE, "500 g/h")):
         mean = _ratio(OUTDOORS) + source / FLOW * (END - BEGIN) / 24.0
         begin, end = _last_day(_run(source, sorption, _relative(mean), days, step), step)
-        expected = [100.0 * _relative(one) for one in _layer(source)]
+        expected = [100.0 * _relative(humidity_ratio) for humidity_ratio in _layer(source)]
         swing = expected[1] - expected[0]
         bound = 2e-3 * swing
         for hour, value, right in ((END, end, expected[1]), (BEGIN, begin, expected[0])):

@@ -122,8 +122,8 @@ def _one_phase(name: str) -> Iterator[Check]:
     melted = 100.0 * x / _SLAB
     yield Check.near(name, "melted by the solution (published 81.44)", "%", melted, 81.44, within=0.005)
     front = _ONE_PHASE.simulated([time], thickness=_SLAB, cell=1e-3, step=300.0)[0]
-    found = front / (2.0 * math.sqrt(_ONE_PHASE.diffusivity * time))
-    yield Check.near(name, "l from the front, 1 mm, 300 s", "-", found, root, within=FRONT * root)
+    simulated = front / (2.0 * math.sqrt(_ONE_PHASE.diffusivity * time))
+    yield Check.near(name, "l from the front, 1 mm, 300 s", "-", simulated, root, within=FRONT * root)
     yield Check.near(name, "melted, 1 mm, 300 s", "%", 100.0 * front / _SLAB, melted, within=FRONT * melted)
 
 
@@ -169,13 +169,15 @@ def _robin(name: str) -> Iterator[Check]:
     step, gap = 3000.0, conductivity / coefficient
     # At the centers of volumes the discretization has no error in the position of the front.
     fronts = [0.0155, 0.0405]
-    at = [((x + gap) ** 2 - gap**2) * density * latent / (2.0 * conductivity * excess) for x in fronts]
+    front_times = [
+        ((x + gap) ** 2 - gap**2) * density * latent / (2.0 * conductivity * excess) for x in fronts
+    ]
     run = setup.run(
-        text, math.ceil(at[-1] / step) * step, {"air": setup.steady(26.0 + excess)}, step=step,
+        text, math.ceil(front_times[-1] / step) * step, {"air": setup.steady(26.0 + excess)}, step=step,
         outputs=["slab.wax_liquid_fraction", "slab.outside_temperature"], initial=26.0 - 5.0 * SHARP,
     )  # fmt: skip
     clock = step * np.arange(len(run.records))
-    for x, time in zip(fronts, at, strict=True):
+    for x, time in zip(fronts, front_times, strict=True):
         fraction, surface = (float(np.interp(time, clock, column)) for column in run.records.T)
         when = f"after {time / setup.HOUR:.2f} h"
         yield Check.near(name, f"front {when}", "mm", 50.0 * fraction, 1000.0 * x, within=FRONT * 1000.0 * x)
@@ -200,15 +202,15 @@ def _mushy(name: str) -> Iterator[Check]:
     t = setup.times(30 * setup.DAY, 60.0)
     columns = {"surface": 20.0 + amplitude * np.sin(omega * t)}
     series = setup.run(text, 60.0, columns, step=step, outputs=["at0.temperature"]).records[:, 0]
-    found = setup.harmonic(series, step, setup.DAY)
+    oscillation = setup.harmonic(series, step, setup.DAY)
     ratio = x / depth
     bound = 2.0 * ((cell / depth) ** 2 * (0.25 + ratio / 12.0) + 0.0404 * (omega * step) ** 2 * ratio)
     expected = amplitude * math.exp(-ratio)
     yield Check.near(
-        name, "amplitude at one damping depth", "K", abs(found), expected, within=bound * expected
+        name, "amplitude at one damping depth", "K", abs(oscillation), expected, within=bound * expected
     )
     hours = 1.0 / omega / setup.HOUR
-    lag = -math.atan2(found.imag, found.real) * hours
+    lag = -math.atan2(oscillation.imag, oscillation.real) * hours
     yield Check.near(name, "lag at one damping depth", "h", lag, ratio * hours, within=bound * hours)
 
 
@@ -255,12 +257,12 @@ def _boltzmann(name: str) -> Iterator[Check]:
     )
     text = slab(wax, thickness, round(thickness / cell), depths=depths)
     outputs = [f"at{k}.temperature" for k in range(len(depths))] + ["slab.outside_flux"]
-    found = setup.run(
+    simulated = setup.run(
         text, time, {"surface": setup.steady(surface)}, step=step, outputs=outputs, initial=start
     ).records[-1]
     # Second order in both: volume over the length of the profile, step over the time.
     relative = 2.0 * ((cell / depths[0]) ** 2 + (step / time) ** 2)
-    for x, value in zip(depths, found[:2], strict=True):
+    for x, value in zip(depths, simulated[:2], strict=True):
         expected = float(answer.sol(x / math.sqrt(time))[0])
         yield Check.near(
             name,
@@ -271,7 +273,7 @@ def _boltzmann(name: str) -> Iterator[Check]:
             within=relative * (surface - start),
         )
     flux = -float(entering) / math.sqrt(time)
-    yield Check.near(name, "flux into the surface", "W/m2", found[2], flux, within=relative * flux)
+    yield Check.near(name, "flux into the surface", "W/m2", simulated[2], flux, within=relative * flux)
 
 
 def _convergence(name: str) -> Iterator[Check]:
@@ -312,17 +314,27 @@ def _cycles(name: str) -> Iterator[Check]:
             outputs=["slab.wax_enthalpy", "slab.wax_liquid_fraction"], initial=20.0,
         )  # fmt: skip
         last = run.records[-97:]
-        at = f"half-width {width:g} K"
+        half_width = f"half-width {width:g} K"
         amplitude = float(np.ptp(last[:, 0])) * 0.02  # J/m2 in the slab
         drift = abs(float(last[-1, 0] - last[0, 0])) * 0.02
         # After 18 days of the same cycle the state repeats within the tolerance of Newton's iteration.
         yield Check.most(
-            name, f"heat gained in a cycle over the heat exchanged, {at}", "-", drift / amplitude, high=1e-6
+            name,
+            f"heat gained in a cycle over the heat exchanged, {half_width}",
+            "-",
+            drift / amplitude,
+            high=1e-6,
         )
         yield Check.most(
-            name, f"energy-balance residual over {days} cycles, {at}", "-", run.energy.closure, high=1e-10
+            name,
+            f"energy-balance residual over {days} cycles, {half_width}",
+            "-",
+            run.energy.closure,
+            high=1e-10,
         )
-        yield Check.near(name, f"melted in a cycle, {at}", "-", float(np.ptp(last[:, 1])), 1.0, within=1e-3)
+        yield Check.near(
+            name, f"melted in a cycle, {half_width}", "-", float(np.ptp(last[:, 1])), 1.0, within=1e-3
+        )
 
 
 def _robust(name: str) -> Iterator[Check]:

@@ -48,8 +48,8 @@ def exchange(surfaces: Sequence[EnclosureSurface], views: setup.Array) -> setup.
     ndarray, shape (n, n)
         ``Q = M E``: Q [W] from black emissions E [W/m2].
     """
-    e = np.array([one.emissivity for one in surfaces])
-    area = np.array([one.area for one in surfaces])
+    e = np.array([surface.emissivity for surface in surfaces])
+    area = np.array([surface.area for surface in surfaces])
     unit = np.eye(len(surfaces))
     # J = e E + (1 - e) F J; Q = A (J - F J).
     radiosity = np.linalg.solve(unit - (1.0 - e)[:, None] * views, np.diag(e))
@@ -60,8 +60,8 @@ def balance(surfaces: Sequence[EnclosureSurface], leaving: setup.Array) -> setup
     """Solve for the temperatures of surfaces and air of a steady room without air change. [degC]"""
     from scipy.optimize import root
 
-    behind = np.array([one.behind for one in surfaces])
-    area = np.array([one.area for one in surfaces])
+    behind = np.array([wall.behind for wall in surfaces])
+    area = np.array([wall.area for wall in surfaces])
 
     def residual(x: setup.Array) -> setup.Array:
         surface, air = x[:-1], x[-1]
@@ -87,21 +87,21 @@ def _enclosure(
             rows.append(f"f{k}: {{{cells}}}")
     factors = f", view_factors: {{{', '.join(rows)}}}" if rows else ""
     described = "".join(
-        f"  f{k}: {{construction: panel, area: {one.area!r}, tilt: {180 * (k % 2)}, "
+        f"  f{k}: {{construction: panel, area: {surface.area!r}, tilt: {180 * (k % 2)}, "
         f"outside: {{measured: t{k}}}, "
-        f"inside: {{zone: room, convection: {_CONVECTION}, emissivity: {one.emissivity}}}}}\n"
-        for k, one in enumerate(surfaces)
+        f"inside: {{zone: room, convection: {_CONVECTION}, emissivity: {surface.emissivity}}}}}\n"
+        for k, surface in enumerate(surfaces)
     )
     text = (
         f"materials: {{panel: {{kind: resistance, resistance: {_RESISTANCE}}}}}\n"
         "constructions: {panel: {layers: [{material: panel}]}}\n"
         f"zones: {{room: {{volume: 10{factors}}}}}\nsurfaces:\n{described}"
     )
-    columns = {f"t{k}": setup.steady(one.behind) for k, one in enumerate(surfaces)}
+    columns = {f"t{k}": setup.steady(surface.behind) for k, surface in enumerate(surfaces)}
     outputs = [f"f{k}.inside_temperature" for k in range(len(surfaces))] + ["room.air_temperature"]
     end = 10 * setup.DAY
-    found = setup.run(text, end, columns, step=setup.HOUR, outputs=outputs).records[-1]
-    for output, value, expected in zip(outputs, found, balance(surfaces, leaving), strict=True):
+    temperatures = setup.run(text, end, columns, step=setup.HOUR, outputs=outputs).records[-1]
+    for output, value, expected in zip(outputs, temperatures, balance(surfaces, leaving), strict=True):
         yield Check.near(name, f"{title}: {output}", "degC", value, float(expected), within=TOLERANCE)
 
 
@@ -164,7 +164,7 @@ surfaces:
           outside: {{outdoors: true, convection: {convection}, emissivity: {emissivity}, absorptance: 0.5}}}}
 """
             end = 5 * setup.DAY
-            found = setup.run(
+            temperature = setup.run(
                 text, end, columns, step=setup.HOUR, outputs=["plate.outside_temperature"]
             ).records[-1, 0]
             view = 0.5 * (1.0 + math.cos(math.radians(tilt)))
@@ -176,7 +176,9 @@ surfaces:
                 return emissivity * (arriving - emission(surface)) + convection * (air - surface)
 
             expected = float(brentq(heat, air - 60.0, air + 20.0, xtol=1e-12))
-            yield Check.near(name, f"plate of {tilt:g} deg, {sky}", "degC", found, expected, within=TOLERANCE)
+            yield Check.near(
+                name, f"plate of {tilt:g} deg, {sky}", "degC", temperature, expected, within=TOLERANCE
+            )
 
 
 # --- surface heat transfer coefficients --------------------------------------------------------------------
@@ -302,9 +304,9 @@ def _correlation(
     wind: float = 0.0,
 ) -> Iterator[Check]:
     outputs = [f"{surface}_flux", f"{surface}_temperature", *([air] if isinstance(air, str) else [])]
-    found = setup.run(text, end, columns, step=600.0, outputs=outputs).records[-1]
-    difference = float(found[1]) - (float(found[2]) if isinstance(air, str) else float(air))
-    coefficient = abs(float(found[0])) / difference
+    row = setup.run(text, end, columns, step=600.0, outputs=outputs).records[-1]
+    difference = float(row[1]) - (float(row[2]) if isinstance(air, str) else float(air))
+    coefficient = abs(float(row[0])) / difference
     expected = law.by_hand(difference, wind)
     kind = law.law.strip("{}").split(",")[0].removeprefix("kind: ")
     # |dT| is smoothed within 0.01 K of 0, by (0.01/dT)^2/2; no exponent is above 1. And 1e-6 K of Newton.

@@ -42,17 +42,17 @@ _CHANNELS: Final = (
 )
 
 
-def times(length: float, every: float) -> Array:
+def times(length: float, interval: float) -> Array:
     """Return times from 0 to a length, both included, shape (n + 1,). [s]"""
-    return every * np.arange(round(length / every) + 1, dtype=np.float64)
+    return interval * np.arange(round(length / interval) + 1, dtype=np.float64)
 
 
-def climate(every: float, columns: Mapping[str, Array | float]) -> Climate:
+def climate(interval: float, columns: Mapping[str, Array | float]) -> Climate:
     """Make a climate from columns of instants; without a column: no wind, no sun, air of 20 degC.
 
     Parameters
     ----------
-    every : float
+    interval : float
         Spacing of the stamps. [s]
     columns : mapping of str to ndarray or float
         Climate channels by their names; every other name is a measured column. [unit of each]
@@ -66,18 +66,20 @@ def climate(every: float, columns: Mapping[str, Array | float]) -> Climate:
 
     from mascarin.weather import Climate
 
-    given = {"air_temperature": 20.0, **columns}
-    count = max(len(np.atleast_1d(column)) for column in given.values())
-    index = pd.date_range(START, periods=count, freq=pd.Timedelta(seconds=every), tz="UTC")
-    absent = [name for name in ("dew_point", "wind_speed", "wind_direction") if name not in given]
-    sunny = "direct_normal" in given
+    channels = {"air_temperature": 20.0, **columns}
+    count = max(len(np.atleast_1d(column)) for column in channels.values())
+    index = pd.date_range(START, periods=count, freq=pd.Timedelta(seconds=interval), tz="UTC")
+    absent = [name for name in ("dew_point", "wind_speed", "wind_direction") if name not in channels]
+    sunny = "direct_normal" in channels
     return Climate.from_table(
-        pd.DataFrame({name: np.broadcast_to(np.asarray(c), count) for name, c in given.items()}, index=index),
+        pd.DataFrame(
+            {name: np.broadcast_to(np.asarray(c), count) for name, c in channels.items()}, index=index
+        ),
         timezone="UTC",
-        columns={name: name for name in given if name in _CHANNELS},
-        extra=[name for name in given if name not in _CHANNELS],
+        columns={name: name for name in channels if name in _CHANNELS},
+        extra=[name for name in channels if name not in _CHANNELS],
         absent=absent if sunny else [*absent, "radiation"],
-        instant=[name for name in given if name in _CHANNELS],
+        instant=[name for name in channels if name in _CHANNELS],
     )
 
 
@@ -118,7 +120,7 @@ def simulation(
 
 def run(
     text: str,
-    every: float,
+    interval: float,
     columns: Mapping[str, Array | float],
     *,
     step: float,
@@ -130,7 +132,7 @@ def run(
     """Build and simulate; arguments as for `building`, `climate` and `simulation`."""
     prepared = simulation(
         building(text),
-        climate(every, columns),
+        climate(interval, columns),
         step=step,
         outputs=outputs,
         initial=initial,

@@ -24,7 +24,7 @@ def _weather(days: int) -> dict[str, setup.Array]:
 
     t = setup.times(days * setup.DAY, 600.0)
     stamps = pd.date_range(setup.START, periods=len(t), freq="10min", tz="UTC")
-    zenith = solarposition.get_solarposition(stamps, *_PLACE)["zenith"].to_numpy()
+    zenith = solarposition.get_solarposition(stamps, *_LOCATION)["zenith"].to_numpy()
     height = np.maximum(np.cos(np.radians(zenith)), 0.0)
     clear = 0.5 + 0.5 * np.sin(2.0 * np.pi * t / (0.9 * setup.DAY))
     return {
@@ -33,7 +33,7 @@ def _weather(days: int) -> dict[str, setup.Array]:
     }
 
 
-_PLACE: Final = (43.5, 1.5)
+_LOCATION: Final = (43.5, 1.5)
 
 
 def _transposition(name: str) -> Iterator[Check]:
@@ -50,7 +50,7 @@ def _transposition(name: str) -> Iterator[Check]:
     weather = setup.climate(600.0, {**_weather(4), "behind": 20.0})
     for model, pvlib_model in _MODELS.items():
         described = setup.building(
-            f"site: {{latitude: {_PLACE[0]}, longitude: {_PLACE[1]}, altitude: 0, timezone: UTC, "
+            f"site: {{latitude: {_LOCATION[0]}, longitude: {_LOCATION[1]}, altitude: 0, timezone: UTC, "
             f"diffuse: {model}, ground_reflectance: {_ALBEDO}, sky: {{kind: offset, depression: 0}}}}\n"
             "materials: {panel: {kind: resistance, resistance: 1}}\n"
             "constructions: {panel: {layers: [{material: panel}]}}\n"
@@ -60,24 +60,24 @@ def _transposition(name: str) -> Iterator[Check]:
         marched = setup.simulation(described, weather, step=900.0, outputs=outputs, initial=20.0)
         records = marched.run().records[1:]
         row = weather.forcing(described.site, marched.start, marched.end, 900.0, "sdirk2", ["behind"])[:, -1]
-        channel = {one: row[:, k] for k, one in enumerate(CHANNELS)}
+        channel = {quantity: row[:, k] for k, quantity in enumerate(CHANNELS)}
         zenith = np.degrees(np.arccos(np.clip(channel["sun_up"], -1.0, 1.0)))
         bearing = np.degrees(np.arctan2(channel["sun_east"], channel["sun_north"])) % 360.0
         worst = 0.0
         # pvlib's Perez model divides by the air mass, which has no value below the horizon.
-        lit = zenith < 89.9
+        daytime = zenith < 89.9
         for k, (tilt, azimuth) in enumerate(_PLANES):
             flux, surface = records[:, 2 * k], records[:, 2 * k + 1]
             simulated = flux + (surface - channel["air_temperature"])  # a I + h (Ta - T) = q with a = h = 1
-            extra = {} if model == "isotropic" else {"dni_extra": channel["direct_normal_extra"][lit]}
+            extra = {} if model == "isotropic" else {"dni_extra": channel["direct_normal_extra"][daytime]}
             if model == "perez":
-                extra["airmass"] = atmosphere.get_relative_airmass(zenith[lit])
+                extra["airmass"] = atmosphere.get_relative_airmass(zenith[daytime])
             expected = irradiance.get_total_irradiance(
-                tilt, azimuth, zenith[lit], bearing[lit], channel["direct_normal"][lit],
-                channel["global_horizontal"][lit], channel["diffuse_horizontal"][lit],
+                tilt, azimuth, zenith[daytime], bearing[daytime], channel["direct_normal"][daytime],
+                channel["global_horizontal"][daytime], channel["diffuse_horizontal"][daytime],
                 albedo=_ALBEDO, model=pvlib_model, **extra,
             )["poa_global"]  # fmt: skip
-            worst = max(worst, float(np.max(np.abs(simulated[lit] - np.asarray(expected)))))
+            worst = max(worst, float(np.max(np.abs(simulated[daytime] - np.asarray(expected)))))
         yield Check.most(
             name,
             f"{model}, largest difference on {len(_PLANES)} planes",
@@ -93,9 +93,9 @@ def _position(name: str) -> Iterator[Check]:
 
     from mascarin.weather.sun import SunPath
 
-    places = ((67.3, 14.4), (43.5, -1.5), (0.0, 0.0), (-21.3, 55.5), (-54.8, -68.3))
+    locations = ((67.3, 14.4), (43.5, -1.5), (0.0, 0.0), (-21.3, 55.5), (-54.8, -68.3))
     days = pd.to_datetime(["2024-02-29", "2023-06-21", "2023-09-23", "2024-12-31"], utc=True)
-    for latitude, longitude in places:
+    for latitude, longitude in locations:
         worst = 0.0
         for day in days:
             times = pd.date_range(day, periods=480, freq="197s")

@@ -50,8 +50,8 @@ surfaces:
         elapsed = hours * setup.HOUR / constant
         expected = 20.0 * math.exp(-elapsed)
         bound = 2.0 * 0.0404 * (step / constant) ** 2 * elapsed * expected
-        found = series[round(hours * setup.HOUR / step)]
-        yield Check.near(name, f"air after {hours:g} h", "degC", found, expected, within=bound)
+        temperature = series[round(hours * setup.HOUR / step)]
+        yield Check.near(name, f"air after {hours:g} h", "degC", temperature, expected, within=bound)
 
 
 # --- two zones, steady -------------------------------------------------------------------------------------
@@ -90,7 +90,7 @@ surfaces:
         "between.inside_flux",
         "south.outside_temperature",
     ]
-    found = setup.run(
+    simulated = setup.run(
         text, days * setup.DAY, columns, step=setup.HOUR, outputs=outputs, initial=10.0
     ).records[-1]
 
@@ -114,7 +114,7 @@ surfaces:
     bound = 1e-6
     expected = (sunny, shady, flux, surface)
     units = ("degC", "degC", "W/m2", "degC")
-    for output, unit, value, right_value in zip(outputs, units, found, expected, strict=True):
+    for output, unit, value, right_value in zip(outputs, units, simulated, expected, strict=True):
         yield Check.near(name, output, unit, value, float(right_value), within=bound)
 
 
@@ -270,8 +270,8 @@ def _lanes(name: str) -> Iterator[Check]:
         samples[:, prepared.position(path)] *= rng.uniform(0.6, 1.2, len(samples))
     records, closure, failures = prepared.ensemble(samples)
     alone = [prepared.run_vector(row) for row in samples]
-    apart = max(float(np.max(np.abs(records[k] - one.records))) for k, one in enumerate(alone))
-    residual = max(abs(float(closure[k]) - one.energy.closure) for k, one in enumerate(alone))
+    apart = max(float(np.max(np.abs(records[k] - run.records))) for k, run in enumerate(alone))
+    residual = max(abs(float(closure[k]) - run.energy.closure) for k, run in enumerate(alone))
     yield Check.most(name, "largest difference of 11 members, alone and in an ensemble", "K", apart, high=0.0)
     yield Check.most(name, "largest difference of the energy-balance residual", "-", residual, high=0.0)
     yield Check.most(name, "members that failed", "-", float(len(failures)), high=0.0)

@@ -223,5 +223,5 @@ def chosen(names: Sequence[str]) -> list[Case]:
             raise InputError(
                 f"case: found '{name}'; expected one of {', '.join(CASES)}, or a building file (.yaml)."
             )
-    wanted = {name.upper() for name in names}
-    return [case for case in CASES.values() if case.name in wanted]
+    selected = {name.upper() for name in names}
+    return [case for case in CASES.values() if case.name in selected]

@@ -185,10 +185,10 @@ def bins(temperatures: Array) -> Array:
     ndarray, shape (149,)
         Number of hours with ``n <= T < n + 1``.
     """
-    place = (
+    bin_numbers = (
         np.clip(np.floor(temperatures + TOLERANCE), COLDEST_BIN, HOTTEST_BIN).astype(np.int64) - COLDEST_BIN
     )
-    return np.bincount(place, minlength=HOTTEST_BIN - COLDEST_BIN + 1).astype(np.float64)
+    return np.bincount(bin_numbers, minlength=HOTTEST_BIN - COLDEST_BIN + 1).astype(np.float64)
 
 
 def energy(watts: Array) -> float:
@@ -210,17 +210,24 @@ def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
     -------
     list of Quantity
     """
-    found = {**_loads(years[case.name]), **_floating(years[case.name]), **_sun(years, case)}
-    known = ranges()
+    values = {**_loads(years[case.name]), **_floating(years[case.name]), **_sun(years, case)}
+    reference_ranges = ranges()
     return [
-        Quantity(case.name, name, known[case.name, name].unit, value, at, known[case.name, name])
-        for name, (value, at) in found.items()
-        if (case.name, name) in known
+        Quantity(
+            case.name,
+            name,
+            reference_ranges[case.name, name].unit,
+            value,
+            when,
+            reference_ranges[case.name, name],
+        )
+        for name, (value, when) in values.items()
+        if (case.name, name) in reference_ranges
     ]
 
 
 def quantities_of(
-    name: str, series: Mapping[str, Array], known: Mapping[tuple[str, str], Range] | None = None
+    name: str, series: Mapping[str, Array], reference_ranges: Mapping[tuple[str, str], Range] | None = None
 ) -> list[Quantity]:
     """Compute loads and temperatures of any building.
 
@@ -230,7 +237,7 @@ def quantities_of(
         Name of the building.
     series : mapping of str to ndarray, shape (8760,)
         Hourly means of loads and air temperatures, by output name. [W, degC]
-    known : mapping of (str, str) to Range, optional
+    reference_ranges : mapping of (str, str) to Range, optional
         Ranges by case and quantity, from `read_ranges`. A case is the name, or its file with or without
         ending; in a building of one zone the quantity may be written without the zone.
 
@@ -239,32 +246,39 @@ def quantities_of(
     list of Quantity
         Annual and peak loads, and extremes and mean of the air temperature, as ``zone.quantity``.
     """
-    found = []
+    computed = []
     for output, values in series.items():
         zone, _, kind = output.partition(".")
         numbers = (
             _extremes(values) if kind == "air_temperature" else _load(kind.removesuffix("_load"), values)
         )
-        for quantity, (value, at) in numbers.items():
+        for quantity, (value, when) in numbers.items():
             unit = _UNITS[quantity.split("_")[0]]
-            found.append(Quantity(name, f"{zone}.{quantity}", unit, value, at, None))
+            computed.append(Quantity(name, f"{zone}.{quantity}", unit, value, when, None))
     zones = {output.partition(".")[0] for output in series}
-    return found if known is None else [_with_range(one, known, lone=len(zones) == 1) for one in found]
+    return (
+        computed
+        if reference_ranges is None
+        else [_with_range(row, reference_ranges, lone=len(zones) == 1) for row in computed]
+    )
 
 
-def _with_range(one: Quantity, known: Mapping[tuple[str, str], Range], *, lone: bool) -> Quantity:
+def _with_range(
+    computed: Quantity, reference_ranges: Mapping[tuple[str, str], Range], *, lone: bool
+) -> Quantity:
     """The same quantity with its range, if there is one."""
-    short = one.quantity.partition(".")[2]
-    for name in case_names(one.case):
-        for quantity in (one.quantity, *((short,) if lone else ())):
-            found = known.get((name, quantity))
-            if found is not None and found.unit not in ("", one.unit):
+    short = computed.quantity.partition(".")[2]
+    for name in case_names(computed.case):
+        for quantity in (computed.quantity, *((short,) if lone else ())):
+            reference = reference_ranges.get((name, quantity))
+            if reference is not None and reference.unit not in ("", computed.unit):
                 raise InputError(
-                    f"--ranges: found {quantity} of {name} in {found.unit!r}; expected {one.unit}: convert it"
+                    f"--ranges: found {quantity} of {name} in {reference.unit!r}; expected "
+                    f"{computed.unit}: convert it"
                 )
-            if found is not None:
-                return replace(one, range=found)
-    return one
+            if reference is not None:
+                return replace(computed, range=reference)
+    return computed
 
 
 def case_names(file: str) -> tuple[str, ...]:
@@ -328,17 +342,17 @@ def _sun(years: Mapping[str, Year], case: Case) -> dict[str, tuple[float, str]]:
     """Incident and transmitted solar radiation; transmitted is per area of glass."""
     year = years[case.name]
     orientation = facing(case)
-    found = {
+    values = {
         f"incident_solar_{plane}": (1e3 * energy(year.series[output]), "")
         for plane, output in ORIENTATIONS.items()
         if output in year.series
     }
     if THROUGH_GLASS not in year.series:
-        return found
+        return values
     through = 1e3 * energy(year.series[THROUGH_GLASS])
-    found[f"transmitted_solar_{orientation}"] = (through, "")
-    found[f"transmissivity_{orientation}"] = (through / (1e3 * energy(year.series[ONTO_GLASS])), "")
+    values[f"transmitted_solar_{orientation}"] = (through, "")
+    values[f"transmissivity_{orientation}"] = (through / (1e3 * energy(year.series[ONTO_GLASS])), "")
     if case.base in years and case.shaded:
         unshaded = 1e3 * energy(years[case.base].series[THROUGH_GLASS])
-        found[_shading(case)] = (1.0 - through / unshaded, "")
-    return found
+        values[_shading(case)] = (1.0 - through / unshaded, "")
+    return values

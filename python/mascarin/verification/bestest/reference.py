@@ -72,7 +72,7 @@ def ranges() -> Mapping[tuple[str, str], Range]:
     """
     text = files("mascarin.verification.bestest").joinpath("reference.csv").read_text(encoding="utf-8")
     rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
-    return {(found.case, found.quantity): found for found in map(_range, rows)}
+    return {(row.case, row.quantity): row for row in map(_range, rows)}
 
 
 def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
@@ -103,15 +103,17 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
     with csv_refused(str(path)):
         reader = csv.DictReader((line for _, line in lines), skipinitialspace=True)
         names, rows = [str(name).strip() for name in reader.fieldnames or ()], list(reader)
-    programs = [name for name in names if name not in _OWN]
-    missing = [name for name in _OWN if name not in names] or ([] if len(programs) > 1 else ["min", "max"])
+    programs = [name for name in names if name not in _REQUIRED_COLUMNS]
+    missing = [name for name in _REQUIRED_COLUMNS if name not in names] or (
+        [] if len(programs) > 1 else ["min", "max"]
+    )
     if missing:
         raise InputError(
             f"{path}:{lines[0][0] if lines else 1}: found the columns {', '.join(names) or 'none'}; "
             "expected case, "
             f"quantity, unit, min and max (or a column for each program): add {', '.join(missing)}"
         )
-    found = {}
+    table = {}
     for (number, _), row in zip(lines[1:], rows, strict=False):
         where = f"{path}:{number}"
         cells = {
@@ -125,10 +127,10 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
             raise InputError(
                 f"{where}: found min {values['min']:g} above max {values['max']:g}; exchange them"
             )
-        if (case, quantity) in found:
+        if (case, quantity) in table:
             raise InputError(f"{where}: found {quantity} of {case} again; expected it once")
-        found[case, quantity] = Range(case, quantity, cells.get("unit", ""), values, {})
-    return found
+        table[case, quantity] = Range(case, quantity, cells.get("unit", ""), values, {})
+    return table
 
 
 def _value(text: str, where: str) -> float:
@@ -141,7 +143,7 @@ def _value(text: str, where: str) -> float:
     return number
 
 
-_OWN: Final = ("case", "quantity", "unit")
+_REQUIRED_COLUMNS: Final = ("case", "quantity", "unit")
 _CELL: Final = re.compile(r"(?P<value>-?[\d.]+)(?: (?P<when>\w+ \d+ \d+))?")
 
 

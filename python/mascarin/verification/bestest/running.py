@@ -47,7 +47,7 @@ def run(
     cases: Sequence[Case],
     climate: Climate,
     *,
-    own: Sequence[Path] = (),
+    files: Sequence[Path] = (),
     step: str | float = STEP,
     workers: int = WORKERS,
     progress: ProgressOption = False,
@@ -60,7 +60,7 @@ def run(
         The cases.
     climate : Climate
         The weather, from `weather.read`.
-    own : sequence of Path
+    files : sequence of Path
         Building files.
     step : str or float
         Time step. [s]
@@ -85,21 +85,25 @@ def run(
     """
     from mascarin.building import load
 
-    buildings = {file: load(file) for file in own}  # errors in them are found before the first run
+    buildings = {file: load(file) for file in files}  # errors in them are found before the first run
     names = dict.fromkeys(name for case in cases for name in (case.name, *partners(case)))
     with reporting(progress, "cases") as report, ThreadPoolExecutor(workers) as pool:
         years = {name: pool.submit(run_one, CASES[name], climate, step) for name in names}
-        others = {file: pool.submit(_run_own, one, climate, step) for file, one in buildings.items()}
+        file_runs = {
+            file: pool.submit(_run_own, building, climate, step) for file, building in buildings.items()
+        }
         try:
-            _await([*years.values(), *others.values()], report)
+            _await([*years.values(), *file_runs.values()], report)
         except BaseException:
             # Ctrl-C reaches the first thread only; runs on the others are stopped here.
             pool.shutdown(wait=False, cancel_futures=True)
-            left: set[Future[Any]] = {*years.values(), *others.values()}
-            while left := wait(left, timeout=0.1).not_done:
+            unfinished: set[Future[Any]] = {*years.values(), *file_runs.values()}
+            while unfinished := wait(unfinished, timeout=0.1).not_done:
                 _engine.interrupt()
             raise
-    return {name: f.result() for name, f in years.items()}, {file: f.result() for file, f in others.items()}
+    return {name: f.result() for name, f in years.items()}, {
+        file: f.result() for file, f in file_runs.items()
+    }
 
 
 def _await(futures: Sequence[Future[Any]], report: Report) -> None:
@@ -119,13 +123,13 @@ def run_one(case: Case, climate: Climate, step: str | float = STEP) -> Year:
 
 
 def _run_own(building: Building, climate: Climate, step: str | float) -> dict[str, Array]:
-    wanted = [f"{zone}.air_temperature" for zone in building.zones]
-    wanted += [f"{name}.{load}_load" for name, zone in building.zones.items() for load in zone.loads]
-    return _simulate(building, climate, step, wanted)[0]
+    names = [f"{zone}.air_temperature" for zone in building.zones]
+    names += [f"{name}.{load}_load" for name, zone in building.zones.items() for load in zone.loads]
+    return _simulate(building, climate, step, names)[0]
 
 
 def _simulate(
-    building: Building, climate: Climate, step: str | float, wanted: Iterable[str]
+    building: Building, climate: Climate, step: str | float, output_names: Iterable[str]
 ) -> tuple[dict[str, Array], float]:
     """Hourly means over the year by output, and the relative energy-balance residual."""
     from datetime import datetime, timedelta
@@ -139,7 +143,7 @@ def _simulate(
         step=step,
         start=str(new_year - timedelta(days=WARM_UP_DAYS)),
         end=f"{YEAR + 1}-01-01",
-        outputs=sorted(wanted),
+        outputs=sorted(output_names),
     )
     hourly: dict[str, Array] = {
         name: np.asarray(results.hourly(name), dtype=np.float64)[-HOURS:] for name in results
@@ -149,16 +153,16 @@ def _simulate(
 
 def outputs(case: Case) -> set[str]:
     """Return the outputs of a case."""
-    wanted = {f"{zone}.air_temperature" for zone in {case.zone, case.floating or case.zone}}
+    names = {f"{zone}.air_temperature" for zone in {case.zone, case.floating or case.zone}}
     if case.conditioned:
-        wanted.add(f"{case.zone}.cooling_load")
+        names.add(f"{case.zone}.cooling_load")
         if case.thermostat != "day cooling":
-            wanted.add(f"{case.zone}.heating_load")
+            names.add(f"{case.zone}.heating_load")
     if case.name == "600":
-        wanted |= {*ORIENTATIONS.values(), "sky_temperature"}
+        names |= {*ORIENTATIONS.values(), "sky_temperature"}
     if has_solar_quantities(case):
-        wanted |= {f"{window}.{kind}" for window in _glass(case) for kind in _SUN}
-    return wanted
+        names |= {f"{window}.{kind}" for window in _glass(case) for kind in _SUN}
+    return names
 
 
 _SUN: Final = ("incident_solar", "transmitted_solar")

@@ -46,12 +46,12 @@ def read(file: Path | None) -> Climate:
     if not file.is_file():
         raise InputError(f"--weather: found no file '{file}'; expected the standard's weather file. {WHERE}.")
     climate = Climate.from_epw(file, typical=True)
-    found = fingerprint(file)
-    if found != FINGERPRINT:
-        place = climate.site.name if climate.site is not None else "an unknown place"
+    digest = fingerprint(file)
+    if digest != FINGERPRINT:
+        location = climate.site.name if climate.site is not None else "an unknown place"
         raise InputError(
-            f"--weather: found '{file}', weather of {place} (fingerprint {found[:12]}); expected that of the "
-            f"standard (fingerprint {FINGERPRINT[:12]}), for which the programs were run. {WHERE}."
+            f"--weather: found '{file}', weather of {location} (fingerprint {digest[:12]}); expected that of "
+            f"the standard (fingerprint {FINGERPRINT[:12]}), for which the programs were run. {WHERE}."
         )
     return climate
 

@@ -59,9 +59,9 @@ def write_all() -> None:
 
 def _header(case: Case) -> str:
     against = "" if case.base == case.name else f"# As case {case.base}, but: {case.change}.\n"
-    own = f"# {case.change[0].upper()}{case.change[1:]}.\n" if not against else ""
+    title = f"# {case.change[0].upper()}{case.change[1:]}.\n" if not against else ""
     return (
-        f"# ANSI/ASHRAE Standard 140-2020, building thermal fabric, case {case.name}.\n{own}{against}"
+        f"# ANSI/ASHRAE Standard 140-2020, building thermal fabric, case {case.name}.\n{title}{against}"
         "# Choices that the standard leaves open, the same for all cases: docs/bestest.md.\n"
         "# Coordinates: x east, y north, z up [m], inside dimensions, origin: south-west floor corner.\n"
         "# Written by mascarin.verification.bestest.writing from the table of cases; a test compares.\n"
@@ -281,9 +281,9 @@ def _common_wall(case: Case) -> Iterator[str]:
 
 def _panels(case: Case) -> Iterator[str]:
     outside = f"&panel_outside {_weather(case, 'very_smooth')}"
-    for place, (west, east) in _SPANS.items():
+    for window, (west, east) in _SPANS.items():
         outline = _upright((west, 0.0), (east, 0.0), SILL, HEAD)
-        yield from _surface(f"{place}_panel", "panels", outline, outside, "*inside")
+        yield from _surface(f"{window}_panel", "panels", outline, outside, "*inside")
         outside = "*panel_outside"
 
 

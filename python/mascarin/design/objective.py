@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
-    Measures = dict[str, Callable[[Any], Any]]
+    Reductions = dict[str, Callable[[Any], Any]]
 
 
-class Wanted(Part):
+class Objective(Part):
     """Base of the objectives."""
 
     #: Whether small values are good.
     least: ClassVar[bool] = True
-    #: Measures that the value is the sum of, and that are shown beside it where all of them are kept.
+    #: Reductions that the value is the sum of, and that are shown beside it where all of them are kept.
     PARTS: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -43,28 +43,28 @@ class Wanted(Part):
     def check(self, building: Building) -> None:
         """Refuse what the building, with its changes, does not have."""
 
-    def measures(self, climate: Climate, building: Building) -> Measures:
+    def reductions(self, climate: Climate, building: Building) -> Reductions:
         """What is kept of each run of a building in a climate, by name; empty where no run is needed."""
         return {}
 
     def outputs(self, building: Building) -> tuple[str, ...]:
-        """Outputs of the building that the measures read."""
+        """Outputs of the building that the reductions read."""
         return ()
 
     def basis(self, building: Building) -> tuple[object, ...]:
-        """What the measures depend on in a building: the same for all designs."""
+        """What the reductions depend on in a building: the same for all designs."""
         return self.outputs(building)
 
-    def parts(self, kept: Mapping[str, Array]) -> dict[str, Array]:
+    def parts(self, values: Mapping[str, Array]) -> dict[str, Array]:
         """What the value is the sum of, by name; empty where not all of `PARTS` were kept."""
-        return {part: kept[part] for part in self.PARTS} if set(self.PARTS) <= set(kept) else {}
+        return {part: values[part] for part in self.PARTS} if set(self.PARTS) <= set(values) else {}
 
-    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+    def value(self, values: Mapping[str, Array], facts: LayerFacts) -> Array:
         """The objective of each member, shape (members,), from what was kept and from its layers."""
-        return np.asarray(next(iter(kept.values())), dtype=np.float64)
+        return np.asarray(next(iter(values.values())), dtype=np.float64)
 
 
-class OfZones(Wanted):
+class ZoneObjective(Objective):
     """Base of the objectives of some zones."""
 
     zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the mean over them")

@@ -156,8 +156,8 @@ class DaysInBin:
 
     def __call__(self, run: xr.Dataset) -> Array:
         """Value for each member. [d]"""
-        place = np.minimum(((daily_change(run, self.output) + TOLERANCE) * BINS).astype(np.int64), BINS - 1)
-        return np.asarray((place == self.number).sum(axis=1), dtype=np.float64)
+        bins = np.minimum(((daily_change(run, self.output) + TOLERANCE) * BINS).astype(np.int64), BINS - 1)
+        return np.asarray((bins == self.number).sum(axis=1), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -203,14 +203,14 @@ class Assessed:
                 radiant = view.radiant(np.stack([run[name].to_numpy() for name in view.outputs], axis=-1))
             simulated = self.settings.humidity == "simulated"
             humidity = 100.0 * run[f"{zone}.relative_humidity"].to_numpy() if simulated else None
-            found = self.settings.discomfort(air, radiant, hours, around, humidity)
-            total += found.undefined_hours if self.key == "undefined" else self._degrees(found)
+            discomfort = self.settings.discomfort(air, radiant, hours, around, humidity)
+            total += discomfort.undefined_hours if self.key == "undefined" else self._degrees(discomfort)
         return np.asarray(total / len(self.zones), dtype=np.float64)
 
-    def _degrees(self, found: Discomfort) -> Array:
+    def _degrees(self, discomfort: Discomfort) -> Array:
         if self.side == "both":
-            return found.degree_hours
-        return found.hot_degree_hours if self.side == "hot" else found.cold_degree_hours
+            return discomfort.degree_hours
+        return discomfort.hot_degree_hours if self.side == "hot" else discomfort.cold_degree_hours
 
 
 def daily_change(run: xr.Dataset, output: str) -> Array:
@@ -225,8 +225,8 @@ def daily_change(run: xr.Dataset, output: str) -> Array:
     lows = np.minimum.reduceat(values[:, 1:], starts, axis=1)
     before = values[:, starts]
     change = np.maximum(tops, before) - np.minimum(lows, before)
-    whole = sizes >= 0.5 * sizes.max()
-    return np.asarray(change[:, whole], dtype=np.float64)
+    full_days = sizes >= 0.5 * sizes.max()
+    return np.asarray(change[:, full_days], dtype=np.float64)
 
 
 def _days(run: xr.Dataset) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

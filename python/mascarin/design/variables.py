@@ -12,7 +12,7 @@ import numpy as np
 
 from mascarin._io.limits import at_least, at_most
 from mascarin.building.ties import expanded, spread
-from mascarin.design.description import MOST_DESIGNS
+from mascarin.design.description import MAX_DESIGNS
 from mascarin.errors import InputError
 from mascarin.materials import product, products
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mascarin.study.locations import Faults, Places
 
 #: Thickest layer of a phase-change material. [m]
-MOST_PHASE_CHANGE: Final = 0.2
+MAX_PHASE_CHANGE_THICKNESS: Final = 0.2
 #: A design: for each variable the number of its option, or a value where the variable is a range.
 Design = tuple[float, ...]
 
@@ -102,16 +102,19 @@ class Choices:
         Raises
         ------
         InputError
-            More than `MOST_DESIGNS`.
+            More than `MAX_DESIGNS`.
         """
         sizes = [len(choice.options) for choice in self.all]
         count = math.prod(sizes)
-        if count > MOST_DESIGNS:
+        if count > MAX_DESIGNS:
             raise InputError(
                 f"variables: found {' x '.join(map(str, sizes))} = {count} designs, expected at most "
-                f"{MOST_DESIGNS} in a grid; give fewer values, or search: {{method: swarm}} or nsga2"
+                f"{MAX_DESIGNS} in a grid; give fewer values, or search: {{method: swarm}} or nsga2"
             )
-        return [tuple(map(float, one)) for one in itertools.product(*(range(size) for size in sizes))]
+        return [
+            tuple(map(float, combination))
+            for combination in itertools.product(*(range(size) for size in sizes))
+        ]
 
     def options(self, design: Design) -> list[Option]:
         """What a design has chosen."""
@@ -135,9 +138,9 @@ class Choices:
         plain = building.to_dict()
         columns: dict[str, list[Any]] = {}
         for path in parts:
-            own = _at(plain, path)
+            described = _value_at(plain, path)
             columns[path] = [
-                next((o.parts[path] for o in options if path in o.parts), own) for options in rows
+                next((o.parts[path] for o in options if path in o.parts), described) for options in rows
             ]
         for path in numbers:
             base = building.parameter(path).value
@@ -148,14 +151,14 @@ class Choices:
 
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Smallest and largest value of every parameter: one mesh serves all designs. [unit of each]"""
-        found: dict[str, list[float]] = {}
+        by_path: dict[str, list[float]] = {}
         for choice in self.all:
             for option in choice.options:
                 for path, value in option.numbers.items():
-                    found.setdefault(path, []).append(value)
+                    by_path.setdefault(path, []).append(value)
             for path in choice.paths if choice.range else ():
-                found[path] += choice.range or ()
-        return {path: (min(values), max(values)) for path, values in found.items()}
+                by_path[path] += choice.range or ()
+        return {path: (min(values), max(values)) for path, values in by_path.items()}
 
     def structures(self) -> Iterator[dict[str, Any]]:
         """The parts of every structure."""
@@ -164,7 +167,7 @@ class Choices:
             yield {path: part for option in options for path, part in option.parts.items()}
 
 
-def read_choices(file: DesignFile, building: Building, places: Places, faults: Faults) -> Choices:
+def read_choices(file: DesignFile, building: Building, locations: Places, faults: Faults) -> Choices:
     """Variables of a design file, each option checked with the building.
 
     Parameters
@@ -173,17 +176,17 @@ def read_choices(file: DesignFile, building: Building, places: Places, faults: F
         The file.
     building : Building
         The building that all designs begin with.
-    places : Places
+    locations : Places
         Lines of the file, for errors.
     faults : Faults
         Collects the errors.
     """
-    found = []
+    choices = []
     for name, variable in file.variables.items():
-        with places.noting(faults, "variables", name):
-            found.append(_choice(name, variable, building, places, faults))
-    _require_apart(found, building, places, faults)
-    ordered = sorted(found, key=lambda choice: not choice.structural)  # stable: else as in the file
+        with locations.noting(faults, "variables", name):
+            choices.append(_choice(name, variable, building, locations, faults))
+    _require_apart(choices, building, locations, faults)
+    ordered = sorted(choices, key=lambda choice: not choice.structural)  # stable: else as in the file
     return Choices(tuple(ordered), free=file.search.method != "grid")
 
 
@@ -192,19 +195,19 @@ def number_option(value: float, paths: Sequence[str]) -> Option:
     return Option(f"{value:.6g}", float(value), {path: float(value) for path in paths})
 
 
-def _choice(name: str, variable: Variable, building: Building, places: Places, faults: Faults) -> Choice:
+def _choice(name: str, variable: Variable, building: Building, locations: Places, faults: Faults) -> Choice:
     if variable.path is not None:
-        return _numbers(name, variable, building, places)
+        return _numbers(name, variable, building, locations)
     if variable.material is not None:
-        return _products(name, variable, building, places, faults)
+        return _products(name, variable, building, locations, faults)
     options = []
     for label, changes in variable.variants.items():
-        with places.noting(faults, "variables", name, "variants", label):
+        with locations.noting(faults, "variables", name, "variants", label):
             building.replace(changes)
             each = spread(building, changes)
             numbers = {path: float(value) for path, value in each.items() if _is_plain(building, path, value)}
-            whole = {path: value for path, value in each.items() if path not in numbers}
-            options.append(Option(label, None, numbers, whole))
+            parts = {path: value for path, value in each.items() if path not in numbers}
+            options.append(Option(label, None, numbers, parts))
     return Choice(name, "", tuple(options), structural=any(option.parts for option in options))
 
 
@@ -215,13 +218,14 @@ def _is_plain(building: Building, path: str, value: Any) -> bool:
     return not building.parameter(path).structural
 
 
-def _numbers(name: str, variable: Variable, building: Building, places: Places) -> Choice:
-    given = [variable.path] if isinstance(variable.path, str) else list(variable.path or ())
-    with places.blame("variables", name, "path"):
-        known = [
-            building.parameter(path) for path in expanded(building, [_in_layers(building, p) for p in given])
+def _numbers(name: str, variable: Variable, building: Building, locations: Places) -> Choice:
+    patterns = [variable.path] if isinstance(variable.path, str) else list(variable.path or ())
+    with locations.blame("variables", name, "path"):
+        parameters = [
+            building.parameter(path)
+            for path in expanded(building, [_in_layers(building, p) for p in patterns])
         ]
-        for parameter in known:
+        for parameter in parameters:
             if parameter.structural:
                 raise InputError(
                     f"{parameter.path} changes the shape of the building; expected a number that may vary "
@@ -230,31 +234,33 @@ def _numbers(name: str, variable: Variable, building: Building, places: Places) 
                 )
     bounds = variable.range
     values = variable.values if bounds is None else np.linspace(*bounds, variable.steps).tolist()
-    with places.blame("variables", name, "values" if bounds is None else "range"):
-        for parameter in known:
+    with locations.blame("variables", name, "values" if bounds is None else "range"):
+        for parameter in parameters:
             for value in values:
                 if not parameter.lower <= value <= parameter.upper:
                     raise InputError(
                         f"found {value:g} {parameter.unit} for {parameter.path}, expected "
                         f"{parameter.allowed}; check its unit"
                     )
-        for parameter in known:
+        for parameter in parameters:
             _require_thin(building, parameter.path, max(values))
-    paths = tuple(parameter.path for parameter in known)
-    return Choice(name, known[0].unit, tuple(number_option(value, paths) for value in values), paths, bounds)
+    paths = tuple(parameter.path for parameter in parameters)
+    return Choice(
+        name, parameters[0].unit, tuple(number_option(value, paths) for value in values), paths, bounds
+    )
 
 
 def _require_thin(building: Building, path: str, value: float) -> None:
     """Refuse a phase-change layer that no construction of a building has room for."""
     parts = path.split(".")
-    if parts[0] != "constructions" or parts[-1] != "thickness" or value <= MOST_PHASE_CHANGE:
+    if parts[0] != "constructions" or parts[-1] != "thickness" or value <= MAX_PHASE_CHANGE_THICKNESS:
         return
     layers = building.constructions[parts[1]].layers
-    material = next((one.material for one in layers if one.name == parts[3]), None)
+    material = next((layer.material for layer in layers if layer.name == parts[3]), None)
     if material is not None and building.materials[material].kind == "pcm":
         raise InputError(
-            f"found {value:g} m for {path}, expected at most {MOST_PHASE_CHANGE:g} m of a phase-change "
-            "material, which is what a construction has room for; check its unit: 10 mm is 0.01"
+            f"found {value:g} m for {path}, expected at most {MAX_PHASE_CHANGE_THICKNESS:g} m of a "
+            "phase-change material, which is what a construction has room for; check its unit: 10 mm is 0.01"
         )
 
 
@@ -277,16 +283,16 @@ def _in_layers(building: Building, path: str) -> str:
     return path
 
 
-def _products(name: str, variable: Variable, building: Building, places: Places, faults: Faults) -> Choice:
+def _products(name: str, variable: Variable, building: Building, locations: Places, faults: Faults) -> Choice:
     material = str(variable.material)
-    with places.blame("variables", name, "material"):
+    with locations.blame("variables", name, "material"):
         if material not in building.materials or building.materials[material].kind != "pcm":
-            those = [key for key, one in building.materials.items() if one.kind == "pcm"]
+            those = [key for key, entry in building.materials.items() if entry.kind == "pcm"]
             raise InputError(
                 f"found '{material}', expected a phase-change material of the building: "
                 f"{', '.join(those) or 'there is none'}"
             )
-    with places.blame("variables", name, "products"):
+    with locations.blame("variables", name, "products"):
         chosen = (
             list(products().values())
             if variable.products == "all"
@@ -295,39 +301,39 @@ def _products(name: str, variable: Variable, building: Building, places: Places,
     if variable.melting is not None:
         low, high = variable.melting
         chosen = [
-            one
-            for one in chosen
-            if at_least(one.melting_temperature or math.nan, low)
-            and at_most(one.melting_temperature or math.nan, high)
+            candidate
+            for candidate in chosen
+            if at_least(candidate.melting_temperature or math.nan, low)
+            and at_most(candidate.melting_temperature or math.nan, high)
         ]
     if not chosen:
         raise InputError(f"found no product that melts between {variable.melting} degC; expected one or more")
     options = []
-    for one in sorted(chosen, key=lambda one: one.melting_temperature or math.nan):
-        parts = {f"materials.{material}.product": one.name}
-        with places.noting(faults, "variables", name, "products"):
+    for candidate in sorted(chosen, key=lambda candidate: candidate.melting_temperature or math.nan):
+        parts = {f"materials.{material}.product": candidate.name}
+        with locations.noting(faults, "variables", name, "products"):
             building.replace(parts)  # a property that neither product nor building give
-            options.append(Option(one.name, one.melting_temperature, {}, parts))
+            options.append(Option(candidate.name, candidate.melting_temperature, {}, parts))
     return Choice(name, "degC", tuple(options), structural=True)
 
 
-def _require_apart(found: Sequence[Choice], building: Building, places: Places, faults: Faults) -> None:
+def _require_apart(choices: Sequence[Choice], building: Building, locations: Places, faults: Faults) -> None:
     """Refuse two variables of the same number, and a number that a variant leaves out."""
-    for one, other in itertools.combinations(found, 2):
-        for a, b in itertools.product(_touched(one), _touched(other)):
+    for first, second in itertools.combinations(choices, 2):
+        for a, b in itertools.product(_touched(first), _touched(second)):
             if a == b:
-                with places.noting(faults, "variables", other.name):
+                with locations.noting(faults, "variables", second.name):
                     raise InputError(
-                        f"sets {b}, which variable '{one.name}' sets too; expected each in one variable. "
+                        f"sets {b}, which variable '{first.name}' sets too; expected each in one variable. "
                         f"Join them "
                         "in one variable with variants"
                     )
-    for one, other in itertools.permutations(found, 2):
-        for option in one.options:
-            inside = [b for b in _numbers_of(other) if any(b.startswith(f"{a}.") for a in option.parts)]
+    for first, second in itertools.permutations(choices, 2):
+        for option in first.options:
+            inside = [b for b in _numbers_of(second) if any(b.startswith(f"{a}.") for a in option.parts)]
             changed = building.replace(option.parts) if inside else building
             for path in inside:
-                with places.noting(faults, "variables", one.name, "variants", option.label):
+                with locations.noting(faults, "variables", first.name, "variants", option.label):
                     _in_layers(changed, path)
                     changed.parameter(path)
 
@@ -340,11 +346,15 @@ def _touched(choice: Choice) -> list[str]:
     return list(dict.fromkeys(path for o in choice.options for path in (*o.numbers, *o.parts)))
 
 
-def _at(plain: Any, path: str) -> Any:
+def _value_at(plain: Any, path: str) -> Any:
     """What a description has at a path; None where there is nothing."""
     for step in path.split("."):
         if isinstance(plain, list):
-            named = {str(one.get("name", one.get("material"))): one for one in plain if isinstance(one, dict)}
+            named = {
+                str(entry.get("name", entry.get("material"))): entry
+                for entry in plain
+                if isinstance(entry, dict)
+            }
             plain = named.get(step)
         elif isinstance(plain, Mapping):
             plain = plain.get(step)
