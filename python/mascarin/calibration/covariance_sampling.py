@@ -125,8 +125,8 @@ def sample_covariances(
     >>> data = DayData(grid, error, np.zeros((20, 8, 0)), basis, np.ones((20, 8), dtype=bool), np.zeros(1))
     >>> small = 1e-4 * np.eye(1)
     >>> first = Discrepancy(small, small, small, np.array([0.04]), np.zeros(1), 4.0)
-    >>> drawn = sample_sizes(data, first, scale=np.array([0.1]), limit=np.array([1.0]))
-    >>> bool(0.15 < np.sqrt(drawn.typical.white[0]) < 0.23)
+    >>> sample = sample_covariances(data, first, scale=np.array([0.1]), limit=np.array([1.0]))
+    >>> bool(0.15 < np.sqrt(sample.typical.white[0]) < 0.23)
     True
     """
     chain = _Chain(data, first, scale, limit)
