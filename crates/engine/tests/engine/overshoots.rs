@@ -41,11 +41,11 @@ fn rooms(power: f64) -> Description {
     d
 }
 
-/// -30 degC; the window opens for the third hour.
+/// -30 degC; the window opens for the second hour: in all stages of a step or in none.
 fn weather(time: f64, row: &mut [f64]) {
     row[channel::AIR_TEMPERATURE] = COLD;
     row[channel::DEW_POINT] = COLD - 5.0;
-    set(row, 0, if (7200.0..10800.0).contains(&time) { 1.0 } else { 0.0 });
+    set(row, 0, if time > 3600.0 && time <= 7200.0 { 1.0 } else { 0.0 });
 }
 
 fn airs() -> Vec<Output> {
@@ -88,11 +88,11 @@ fn no_air_is_colder_than_what_cools_it() {
     }
 }
 
-/// Where only the room beside the opened one is followed, and where heating is not enough: loads are means over the step, and the ledger has
-/// them.
+/// The opened room is heated, by less than it loses, and so is the other one: loads are means over the step, and the ledger has them.
 #[test]
 fn loads_over_steps_in_parts() {
     let mut d = rooms(0.0);
+    d.parameters.iter_mut().find(|number| number.path == "hatch.flow").unwrap().value = 0.002;
     d.zones[0].heating = Some(ideal_load(&mut d, "bath.heating", 20.0, 400.0));
     d.zones[1].heating = Some(ideal_load(&mut d, "hall.heating", 20.0, 5000.0));
     let run = opened(d, Scheme::Sdirk2, STEP);
@@ -143,9 +143,9 @@ fn packs_and_split_runs_have_the_same_bits() {
     let step = |k: usize| Forcing::new(&rows[k * row..(k + 1) * row], 2, plan.n_channels()).unwrap();
     let start = || StepByStep::start(&plan, numbers, &options, &drive, &step(0)).unwrap();
     let (mut first, mut second, mut values) = (start(), start(), Vec::new());
-    (0..10).for_each(|k| first.step(&step(k)).unwrap());
+    (0..5).for_each(|k| first.step(&step(k)).unwrap());
     second.restore(&first.save()).unwrap();
-    for k in 10..16 {
+    for k in 5..16 {
         second.step(&step(k)).unwrap();
         second.read(&mut values);
         assert_eq!(values, whole[(k + 1) * 4..(k + 2) * 4]);
