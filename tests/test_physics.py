@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from mascarin import _engine, physics
@@ -21,7 +23,7 @@ def test_melting_curves_are_their_formulas() -> None:
     below, above = 3.0, 1.0
     rising = np.clip(1.0 + (T - 25.0) / below, 0.0, 1.0) ** 2 * below / (below + above)
     falling = 1.0 - np.clip(1.0 - (T - 25.0) / above, 0.0, 1.0) ** 2 * above / (below + above)
-    cases = [
+    cases: list[tuple[str, dict[str, float], dict[str, Any], npt.NDArray[np.float64]]] = [
         ("tanh_width", {"width": 1.5}, {}, 0.5 + 0.5 * np.tanh(u)),
         ("smooth_step", {"width": 1.5}, {"continuity": 1}, ramp**2 * (3.0 - 2.0 * ramp)),
         ("smooth_step", {"width": 1.5}, {"continuity": 2}, ramp**3 * (10.0 - 15.0 * ramp + 6.0 * ramp**2)),
