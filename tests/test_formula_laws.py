@@ -73,7 +73,8 @@ def box_with(law: Any) -> Building:
 def box_run(building: Building, **options: Any) -> Simulation:
     return Simulation(
         building, box_climate(), step="1h", initial=20.0,
-        outputs=["room.air_temperature", "facade.outside_temperature", "facade.outside_convection"], **options,
+        outputs=["room.air_temperature", "facade.outside_temperature", "facade.outside_convection"],
+        **options,
     )  # fmt: skip
 
 
@@ -223,6 +224,8 @@ def test_values_outside_of_the_ranges_are_checked() -> None:
         ('{formula: "c", c: {value: 2, rnge: [1, 3]}}', "range"),
         ('{formula: "Ts*2"}', "write dT"),
         ('{formula: "3*dT", if: 2}', "'if' for a number"),
+        ('{formula: "c + k*V", c: {value: 2, unit: "W/(m2 K)"}, k: {value: 3, unit: "m/s"}}', "beside"),
+        ('{formula: "c", c: {value: 2, unit: "kW/(m2 K)"}}', "found: 'kW'"),
     ],
 )
 def test_faults_name_file_line_and_column(tmp_path: Path, law: str, words: str) -> None:
@@ -262,7 +265,8 @@ materials:
         melting_temperature: {value: 23.5, range: [22, 25]}, law: %s}
 constructions: {wall: {layers: [{material: wax, thickness: 0.02}]}}
 surfaces:
-  w: {construction: wall, area: 1, tilt: 90, outside: {measured: air, convection: 20}, inside: {adiabatic: true}}
+  w: {construction: wall, area: 1, tilt: 90, outside: {measured: air, convection: 20},
+      inside: {adiabatic: true}}
 """
 LOGISTIC = (
     '{formula: "1/(1 + exp(-2*(T - Tm)/w))", w: {value: 0.8, unit: K, range: [0.5, 1.2]}, '
@@ -320,11 +324,12 @@ def test_a_melting_curve_with_two_steps_and_hysteresis(tmp_path: Path) -> None:
         '{formula: "s*(0.5 + 0.5*tanh((T - Tm + 2)/w)) + (1 - s)*(0.5 + 0.5*tanh((T - Tm - 2)/w))", s: 0.3, '
         "w: 0.3, range: [-6, 6]}"
     )
-    law = double + ", hysteresis: {model: curve_switch, freezing_temperature: 22}"
-    for text in (double, law):
+    frozen = double + ", hysteresis: {model: curve_switch, freezing_temperature: 22}"
+    for text in (double, frozen):
         run = melting(board(text, tmp_path)).run()
         assert run.energy.closes
-    assert board(double, tmp_path).materials["wax"].law.fraction(0.0) == pytest.approx(0.3, abs=1e-6)
+    law = board(double, tmp_path).materials["wax"].law  # type: ignore[union-attr]
+    assert law.fraction(0.0) == pytest.approx(0.3, abs=1e-6)  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(

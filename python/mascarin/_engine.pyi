@@ -125,20 +125,23 @@ def output_table() -> str:
 def check_formula(
     formula: str,
     valid: str | None,
-    given: list[tuple[str, float, tuple[float, float] | None]],
+    given: list[tuple[str, float, tuple[float, float] | None, str | None]],
     wind: bool,
     side: tuple[float, float, float],
 ) -> tuple[str, int, int, str, str, str] | None:
     """Key, line, column, found, expected, remedy of the first fault of a coefficient as text; None: a law."""
 
 def check_fraction(
-    formula: str, given: list[tuple[str, float]], melting_temperature: float, range: tuple[float, float]
+    formula: str,
+    given: list[tuple[str, float, None, str | None]],
+    melting_temperature: float,
+    range: tuple[float, float],
 ) -> tuple[str, int, int, str, str, str] | None:
     """First fault of a curve of the liquid fraction as text, as `check_formula` has it; None: a curve."""
 
 def fraction_values(
     formula: str,
-    given: list[tuple[str, float]],
+    given: list[tuple[str, float, None, str | None]],
     melting_temperature: float,
     range: tuple[float, float],
     temperatures: _Array,
@@ -147,7 +150,7 @@ def fraction_values(
 
 def formula_values(
     formula: str,
-    given: list[tuple[str, float, tuple[float, float] | None]],
+    given: list[tuple[str, float, tuple[float, float] | None, str | None]],
     side: tuple[float, float, float],
     differences: _Array,
     winds: _Array,

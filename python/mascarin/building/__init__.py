@@ -14,7 +14,6 @@ from mascarin.building.convection import (
     AlamdariHammond,
     Constant,
     Doe2,
-    FormulaLaw,
     Iso15099,
     LinearWind,
     Measured,
@@ -25,6 +24,8 @@ from mascarin.building.convection import (
     Tarp,
 )
 from mascarin.building.engine_input import EngineDescription
+from mascarin.building.formula_curve import FormulaCurve
+from mascarin.building.formula_law import FormulaLaw
 from mascarin.building.glazing import (
     Angular,
     DiffuseOptics,
@@ -51,7 +52,6 @@ from mascarin.building.outputs import Output
 from mascarin.building.parameters import Parameter
 from mascarin.building.phase_change import (
     CapacityLaw,
-    FormulaCurve,
     FractionsLaw,
     GaussianLaw,
     GumbelLaw,

@@ -12,12 +12,11 @@ from mascarin.building.convection import (
     AlamdariHammond,
     Convection,
     Doe2,
-    FormulaLaw,
     Iso15099,
     PaperEq5,
     Tarp,
 )
-from mascarin.building.formula_law import LENGTH, PERIMETER
+from mascarin.building.formula_law import LENGTH, PERIMETER, FormulaLaw
 from mascarin.building.humidity import with_all_zones
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Location, NotDerivableError, derived_number, fault, insist, refuse

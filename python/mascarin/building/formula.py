@@ -128,3 +128,8 @@ class Formula(Part):
 def names_in(text: str | None) -> frozenset[str]:
     """Names in a formula, functions included."""
     return frozenset(_NAME.findall(text or ""))
+
+
+def stated_unit(number: Number) -> str | None:
+    """Unit of a number of a formula; None where the description gives none."""
+    return None if number.quantity is None or number.quantity.unit == "-" else number.quantity.unit

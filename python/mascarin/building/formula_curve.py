@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from mascarin import _engine
 from mascarin.building import quantities as q
 from mascarin.building.closed_law import ClosedLaw, Floats
-from mascarin.building.formula import Formula
+from mascarin.building.formula import Formula, stated_unit
 from mascarin.building.number import problem
 from mascarin.building.part import Location, insist, text_fault
 
@@ -71,8 +71,15 @@ class FormulaCurve(Formula, ClosedLaw):
         distances = np.asarray(above, dtype=np.float64)
         return self._values(distances.ravel()).reshape(distances.shape)
 
+    def _given(self, changes: Mapping[str, float]) -> list[tuple[str, float, None, str | None]]:
+        """Names, values and units of the numbers, some of them changed."""
+        return [
+            (name, changes.get(name, float(number)), None, stated_unit(number))
+            for name, number in self.numbers.items()
+        ]
+
     def _values(self, above: Floats) -> Floats:
-        given = [(name, float(number)) for name, number in self.numbers.items()]
+        given = self._given({})
         return _engine.fraction_values(self.formula, given, _MIDDLE, self.reach, _MIDDLE + above)
 
     def faults(self, at: Location) -> Iterator[InitErrorDetails]:
@@ -83,13 +90,11 @@ class FormulaCurve(Formula, ClosedLaw):
         at : tuple
             Path of the law.
         """
-        nominal = {name: float(number) for name, number in self.numbers.items()}
         ranges = {name: number.range for name, number in self.numbers.items() if number.range is not None}
         alone = [{name: end} for name, ends in ranges.items() for end in ends]
         together = [{name: ends[k] for name, ends in ranges.items()} for k in (0, 1) if ranges]
-        for changes in ({}, *alone, *together):
-            values = list((nominal | changes).items())
-            found = _engine.check_fraction(self.formula, values, _MIDDLE, self.reach)
+        for changes in (dict[str, float](), *alone, *together):
+            found = _engine.check_fraction(self.formula, self._given(changes), _MIDDLE, self.reach)
             if found is not None:
                 key, line, column, what, *others = found
                 varied = ", ".join(f"{name} = {value:g}" for name, value in changes.items())

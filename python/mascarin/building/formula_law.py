@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from mascarin import _engine
-from mascarin.building.formula import Formula, names_in
+from mascarin.building.formula import Formula, names_in, stated_unit
 from mascarin.building.number import Interval
 from mascarin.building.part import Location, text_fault
 from mascarin.errors import InputError
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 LENGTH: Final = "length"
 PERIMETER: Final = "perimeter"
 
-#: Name, value, and range where there is one.
-Given = tuple[tuple[str, float, Interval | None], ...]
+#: Name, value, range and unit, where they are stated.
+Given = tuple[tuple[str, float, Interval | None, str | None], ...]
 
 
 class FormulaLaw(Formula):
@@ -58,8 +58,8 @@ class FormulaLaw(Formula):
 
     @property
     def given(self) -> Given:
-        """Names, values and ranges of its numbers."""
-        return tuple((name, float(number), number.range) for name, number in self.numbers.items())
+        """Names, values, ranges and units of its numbers."""
+        return tuple((name, float(one), one.range, stated_unit(one)) for name, one in self.numbers.items())
 
     def coefficient(
         self,

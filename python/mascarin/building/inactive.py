@@ -13,7 +13,6 @@ from mascarin.building.convection import (
     AlamdariHammond,
     Convection,
     Doe2,
-    FormulaLaw,
     Iso15099,
     LinearWind,
     Mowitt,
@@ -22,6 +21,7 @@ from mascarin.building.convection import (
     Tarp,
     by_wind_direction,
 )
+from mascarin.building.formula_law import FormulaLaw
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
 from mascarin.building.measured_sun import paths as obstructed_paths

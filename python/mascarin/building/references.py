@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.building.blind import NET_RADIATION
-from mascarin.building.convection import SOURCES, FormulaLaw
+from mascarin.building.convection import SOURCES
+from mascarin.building.formula_law import FormulaLaw
 from mascarin.building.glazing import SOURCES as GLASS
 from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
 from mascarin.building.humidity import EMPD, PSYCHROMETRICS

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, fields_of
+from mascarin.building.formula_curve import FormulaCurve
 from mascarin.building.material import Material, PhaseChangeMaterial
 from mascarin.building.part import Part
 from mascarin.building.phase_change import (
     CapacityLaw,
-    FormulaCurve,
     FractionsLaw,
     GumbelLaw,
     SmoothStepLaw,

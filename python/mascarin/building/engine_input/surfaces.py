@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.convection import Convection, FormulaLaw, Measured, Power
+from mascarin.building.convection import Convection, Measured, Power
 from mascarin.building.courses import temperature_course
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
+from mascarin.building.formula_law import FormulaLaw
 from mascarin.building.schedule import schedule_channel
 from mascarin.building.surface import Side, Surface
 
