@@ -239,16 +239,7 @@ def read_table(
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
-    if read is None:
-        return table
-    return replace(
-        table,
-        units=read.units,
-        units_line=read.units_line,
-        decimal=read.decimal,
-        decimal_stated=read.decimal_stated,
-        decimal_evident=read.decimal_evident,
-    )
+    return table if read is None else replace(table, **read.said_of_itself)
 
 
 def _zone(
