@@ -309,8 +309,7 @@ def _regular(
     moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
     if moved is not None:
         seconds, interval, text = moved
-        said, index = (*said, f"{where}: {text}"), stamps_of(seconds, zone)
-        gaps = np.diff(seconds)
+        said, index, gaps = (*said, f"{where}: {text}"), stamps_of(seconds, zone), np.diff(seconds)
         ratio, odd = gaps / interval, odd[:0]
     if len(odd):
         row = int(odd[0])
