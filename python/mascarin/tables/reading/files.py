@@ -85,6 +85,12 @@ class Read:
     decimal_stated: bool = False
     decimal_evident: bool = False
 
+    @property
+    def said_of_itself(self) -> dict[str, Any]:
+        """What the file says of its units and marks, for `Table`."""
+        names = ("units", "units_line", "decimal", "decimal_stated", "decimal_evident")
+        return {name: getattr(self, name) for name in names}
+
 
 def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
     """Read a CSV or Parquet file, or a spreadsheet, without changing it.

@@ -239,16 +239,7 @@ def read_table(
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
-    if read is None:
-        return table
-    return replace(
-        table,
-        units=read.units,
-        units_line=read.units_line,
-        decimal=read.decimal,
-        decimal_stated=read.decimal_stated,
-        decimal_evident=read.decimal_evident,
-    )
+    return table if read is None else replace(table, **read.said_of_itself)
 
 
 def _zone(
@@ -318,8 +309,7 @@ def _regular(
     moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
     if moved is not None:
         seconds, interval, text = moved
-        said, index = (*said, f"{where}: {text}"), stamps_of(seconds, zone)
-        gaps = np.diff(seconds)
+        said, index, gaps = (*said, f"{where}: {text}"), stamps_of(seconds, zone), np.diff(seconds)
         ratio, odd = gaps / interval, odd[:0]
     if len(odd):
         row = int(odd[0])
