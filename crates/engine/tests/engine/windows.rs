@@ -5,7 +5,7 @@ use crate::common::{facing, forcing, options, position, run, set, try_run, value
 use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{Facing, Glazing, ZoneSun};
-use mascarin_engine::forcing::Forcing;
+use mascarin_engine::forcing::{Forcing, channel};
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
@@ -68,6 +68,33 @@ fn transmittances_of_a_sensor_with_an_offset() {
             (lit, total) = (lit + usize::from(record[0] > 0.1), total + 1);
         }
         assert!(10 * lit > total && !windows.is_empty(), "{lit} of {total}");
+    }
+}
+
+/// The same of the radiation of the climate: what is below zero in both stages is dark.
+#[test]
+fn transmittances_of_a_climate_with_offsets() {
+    for d in glazed_rooms() {
+        let glazed = |&w: &usize| d.constructions[d.surfaces[w].construction].glazing.is_some();
+        let windows: Vec<usize> = (0..d.surfaces.len()).filter(glazed).collect();
+        let plan = Plan::new(d).unwrap();
+        for in_first in [5.0, -5.0] {
+            let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, |time, row| {
+                weather(time, row);
+                let first = (0.1..0.9).contains(&(time / STEP).fract());
+                for at in [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL] {
+                    row[at] = if first { in_first } else { -6.0 };
+                }
+            });
+            let probes = windows.iter().flat_map(|&surface| {
+                [Probe::SolarTransmittance { surface }, Probe::TransmittedSolar { surface }]
+            });
+            let run = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes.collect()));
+            for record in run.records.chunks(2) {
+                assert!((0.0..=1.0).contains(&record[0]) && record[1] >= 0.0, "{record:?}");
+                assert_eq!(record[1] > 0.0, in_first > 0.0, "{record:?}");
+            }
+        }
     }
 }
 

@@ -23,7 +23,7 @@ use super::wind::{Forced, Wind};
 use crate::number::real::Real;
 
 /// Largest cosine of the tilt near the vertical [-]: sin 1 deg.
-const NEAR: f64 = 0.017_452_406_437_283_512;
+const NEAR: f64 = 0.017_452_406_437_283_51;
 /// Gain of `|d|^1/3` at the vertical.
 const VERTICAL: f64 = 1.31;
 
