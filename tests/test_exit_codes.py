@@ -13,8 +13,8 @@ from typing import Any, Final
 import numpy as np
 import pytest
 
-from crossing_entrances import COMMANDS, VARIED, WITHOUT_BUILDING, Bench, enter
-from crossing_features import description
+from crossing_entrances import COMMANDS, WITHOUT_BUILDING, Bench, enter
+from crossing_features import VARIED, description
 from mascarin.simulation.compiled import CompiledRun, EnsembleRun, Failure
 
 #: Commands that end with 1 where a run is unsound.

@@ -8,6 +8,7 @@ for co-simulation, and to indices of comfort. The reference is Hyland & Wexler o
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ from test_weather_readers import tmy3
 
 HOURS = 8760
 #: An ice pressure in place of one over water would lower the vapour by 1 % for each kelvin below 0 degC.
-_PLACE = {"latitude": 39.83, "longitude": -104.65, "altitude": 0.0}
+_PLACE: Any = {"latitude": 39.83, "longitude": -104.65, "altitude": 0.0}
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,8 @@ def _vapour(climate: mc.Climate, first: str = "2001-01-02", last: str = "2001-12
 def _expected(table: pd.DataFrame) -> np.ndarray:
     """That of the table at the same times. [Pa]"""
     part = table["2001-01-02 01:00":"2001-12-30 00:00"]
-    return np.array([saturation(celsius) for celsius in part["air"]]) * part["rh"].to_numpy() / 100.0
+    saturated = np.array([saturation(celsius) for celsius in part["air"]])
+    return np.asarray(saturated * part["rh"].to_numpy() / 100.0, dtype=np.float64)
 
 
 def test_a_dew_point_holds_the_measured_vapour(damp: pd.DataFrame) -> None:

@@ -18,7 +18,10 @@ EMPTY_WORDS = frozenset([
 ])  # fmt: skip
 
 #: Packages without such names; add a package when it is free of them.
-PACKAGES = ("design", "explore", "genopt", "optimization", "sensitivity", "verification")
+PACKAGES = (
+    "calibration", "convert", "design", "explore", "figures", "genopt", "optimization", "report",
+    "sensitivity", "validation", "verification", "view",
+)  # fmt: skip
 
 
 def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
