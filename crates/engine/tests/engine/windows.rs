@@ -86,10 +86,10 @@ fn transmittances_of_a_climate_with_offsets() {
                     row[at] = if first { in_first } else { -6.0 };
                 }
             });
-            let probes = windows.iter().flat_map(|&surface| {
-                [Probe::SolarTransmittance { surface }, Probe::TransmittedSolar { surface }]
+            let outputs = windows.iter().flat_map(|&surface| {
+                [Output::SolarTransmittance { surface }, Output::TransmittedSolar { surface }]
             });
-            let run = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes.collect()));
+            let run = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs.collect()));
             for record in run.records.chunks(2) {
                 assert!((0.0..=1.0).contains(&record[0]) && record[1] >= 0.0, "{record:?}");
                 assert_eq!(record[1] > 0.0, in_first > 0.0, "{record:?}");
