@@ -46,7 +46,10 @@ def main(folder: Path) -> None:
     at = building.parameter(path).value
     ends = [simulation.run({path: at + change}).records[:, 0] for change in (1e-4, -1e-4)]
     np.testing.assert_allclose(slopes[0, :, 0], (ends[0] - ends[1]) / 2e-4, rtol=1e-4, atol=1.0)
-    means = [mc.gradient(building, climate, Mean(name), step="1h", initial=20.0) for name in (NAME, AIR)]
+    means = [
+        mc.gradient(building, climate, Mean(name), step="1h", initial=20.0, outputs=[name])
+        for name in (NAME, AIR)
+    ]
     by_path = [mean.slopes[path] for mean in means]
     assert abs(by_path[0] / (capacity * by_path[1]) - 1.0) < 1e-9
 
