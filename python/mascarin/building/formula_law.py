@@ -97,8 +97,8 @@ class FormulaLaw(Formula):
 
         Examples
         --------
-        >>> FormulaLaw(formula="2*abs(dT)^(1/3)").coefficient(8.0).round(6)
-        array(4.)
+        >>> FormulaLaw(formula="2*abs(dT)^(1/3)").coefficient([8.0, -8.0]).round(6).tolist()
+        [4.0, 4.0]
         """
         both = np.broadcast_arrays(np.asarray(difference, float), np.asarray(wind, float))
         flat = [np.ascontiguousarray(array.ravel()) for array in both]
