@@ -206,3 +206,18 @@ def test_melting_is_shown_by_its_width() -> None:
     assert "material wax: 71000 J/kg about 23.4 degC, half-width 1 K" in lines
     assert "material salt: 150000 J/kg about 27 degC, half-width 1.5 K" in lines
     assert "material curve: melts between 20 and 22 degC, by its table" in lines
+
+
+def test_unlimited_radiant_loads_are_named() -> None:
+    from mascarin.examples import box
+
+    building = box()
+    (zone,) = building.zones
+    radiant = building.replace({f"zones.{zone}.cooling": {"setpoint": 24, "radiative": 0.95}})
+    lines = [line for line in check(radiant) if "% of it is radiation" in line]
+    assert lines == [
+        f"warning: zones.{zone}.cooling: 95 % of it is radiation and it has no capacity: 1 W at the air "
+        "needs 20 W, and surfaces may reach any temperature. Give a capacity [W]"
+    ]
+    limited = radiant.replace({f"zones.{zone}.cooling": {"setpoint": 24, "radiative": 0.95, "capacity": 500}})
+    assert not [line for line in check(limited) if "% of it is radiation" in line]

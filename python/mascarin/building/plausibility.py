@@ -19,6 +19,8 @@ from mascarin.materials.library import curves, product
 
 #: Thermal diffusivities of building materials, from dense polymers to copper and silver [m2/s].
 _DIFFUSIVITIES = (1e-8, 2e-4)
+#: Radiative part of an ideal load above which one without a capacity may heat or cool surfaces without bound.
+_MAX_RADIATIVE = 0.8
 
 
 def warnings(building: Description, mesh: Iterable[str]) -> Iterator[str]:
@@ -29,6 +31,7 @@ def warnings(building: Description, mesh: Iterable[str]) -> Iterator[str]:
     yield from _implausible_volumes(building)
     yield from _implausible_enclosures(building)
     yield from _implausible_areas(building)
+    yield from _unlimited_radiation(building)
     yield from _unshaded(building)
     yield from humidity_warnings(building)
 
@@ -151,3 +154,18 @@ def _implausible_areas(building: Description) -> Iterator[str]:
         area = float(building.surfaces[name].area or 0.0)
         if abs(area - drawn) > 0.01 * drawn:
             yield f"surfaces.{name}: {area:.2f} m2 are given, the vertices enclose {drawn:.2f} m2"
+
+
+def _unlimited_radiation(building: Description) -> Iterator[str]:
+    """Ideal loads that give nearly all as radiation, of any power: the air takes the small rest of it."""
+    for name, zone in building.zones.items():
+        for kind, load in (("heating", zone.heating), ("cooling", zone.cooling)):
+            radiative = 0.0 if load is None or load.radiative is None else float(load.radiative)
+            if load is None or load.capacity is not None or radiative <= _MAX_RADIATIVE:
+                continue
+            watts = 1.0 / max(1.0 - radiative, 1e-3)
+            yield (
+                f"zones.{name}.{kind}: {100 * radiative:.0f} % of it is radiation and it has no "
+                f"capacity: 1 W at the air needs {watts:.0f} W, and surfaces may reach any temperature. "
+                "Give a capacity [W]"
+            )
