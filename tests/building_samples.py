@@ -273,6 +273,11 @@ MELTING = [
         "{kind: gumbel, width: 0.5, tail: high}",
         "two curves",
     ),
+    (
+        '{formula: "1/(1 + exp(-(T - Tm)/w))", w: {value: 1, unit: K}, range: [-8, 8]}',
+        "{kind: linear, width: 1.0}",
+        "fractions",
+    ),
 ]
 _CURVES = {
     "capacity": """{kind: capacity, temperatures: [15, 20, 21, 22, 23],
@@ -303,6 +308,7 @@ OPTIONAL = {
     "glazings.plain.transmittance": 0.6,
     "glazings.listed.angular.back": {"transmittance": 0.7, "reflectance": 0.15, "absorptance": [0.15]},
     "surfaces.north.outside.convection": {"kind": "measured", "column": "h_north"},
+    "surfaces.west.inside.convection": {"formula": "c*abs(dT)^n", "c": 1.31, "n": 0.33},
     "zones.attic.sun": {
         "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
         "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},

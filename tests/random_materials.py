@@ -76,6 +76,18 @@ def closed_law(draw: Draw) -> Json:
         {"kind": "gaussian", "width": width},
         {"kind": "gumbel", "width": width, "tail": draw.of("low", "high")},
         {"kind": "linear", "width": width},
+        {
+            "kind": "text",
+            "formula": "1/(1 + exp(-(T - Tm)/w))",
+            "w": width,
+            "range": [four(-8.0 * width), four(8.0 * width)],
+            "source": "a paper",
+        },
+        {
+            "formula": "0.5 + 0.5*tanh((T - Tm)/w)",
+            "numbers": {"w": width},
+            "range": [four(-5.0 * width), four(5.0 * width)],
+        },
         {"kind": "triangle", "below": width, "above": draw.log(0.1, 4.0)},
     )
     return law

@@ -34,6 +34,19 @@ def film(draw: Draw, facing: str) -> Any:
         {"kind": "power", "upward": power, "downward": {"b": 0.6, "n": 0.25}},
         {"kind": "measured", "column": "h_film"} | factor,
         {"kind": "alamdari_hammond"} | length | factor,
+        {
+            "kind": "text",
+            "formula": "c*abs(dT)^n + b",
+            "c": draw.noted(draw.number(0.5, 4.0), 0.5),
+            "n": draw.number(0.1, 0.6),
+            "b": draw.number(0.0, 2.0),
+            "valid": "abs(dT) < 40",
+            "source": "a paper",
+        },
+        {
+            "formula": "c*cbrt(abs(dT)) + b",
+            "numbers": {"c": draw.number(0.5, 4.0), "b": draw.number(0.0, 2.0)},
+        },
     ]
     if facing in ("outdoors", "zone"):
         any_air += [{"kind": "tarp"} | factor, "tarp"]
@@ -44,6 +57,7 @@ def film(draw: Draw, facing: str) -> Any:
             {"kind": "iso15099"} | length | factor,
         ]
     if facing == "outdoors":
+        any_air.append({"formula": "sqrt((c*abs(dT)^(1/3))^2 + (b*V^m)^2)", "c": 1.31, "b": 3.2, "m": 0.8})
         rough = draw.of("very_rough", "smooth", 1.67)
         any_air += [
             {"kind": "tarp", "roughness": rough, "perimeter": draw.number(4.0, 40.0)},

@@ -12,6 +12,7 @@ import pandas as pd
 
 from mascarin._io.durations import seconds_of
 from mascarin.weather import Climate, Measurements
+from mascarin.weather.channels import UNITS
 from random_draw import Draw
 from random_schedules import COLUMNS
 
@@ -68,7 +69,7 @@ class Weather:
         return Climate.from_table(
             self.frame,
             timezone=str(self.place["timezone"]),
-            columns=dict(zip(names, names, strict=True)),
+            columns={name: _stated(name) for name in names},
             absent=absent,
             altitude=float(self.place["altitude"]),
             check_sun=False,
@@ -219,6 +220,11 @@ def _radiation(
         parts.append((beam, scattered, beam * up + scattered))
     direct, diffuse, total = (np.mean([part[k] for part in parts], axis=0) for k in range(3))
     return np.asarray(direct), np.asarray(diffuse), np.asarray(total)
+
+
+def _stated(channel: str) -> dict[str, str]:
+    """A column of a channel with its unit: what is drawn is extreme, and no unit would be likely."""
+    return {"column": channel, "unit": "%" if channel == "relative_humidity" else UNITS[channel]}
 
 
 def _columns(draw: Draw, frame: pd.DataFrame, index: pd.DatetimeIndex) -> pd.DataFrame:

@@ -100,9 +100,10 @@ def test_all_reversed_vertices_are_said() -> None:
         cube(*CUBE)
 
 
-def test_reversed_vertices_are_a_warning_where_the_volume_is_given() -> None:
-    [said] = [line for line in cube("roof", room={"volume": 60}).check() if "reverse order" in line]
-    assert "the vertices of roof are in the reverse order" in said
+def test_reversed_vertices_are_refused_where_the_volume_is_given() -> None:
+    """View factors are exact, so that a run refuses them; `check` says it before, with the cause."""
+    with pytest.raises(InputError, match="the vertices of roof are in the reverse order"):
+        cube("roof", room={"volume": 60}).check()
 
 
 def test_open_rooms_are_not_called_reversed() -> None:

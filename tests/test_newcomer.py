@@ -154,7 +154,7 @@ def test_a_confidence_in_percent_is_refused_before_the_runs() -> None:
         ({"vary": PATH}, f"vary: found '{PATH}', expected a list of paths"),
         ({"vary": None}, "vary: found None"),
         ({"vary": {PATH: 3.0}}, "expected two numbers"),
-        ({"rules": "strict"}, "rules: found 'strict'"),
+        ({"options": "strict"}, "options: found 'strict'"),
         ({"seed": "x"}, "seed: found 'x'"),
         ({"record": 3}, "record: found 3"),
         ({"method": None}, "method: found 'None'"),

@@ -77,12 +77,18 @@ def room() -> mc.Building:
     return mc.Building.from_dict(plain)
 
 
+def stated(name: str) -> dict[str, str]:
+    """A column of a channel with its unit."""
+    unit = "%" if name == "relative_humidity" else "Pa" if name == "pressure" else "degC"
+    return {"column": name, "unit": unit}
+
+
 def table(column: str, values: Any, air: Any) -> mc.Climate:
     index = pd.date_range("2024-01-01", periods=len(air), freq="1h", tz="UTC")
     frame = pd.DataFrame({"air_temperature": air, column: values, "pressure": 95_000.0}, index=index)
     names = [str(name) for name in frame]
     return mc.Climate.from_table(
-        frame, timezone="UTC", columns={name: name for name in names}, instant=names,
+        frame, timezone="UTC", columns={name: stated(name) for name in names}, instant=names,
         absent=["radiation", "wind_speed", "wind_direction"],
     )  # fmt: skip
 

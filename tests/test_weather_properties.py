@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -106,10 +106,11 @@ def test_a_climate_gives_its_table_back(values: list[float]) -> None:
     index = pd.date_range("2024-06-01", periods=len(values), freq="1h", tz="Indian/Reunion")
     table = pd.DataFrame({"T": values}, index=index)
     absent = ["radiation", "dew_point", "wind_speed", "wind_direction"]
-    climate = Climate.from_table(table, columns={"air_temperature": "T"}, absent=absent)
-    again = Climate.from_table(
-        climate.to_dataframe(), columns={name: str(name) for name in climate.data.columns}
-    )
+    stated = {"air_temperature": {"column": "T", "unit": "degC"}}
+    climate = Climate.from_table(table, columns=stated, absent=absent)
+    columns: dict[str, Any] = {str(name): str(name) for name in climate.data.columns}
+    columns["air_temperature"] = {"column": "air_temperature", "unit": "degC"}
+    again = Climate.from_table(climate.to_dataframe(), columns=columns)
     pd.testing.assert_frame_equal(climate.to_dataframe(), again.to_dataframe(), check_freq=False)
     assert climate.site is None
     assert climate.completed(Place(-21.0, 55.5)).data["global_horizontal"].sum() == 0.0

@@ -315,7 +315,7 @@ class _Search:
         moved = np.zeros_like(z)
         moved[rows, fixed] = fixed_values - self._center[fixed]
         for k in range(count):
-            free = self._others(int(fixed[k]))
+            free = self._free_indices(int(fixed[k]))
             follow = -np.linalg.lstsq(self._j[:, free], self._j[:, fixed[k]])[0] * moved[k, fixed[k]]
             moved[k, free] = np.clip(z[k, free] + follow, 0.0, 1.0) - z[k, free]
         z = z + moved
@@ -350,7 +350,7 @@ class _Search:
     def _step(self, z: Floats, r: Floats, jacobian: Floats, fixed: int, damping: float) -> Floats:
         """Take a damped Gauss-Newton step within the range; what would leave it at a bound stays."""
         slope = jacobian.T @ r
-        free = self._others(fixed)
+        free = self._free_indices(fixed)
         stuck = ((z <= 0.0) & (slope > 0.0)) | ((z >= 1.0) & (slope < 0.0))
         free = free[~stuck[free]]
         square = jacobian[:, free].T @ jacobian[:, free]
@@ -359,7 +359,7 @@ class _Search:
         new[free] = np.clip(z[free] - np.linalg.pinv(damped, hermitian=True) @ slope[free], 0.0, 1.0)
         return new
 
-    def _others(self, fixed: int) -> NDArray[np.int64]:
+    def _free_indices(self, fixed: int) -> NDArray[np.int64]:
         return np.delete(np.arange(self._center.size), fixed)
 
     def _weighted(self, z: Floats) -> Floats:

@@ -137,7 +137,7 @@ def _solved(
     if chosen.slopes == "exact":
         problem.require_slopes()
     function = Cost(problem, cost)
-    make = None if optimizer is None else _own(optimizer)
+    make = None if optimizer is None else _maker_of(optimizer)
     squares = method in WITH_SQUARES and make is None
     with Evaluator(function, record, keep_residuals=squares, batch=batch, on_batch=on_batch) as evaluator:
         _require_start(problem, evaluator)
@@ -173,7 +173,7 @@ def _require(method: str, cost: str, confidence: float, own_cost: bool) -> None:
         raise InputError(msg)
 
 
-def _own(optimizer: Callable[[Space], Optimizer]) -> Make:
+def _maker_of(optimizer: Callable[[Space], Optimizer]) -> Make:
     return lambda space, _: optimizer(space)
 
 

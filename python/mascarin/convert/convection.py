@@ -67,7 +67,7 @@ class ConvectionCoefficients:
 
     def inside(self, user: IdfObject, zone: IdfObject | None, tilt: float, *, window: bool = False) -> Any:
         """Coefficient of an inner surface."""
-        own_coefficient = self._own(user, "inside")
+        own_coefficient = self._stated(user, "inside")
         if own_coefficient is not None:
             return own_coefficient
         main = self._context.model.one("SurfaceConvectionAlgorithm:Inside")
@@ -84,7 +84,7 @@ class ConvectionCoefficients:
 
     def outside(self, user: IdfObject, zone: IdfObject | None, roughness: str) -> OuterCoefficient:
         """Coefficient of a surface outdoors."""
-        own_coefficient = self._own(user, "outside")
+        own_coefficient = self._stated(user, "outside")
         if own_coefficient is not None:
             return OuterCoefficient(own_coefficient)
         main = self._context.model.one("SurfaceConvectionAlgorithm:Outside")
@@ -104,7 +104,7 @@ class ConvectionCoefficients:
             return OuterCoefficient({"kind": "tarp", "roughness": roughness})
         return OuterCoefficient({"kind": "doe2", "roughness": roughness})
 
-    def _own(self, user: IdfObject, side: str) -> Any:
+    def _stated(self, user: IdfObject, side: str) -> Any:
         """Coefficient that the file gives for one surface; None without it."""
         item = self._by_surface.get((user.name.casefold(), side))
         if item is None:

@@ -80,10 +80,10 @@ def combined(rule: Callable[..., float], *years: Year) -> Year:
 
 def _combined_day(rule: Callable[..., float], days: Sequence[Day]) -> Day:
     minutes = sorted({minute for day in days for minute, _ in day})
-    return _without_repeats([(minute, rule(*(_at(day, minute) for day in days))) for minute in minutes])
+    return _without_repeats([(minute, rule(*(_value_at(day, minute) for day in days))) for minute in minutes])
 
 
-def _at(day: Day, minute: int) -> float:
+def _value_at(day: Day, minute: int) -> float:
     return [value for start, value in day if start <= minute][-1]
 
 

@@ -104,7 +104,7 @@ class Workspace:
     def __exit__(self, *error: object) -> None:
         """Release the lock; after an error, say which report there is."""
         self._lock.release()
-        if error[0] is not None and self._earlier:
+        if any(error) and self._earlier:
             warnings.warn(
                 f"{self.out / REPORT}: of an earlier state of the study; it was not replaced, because this "
                 "run did not end",

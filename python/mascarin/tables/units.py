@@ -8,9 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from mascarin.physics import KELVIN
+
 FACTORS: Final[Mapping[str, tuple[str, float, float]]] = {
     "degC": ("degC", 1.0, 0.0),
-    "K": ("degC", 1.0, -273.15),
+    "K": ("degC", 1.0, -KELVIN),
     "degF": ("degC", 5.0 / 9.0, -160.0 / 9.0),
     "W/m2": ("W/m2", 1.0, 0.0),
     "kW/m2": ("W/m2", 1000.0, 0.0),

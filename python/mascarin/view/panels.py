@@ -79,7 +79,7 @@ def panels(building: Building) -> dict[str, Array]:
     ]
     west = max((float(vertex[0]) for vertex in vertices), default=-2.0) + 2.0
     corners_of: dict[str, Array] = {}
-    for zone, floor_middle in _places(rooms).items():
+    for zone, floor_middle in _label_positions(rooms).items():
         for name, corners in _around(building, zone, groups[zone], rooms[zone]).items():
             corners_of[name] = corners + floor_middle + np.array([west, 0.0, 0.0])
     return {name: corners_of[name] for name in building.surfaces if name in corners_of}
@@ -90,7 +90,7 @@ def home(surface: Surface) -> str:
     return surface.inside.zone or surface.outside.zone or ""
 
 
-def _places(rooms: Mapping[str, _Room]) -> dict[str, Array]:
+def _label_positions(rooms: Mapping[str, _Room]) -> dict[str, Array]:
     """Middle of the floor of each zone: row by row, from the west and from the north [m]."""
     columns = math.ceil(math.sqrt(len(rooms)))
     floor_middles: dict[str, Array] = {}

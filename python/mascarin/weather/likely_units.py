@@ -49,14 +49,14 @@ def require_likely_unit(name: str, values: Array, lines: Lines, column: str, whe
     Traceback (most recent call last):
     mascarin.errors.InputError: log.csv:3: wind_speed: found a mean of 36 m/s in the column 'Wind', ...
     """
-    there = values[np.isfinite(values)]
-    if not len(there):
+    finite = values[np.isfinite(values)]
+    if not len(finite):
         return
     unit = "%" if name == "relative_humidity" else UNITS.get(name, "")
-    found = _unlikely(name, there)
-    if found is None:
+    doubt = _unlikely(name, finite)
+    if doubt is None:
         return
-    said, likely = found
+    said, likely = doubt
     raise InputError(
         f"{where}:{lines[int(np.nanargmax(values))]}: {name}: found {said} in the column {column!r}, for "
         f"which no unit is stated; expected values that are plausible in {unit}. They look like {likely}: "

@@ -177,6 +177,14 @@ def _uncovered(start: Array, end: Array, starts: Array, ends: Array) -> list[tup
     return open_pieces
 
 
+def _order_error(reversed_surfaces: Sequence[str]) -> InputError:
+    names = ", ".join(reversed_surfaces)
+    return InputError(
+        f"the vertices of {names} are in the reverse order of the other surfaces; expected the vertices of "
+        f"every surface counter-clockwise seen from outside; reverse the order of those of {names}"
+    )
+
+
 def volume(polygons: Sequence[Polygon]) -> float:
     """Volume enclosed by the surfaces of a zone (divergence theorem).
 
@@ -200,12 +208,7 @@ def volume(polygons: Sequence[Polygon]) -> float:
     gaps = _gaps(shell)
     wrong = _reversed(polygons) if gaps else []
     if wrong:
-        raise InputError(
-            f"the vertices of {', '.join(wrong)} are in the reverse order of the other surfaces; expected "
-            "the "
-            f"vertices of every surface counter-clockwise seen from outside; reverse the order of those of "
-            f"{', '.join(wrong)}"
-        )
+        raise _order_error(wrong)
     if gaps:
         shown = "; ".join(str(gap) for gap in gaps[:6])
         more = f"; and {len(gaps) - 6} more" if len(gaps) > 6 else ""
@@ -279,7 +282,7 @@ def check_convex(polygons: Sequence[Polygon]) -> None:
     Raises
     ------
     InputError
-        A corner is behind a polygon.
+        A corner is behind a polygon, or the vertices of one are in the reverse order.
     """
     corners = np.concatenate([polygon.points for polygon in polygons])
     for polygon in polygons:
@@ -289,6 +292,8 @@ def check_convex(polygons: Sequence[Polygon]) -> None:
             heights = polygon.height_of(other.points)
             worst = int(np.argmin(heights))
             if heights[worst] < -TOLERANCE:
+                if wrong := _reversed(polygons):
+                    raise _order_error(wrong)
                 raise InputError(
                     f"the zone is not convex: vertex {worst + 1} of '{other.name}' lies "
                     f"{-heights[worst]:.3f} m behind '{polygon.name}'; exact view factors need a convex "
