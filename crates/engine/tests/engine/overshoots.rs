@@ -53,6 +53,11 @@ fn airs() -> Vec<Output> {
     airs.chain([Output::HeatingLoad { zone: 0 }, Output::HeatingLoad { zone: 1 }]).collect()
 }
 
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small positive number of steps"
+)]
 fn opened(d: Description, scheme: Scheme, step: f64) -> Run<f64> {
     let plan = Plan::new(d).unwrap();
     let steps = (14_400.0 / step) as usize;
@@ -131,9 +136,9 @@ fn packs_and_split_runs_have_the_same_bits() {
         let alone = simulate(&plan, numbers, &drive, &options, &RunControl::default()).unwrap();
         // The first step is in parts in any case.
         if alone.counters.halvings > 0 {
-            in_parts += 1
+            in_parts += 1;
         } else {
-            whole += 1
+            whole += 1;
         }
         assert!(alone.records.iter().zip(records).all(|(a, b)| a.to_bits() == b.to_bits()));
     }
