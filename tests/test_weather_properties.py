@@ -109,7 +109,8 @@ def test_a_climate_gives_its_table_back(values: list[float]) -> None:
     stated = {"air_temperature": {"column": "T", "unit": "degC"}}
     climate = Climate.from_table(table, columns=stated, absent=absent)
     columns: dict[str, Any] = {str(name): str(name) for name in climate.data.columns}
-    columns["air_temperature"] = {"column": "air_temperature", "unit": "degC"}
+    for name in ("air_temperature", "dew_point"):
+        columns[name] = {"column": name, "unit": "degC"}
     again = Climate.from_table(climate.to_dataframe(), columns=columns)
     pd.testing.assert_frame_equal(climate.to_dataframe(), again.to_dataframe(), check_freq=False)
     assert climate.site is None
