@@ -203,3 +203,10 @@ def test_a_damaged_manifest_of_a_study_is_computed_again(tmp_path: Path) -> None
         (tmp_path / ".work" / "manifest.json").write_text(damaged)
         with pytest.warns(UserWarning, match="computed again"), Workspace(tmp_path, {"a": 1}):
             pass
+
+
+@pytest.mark.parametrize("text", ["1" + "0" * 400, "-1" + "0" * 400, "[1" + "0" * 301 + "]"])
+def test_a_whole_number_that_is_no_float_is_damage(text: str) -> None:
+    with pytest.raises(own_files.DamagedError, match="digits"):
+        own_files.json_of(text)
+    assert own_files.json_of("1" + "0" * 300) == 10**300

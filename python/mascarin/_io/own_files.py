@@ -36,6 +36,8 @@ _LONGEST: Final = 200
 _NUMBERS: Final = frozenset("?bBhHiIlLqQefdUmM")
 #: Longest text of an array of texts. [characters]
 _LONGEST_TEXT: Final = 100_000
+#: Largest whole number of an own file: larger ones are no floats.
+_MAX_INTEGER: Final = 10**300
 #: Nesting of JSON. Results of a study have about 10 levels.
 DEEPEST: Final = 64
 
@@ -161,7 +163,7 @@ def json_of(text: str | bytes, *, finite: bool = False) -> Any:
     Raises
     ------
     DamagedError
-        It is no JSON, nested too deeply, or a number is not finite.
+        It is no JSON, nested too deeply, or a number is not finite or has more than 300 digits.
 
     Examples
     --------
@@ -171,13 +173,21 @@ def json_of(text: str | bytes, *, finite: bool = False) -> Any:
     """
     number = _finite if finite else None
     try:
-        content = json.loads(text, parse_constant=number, parse_float=number)
+        content = json.loads(text, parse_constant=number, parse_float=number, parse_int=_integer)
         depth = _depth(content)
     except (ValueError, RecursionError) as error:
         raise DamagedError(f"it is no JSON ({error})") from None
     if depth > DEEPEST:
         raise DamagedError(f"its JSON has {depth} levels")
     return content
+
+
+def _integer(text: str) -> int:
+    """A whole number of JSON, which arithmetic must be able to turn into a float."""
+    value = int(text)
+    if not -_MAX_INTEGER <= value <= _MAX_INTEGER:
+        raise ValueError(f"found the number {text[:20]}... of {len(text)} digits")
+    return value
 
 
 def _finite(text: str) -> float:
