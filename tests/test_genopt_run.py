@@ -377,3 +377,15 @@ def test_a_project_can_be_checked_without_running(tmp_path: Path) -> None:
     assert project.names == ["x1", "x2"]
     assert "simulations: 24" in lines
     assert not (tmp_path / "OutputListingMain.txt").exists()
+
+
+def test_a_log_of_another_format_is_refused(tmp_path: Path) -> None:
+    from mascarin._io import own_records
+    from mascarin.genopt import records
+
+    path = tmp_path / "opt.evaluations.jsonl"
+    first = own_records.sealed("log of a search", {"format": records.FORMAT + 1, "project": {}})
+    with pytest.raises(InputError, match="found format 3, expected 2; remove it or start without --resume"):
+        records._compare(path, first.encode(), {})
+    same = own_records.sealed("log of a search", {"format": records.FORMAT, "project": {}})
+    records._compare(path, same.encode(), {})

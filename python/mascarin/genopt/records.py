@@ -371,6 +371,10 @@ def _compare(path: Path, line: bytes, digests: Mapping[str, str]) -> None:
             "without --resume"
         )
         raise InputError(msg) from error
+    if head["format"] != FORMAT:
+        raise InputError(
+            f"{path}:1: found format {head['format']}, expected {FORMAT}; remove it or start without --resume"
+        )
     recorded = head["project"]
     changed = sorted(k for k in {*recorded, *digests} if recorded.get(k) != digests.get(k))
     if changed:
