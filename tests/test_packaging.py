@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -175,3 +176,29 @@ def test_forms_of_the_repository_are_valid(repository: Path) -> None:
     for page in ("CODE_OF_CONDUCT.md", "SECURITY.md", "SUPPORT.md", "RELEASING.md", "CONTRIBUTING.md"):
         for link in re.findall(r"\]\(([^)#]+)", (repository / page).read_text(encoding="utf-8")):
             assert link.startswith("https://") or (repository / link).exists(), (page, link)
+
+
+def test_licences_of_all_crates_travel_with_the_library(repository: Path) -> None:
+    command = [sys.executable, "packaging/licenses.py", "--check"]
+    answer = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    texts = ["LICENSE", "python/mascarin/LICENSES.txt"]
+    texts += [str(path.relative_to(repository)) for path in repository.glob("python/mascarin/**/*.LICENSE")]
+    project = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    text = (repository / "packaging/conda/recipe.yaml").read_text(encoding="utf-8")
+    recipe = yaml.safe_load(re.sub(r"\$\{\{.*?\}\}", "x", text))
+    assert sorted(project["license-files"]) == sorted(texts)
+    assert sorted(recipe["about"]["license_file"]) == sorted(texts)
+
+
+def test_licences_of_all_crates_may_stand_in_this_library(repository: Path) -> None:
+    allowed = set(tomllib.loads((repository / "deny.toml").read_text(encoding="utf-8"))["licenses"]["allow"])
+    lines = (repository / "python/mascarin/LICENSES.txt").read_text(encoding="utf-8").splitlines()
+    rule = "=" * 78
+    titles = [lines[row + 1] for row in range(len(lines) - 2) if lines[row] == lines[row + 2] == rule]
+    assert len(titles) > 20
+    for title in titles:
+        expression = title.split(" (", 1)[1].removesuffix(")")
+        for alternatives in re.split(r"\bAND\b", expression):
+            names = set(re.split(r"\bOR\b|/", alternatives.strip("() ")))
+            assert {name.strip() for name in names} & allowed, title

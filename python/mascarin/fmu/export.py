@@ -7,6 +7,7 @@ import json
 import uuid
 import zipfile
 from collections.abc import Sequence
+from importlib.resources import files as package_files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -109,7 +110,13 @@ def export(
         variables=variables,
     )
     described = fmi3(model) if version == "3.0" else fmi2(model)
-    files = {"modelDescription.xml": described, **library, **resources}
+    licenses = package_files("mascarin").joinpath("LICENSES.txt").read_bytes()
+    files = {
+        "modelDescription.xml": described,
+        **library,
+        "documentation/licenses/license.txt": licenses,
+        **resources,
+    }
     # No seals as in `_io.own_files`: each entry has the checksum of the archive, a unit is a result for
     # programs of others, which unpack it and may set start values in its description, and the library
     # compares its resources with their format, sizes and names (`crates/fmu/src/contents.rs`).
