@@ -202,3 +202,15 @@ def test_licences_of_all_crates_may_stand_in_this_library(repository: Path) -> N
         for alternatives in re.split(r"\bAND\b", expression):
             names = set(re.split(r"\bOR\b|/", alternatives.strip("() ")))
             assert {name.strip() for name in names} & allowed, title
+
+
+def test_the_paper_cites_what_its_references_list(repository: Path) -> None:
+    text = (repository / "paper/paper.md").read_text(encoding="utf-8")
+    references = (repository / "paper/paper.bib").read_text(encoding="utf-8")
+    listed = re.findall(r"^@\w+\{(\w+),", references, flags=re.MULTILINE)
+    assert len(listed) == len(set(listed))
+    assert set(re.findall(r"@(\w+\d{4}|slPCMlib|corrai)\b", text)) == set(listed)
+    for picture in re.findall(r"\]\((\S+?\.png)\)", text):
+        assert (repository / "paper" / picture).is_file()
+    # A paper of that journal has 750 to 1750 words.
+    assert 750 <= len(text.split()) <= 1750

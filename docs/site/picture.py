@@ -1,7 +1,8 @@
-"""The picture of the README: ``python docs/site/picture.py`` writes docs/picture.svg."""
+"""The picture of the README: ``python docs/site/picture.py [FILE]`` writes docs/picture.svg, or FILE."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -14,7 +15,7 @@ NAMES = ["room.air_temperature", "ceiling.inside_temperature", "ceiling.energain
 PERIOD = {"start": "2010-08-10", "end": "2010-08-15"}
 
 
-def main() -> None:
+def main(file: Path = OUT) -> None:
     """Draw five days of the test cell, with and without latent heat, and its liquid fraction."""
     mpl.use("agg")
     mpl.rcParams["svg.hashsalt"] = "mascarin"  # the same file at each call
@@ -42,9 +43,10 @@ def main() -> None:
     for ax in (top, bottom):
         ax.spines[["top", "right"]].set_visible(False)
     bottom.xaxis.set_major_formatter(mpl.dates.DateFormatter("%d %b"))
-    figure.savefig(OUT, metadata={"Date": None})
-    print(OUT)
+    metadata = {"Date": None} if file.suffix == ".svg" else None
+    figure.savefig(file, metadata=metadata, dpi=200)
+    print(file)
 
 
 if __name__ == "__main__":
-    main()
+    main(*map(Path, sys.argv[1:2]))
