@@ -6,6 +6,7 @@
 #   make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares
 #   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 100000" for more of them
 #   make docs   build, make the documentation site without a network: target/site/html; warnings are errors
+#   make lock   write constraints.lock anew after a change of constraints.txt
 #   make docs-links   ask the other sites that the pages link to
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
@@ -36,7 +37,7 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 FUZZ_CALLS ?= 20000
 THREE := python/mascarin/view/vendor
 
-.PHONY: help demo test coverage test-lowest bench fuzz docs docs-links vendor-three build check-tools check-rust check-python pytest
+.PHONY: help demo test coverage test-lowest bench fuzz docs docs-links lock vendor-three build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -89,6 +90,13 @@ bench: $(BUILT) $(HYPERFINE)
 $(HYPERFINE): | check-tools
 	cargo install hyperfine --version $(HYPERFINE_VERSION) --locked --quiet --root target/bench/tools
 
+# The versions of constraints.txt with the hashes of their files for every system. Needs a network.
+lock: $(ENVIRONMENT)
+	$(PY) -m venv target/lock
+	target/lock/bin/python -m pip install --quiet uv==0.13.9
+	target/lock/bin/uv pip compile constraints.txt --no-deps --generate-hashes --universal --python-version 3.11.9 \
+		--no-header --no-annotate --quiet --output-file constraints.lock
+
 # The file is committed; this makes it again from its pinned sources and compares it. Needs node and a network.
 vendor-three:
 	cd packaging/three && npm ci --silent
@@ -120,9 +128,10 @@ check-tools:
 		echo "error: 'cargo' not found. Mascarin's engine is built with Rust 1.89 or later:" \
 			"see rustup.rs or your system's packages" >&2; exit 1; }
 
-$(ENVIRONMENT): constraints.txt | check-tools
+# By their hashes: what the registry sends is what the tests were run with.
+$(ENVIRONMENT): constraints.lock | check-tools
 	@test -x $(PY) || "$(PYTHON)" -m venv .venv
-	$(PY) -m pip install --quiet --requirement constraints.txt
+	$(PY) -m pip install --quiet --require-hashes --requirement constraints.lock
 	@touch $@
 
 $(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)

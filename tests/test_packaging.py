@@ -71,6 +71,17 @@ def test_the_engine_is_measured_with_the_crates_it_is_shipped_with(repository: P
     assert {name: shipped[name] for name in common} == {name: measured[name] for name in common}
 
 
+def test_the_lock_has_the_same_versions_with_hashes(repository: Path) -> None:
+    stated = (repository / "constraints.txt").read_text(encoding="utf-8").split()
+    locked = re.split(r"\n(?! )", (repository / "constraints.lock").read_text(encoding="utf-8").strip())
+    versions = {entry.split()[0].lower().replace("_", "-").replace(".", "-") for entry in locked}
+    differences = versions ^ {line.lower().replace("_", "-").replace(".", "-") for line in stated}
+    assert not differences, f"run `make lock`: {differences}"
+    for entry in locked:
+        hashes = re.findall(r"--hash=sha256:[0-9a-f]{64}\b", entry)
+        assert hashes, f"{entry.split()[0]}: no hash; run `make lock`"
+
+
 def test_constraints_hold_versions_only(repository: Path) -> None:
     for line in (repository / "constraints.txt").read_text(encoding="utf-8").splitlines():
         assert re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.]+", line), line
