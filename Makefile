@@ -131,7 +131,8 @@ check-tools:
 # By their hashes: what the registry sends is what the tests were run with.
 $(ENVIRONMENT): constraints.lock | check-tools
 	@test -x $(PY) || "$(PYTHON)" -m venv .venv
-	$(PY) -m pip install --quiet --require-hashes --requirement constraints.lock
+	$(PY) -m pip install --quiet --require-hashes --no-deps --requirement constraints.lock
+	$(PY) -m pip check
 	@touch $@
 
 $(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
