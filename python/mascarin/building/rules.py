@@ -22,7 +22,7 @@ from mascarin.building.surface import NoLongwave, Side
 from mascarin.building.ties import faults as tie_faults
 from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
-from mascarin.building.zone_surfaces import ZoneSurface, floors
+from mascarin.building.zone_surfaces import ZoneSurface, floors, surface_names
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -265,18 +265,6 @@ def _view_factors_sum_to_one(building: Description) -> Faults:
                     "a row for each surface",
                     f"Add '{name}:'.",
                 )
-
-
-def surface_names(seen: Sequence[ZoneSurface]) -> list[str]:
-    """Names of the surfaces of a zone; with the side, or ``frame``, where a part has two."""
-    count: Mapping[str, int] = Counter(item.name for item in seen)
-    names: list[str] = []
-    for item in seen:
-        if count[item.name] == 1 or (item.name not in names and item.window is not None):
-            names.append(item.name)
-        else:
-            names.append(f"{item.name}.{'frame' if item.window is not None else item.side}")
-    return names
 
 
 def _sun_can_be_absorbed(building: Description) -> Faults:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -124,3 +125,15 @@ def frame_fraction(window: Window) -> float:
 def closed(seen: Sequence[ZoneSurface]) -> bool:
     """Whether all surfaces of a zone have an outline."""
     return bool(seen) and all(item.polygon is not None for item in seen)
+
+
+def surface_names(surfaces: Sequence[ZoneSurface]) -> list[str]:
+    """Names of the surfaces of a zone; with the side, or ``frame``, where a part has two."""
+    count: Mapping[str, int] = Counter(item.name for item in surfaces)
+    names: list[str] = []
+    for item in surfaces:
+        if count[item.name] == 1 or (item.name not in names and item.window is not None):
+            names.append(item.name)
+        else:
+            names.append(f"{item.name}.{'frame' if item.window is not None else item.side}")
+    return names

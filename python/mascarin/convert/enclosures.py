@@ -9,8 +9,7 @@ import numpy as np
 
 from mascarin.building import Building
 from mascarin.building.geometry import view_factors
-from mascarin.building.rules import surface_names
-from mascarin.building.zone_surfaces import ZoneSurface, closed, floors
+from mascarin.building.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.convert.context import Context
 from mascarin.convert.geometry import Array
 from mascarin.convert.idf import IdfObject
