@@ -21,7 +21,7 @@ import pytest
 from crossing_features import END, START, VARIED, ZONE, measured
 from mascarin import cli
 from mascarin.building import Building
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import MascarinError
 from mascarin.genopt.program import Program
 from mascarin.simulation.linear_model import state_space

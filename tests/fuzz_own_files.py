@@ -23,7 +23,7 @@ import pandas as pd
 import fuzz_mutation
 from mascarin._io import own_files, own_records
 from mascarin._io.cache import _read
-from mascarin.building.outputs import Output
+from mascarin.building.outputs.output import Output
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, evaluations
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.store import Store

@@ -10,7 +10,7 @@ import pytest
 
 from mascarin.building import Blind, Building
 from mascarin.building.checks import check
-from mascarin.building.references import sources
+from mascarin.building.parameters.sources import sources
 from mascarin.errors import InputError
 from mascarin.simulation.objectives import Mean
 from mascarin.simulation.results import Results

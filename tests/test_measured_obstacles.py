@@ -11,7 +11,7 @@ import pytest
 
 from mascarin.building import Building
 from mascarin.building.checks import check
-from mascarin.building.inactive import without_effect
+from mascarin.building.parameters.unused_parameters import without_effect
 from mascarin.errors import InputError
 from mascarin.simulation.objectives import Mean
 from mascarin.simulation.simulation import Simulation

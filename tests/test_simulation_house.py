@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mascarin.building import Building
-from mascarin.building.air import density
+from mascarin.building.parts.site_air import density
 from mascarin.errors import InputError
 from mascarin.physics import AIR_SPECIFIC_HEAT
 from mascarin.simulation.objectives import Mean

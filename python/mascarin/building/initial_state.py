@@ -15,19 +15,19 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from mascarin.building.blind import Blind
-from mascarin.building.courses import temperature_course
-from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
-from mascarin.building.material import PhaseChangeMaterial, Resistance
-from mascarin.building.part import Part, fault, refuse
-from mascarin.building.phases import phase
-from mascarin.building.schedule import schedule_channel
+from mascarin.building.base.part import Part, fault, refuse
+from mascarin.building.base.time_series import temperature_course
+from mascarin.building.parts.air.schedule import schedule_channel
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
+from mascarin.building.parts.materials.phases import phase
+from mascarin.building.parts.openings.blind import Blind
+from mascarin.building.parts.openings.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building.building import Building
-    from mascarin.building.outputs import Output
-    from mascarin.building.surface import Side
+    from mascarin.building.outputs.output import Output
+    from mascarin.building.parts.envelope.surface import Side
 
 #: Surface resistances outdoors, and to the air of a room (ISO 6946:2017, horizontal flow). [m2 K/W]
 FILMS: Final = (0.04, 0.13)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.outputs import Output
+    from mascarin.building.outputs.output import Output
 
 #: Least change of the liquid fraction that counts as melting or freezing [-].
 NOTHING: Final = 0.01

@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin._io.arguments import kind_of, mapping_of, require_type
 from mascarin._io.durations import seconds_of
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.ties import expanded
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter

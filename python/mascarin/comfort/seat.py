@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin.building.geometry import Polygon, open_edges, parents, plane_factor, solid_angle
 from mascarin.building.geometry.flat import inside
-from mascarin.building.window import emissivities as emissivities_of_glass
+from mascarin.building.parts.openings.window import emissivities as emissivities_of_glass
 from mascarin.errors import InputError
 from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.zone_surfaces import ZoneSurface
+    from mascarin.building.parts.zone_surfaces import ZoneSurface
 
     Array = npt.NDArray[np.float64]
 

@@ -9,9 +9,9 @@ import numpy.typing as npt
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import InitErrorDetails
 
-from mascarin.building.number import problem, shown
-from mascarin.building.part import Part, fault, insist
-from mascarin.building.schedule import ClockTime
+from mascarin.building.base.number import problem, shown
+from mascarin.building.base.part import Part, fault, insist
+from mascarin.building.parts.air.schedule import ClockTime
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Discomfort, Evaluation, Floats, discomfort
 from mascarin.comfort.indices import INDICES, Band, Index, index_named, require_limits

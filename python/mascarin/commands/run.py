@@ -276,7 +276,7 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
 
 def _print_cost(building: Building, simulation: Simulation) -> None:
     """Say how long shadows take, where it is long."""
-    from mascarin.building.self_shading import expected_seconds, obstructions, pairs_with_shades
+    from mascarin.building.parts.self_shading import expected_seconds, obstructions, pairs_with_shades
 
     steps, stages, _ = simulation.compiled.forcing.shape
     shades = pairs_with_shades(building)

@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin.building import Building
 from mascarin.building.geometry import view_factors
-from mascarin.building.zone_surfaces import ZoneSurface, closed, floors, surface_names
+from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.convert.context import Context
 from mascarin.convert.geometry import Array
 from mascarin.convert.idf import IdfObject

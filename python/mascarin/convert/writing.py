@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.convert.conversion import Conversion
 from mascarin.convert.findings import LEVELS
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mascarin.building.site import Wind, wind_factor
+from mascarin.building.parts.site import Wind, wind_factor
 from mascarin.convert import geometry as g
 from mascarin.convert.context import Context
 from mascarin.convert.idf import IdfObject

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import Field, StringConstraints, model_validator
 
-from mascarin.building.names import Name
-from mascarin.building.part import Part, fault, insist
+from mascarin.building.base.names import Name
+from mascarin.building.base.part import Part, fault, insist
 from mascarin.design.objectives import AnyObjective
 from mascarin.study.field_types import Duration, Time
 

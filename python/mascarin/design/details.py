@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building import air
+from mascarin.building.parts import site_air
 from mascarin.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def detail(inputs: DesignInputs, site: Site, design: Design | None, label: str) 
     gains = {
         "air from outdoors": _volume(building, zones[0])
         / 3600.0
-        * air.heat_capacity(building.site)
+        * site_air.heat_capacity(building.site)
         * series[f"{zones[0]}.air_changes"]
         * (outdoors - series[f"{zones[0]}.air_temperature"])
     }

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import pandas as pd
 
-from mascarin.building import Building, load, yaml_document
-from mascarin.building.ties import expanded, spread
+from mascarin.building import Building, load
+from mascarin.building.files import yaml_document
+from mascarin.building.parameters.ties import expanded, spread
 from mascarin.comfort import Surroundings
 from mascarin.design.checks import require_no_columns, require_same_basis
 from mascarin.design.description import FILE_KEYS, DesignFile

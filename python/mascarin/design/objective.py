@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
 from mascarin.design.checks import require_zone
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from mascarin.building.part import Shorthand, fault, insist
+from mascarin.building.base.part import Shorthand, fault, insist
 from mascarin.comfort import ComfortSettings
 from mascarin.design.checks import require_layer
 from mascarin.design.cooling import CoolingEnergy, PeakCooling

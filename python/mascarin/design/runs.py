@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io import own_files
-from mascarin.building.ties import spread
+from mascarin.building.parameters.ties import spread
 from mascarin.design.layers import LayerFacts
 from mascarin.design.objective import column_of_part
 from mascarin.design.reductions import BINS, DaysInBin

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.limits import at_least, at_most
-from mascarin.building.ties import expanded, spread
+from mascarin.building.parameters.ties import expanded, spread
 from mascarin.design.description import MAX_DESIGNS
 from mascarin.errors import InputError
 from mascarin.materials import product, products

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mascarin._io import memory
-from mascarin.building.set_points import tied_set_points
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.set_point_pairs import tied_set_points
+from mascarin.building.parameters.ties import expanded
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building.part import worked_out
+from mascarin.building.base.part import worked_out
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

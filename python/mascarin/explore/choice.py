@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.wildcards import is_pattern, matching
+from mascarin.building.base.wildcards import is_pattern, matching
 from mascarin.errors import InputError, SolverError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.building.parameters import Parameter
+    from mascarin.building.parameters.parameter import Parameter
     from mascarin.simulation.objectives import Array
     from mascarin.simulation.simulation import Simulation
 

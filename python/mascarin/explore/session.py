@@ -14,7 +14,7 @@ import numpy as np
 from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin.building import load
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import InputError
 from mascarin.explore import choice
 from mascarin.report import text
@@ -23,7 +23,7 @@ from mascarin.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.building.parameters import Parameter
+    from mascarin.building.parameters.parameter import Parameter
     from mascarin.simulation.results import Results
     from mascarin.weather import Climate
 

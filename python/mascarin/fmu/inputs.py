@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.course_uses import courses
-from mascarin.building.courses import ColumnCourse
+from mascarin.building.base.time_series import ColumnCourse
+from mascarin.building.engine_input.series_users import courses
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.compiling import limits_of_columns
 from mascarin.simulation.flow_balance import require_balanced_flows

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from mascarin._io import atomic, units
-from mascarin.building.output_kinds import KINDS
+from mascarin.building.outputs.kinds import KINDS
 from mascarin.report import text
 from mascarin.report.axes import short_day, time_axis
 from mascarin.report.sections.energy import ledger_bars

@@ -11,8 +11,8 @@ import numpy as np
 
 from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
 from mascarin._io.durations import seconds_of
-from mascarin.building.set_points import tied_set_points
-from mascarin.building.ties import expanded, spread
+from mascarin.building.parameters.set_point_pairs import tied_set_points
+from mascarin.building.parameters.ties import expanded, spread
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor

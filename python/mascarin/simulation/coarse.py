@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.outputs import Output
+    from mascarin.building.outputs.output import Output
 
 #: Error of the air temperature from which a step is called too long [K].
 LARGE: Final = 0.2

@@ -10,10 +10,10 @@ import numpy as np
 
 from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
-from mascarin.building.convection import measured_column
-from mascarin.building.course_uses import courses
+from mascarin.building.engine_input.series_users import courses
 from mascarin.building.initial_state import Ambient, GivenStart
-from mascarin.building.outputs import named
+from mascarin.building.outputs.output import named
+from mascarin.building.parts.envelope.convection import measured_column
 from mascarin.errors import InputError
 from mascarin.simulation.flow_balance import require_balanced_flows
 from mascarin.simulation.initial import MeasuredStart, resolved

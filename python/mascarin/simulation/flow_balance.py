@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.building.air_rules import BALANCED, REMEDY, flows_of_zones, imbalance
+from mascarin.building.checks.air import BALANCED, REMEDY, flows_of_zones, imbalance
 from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.driven import Driven
+    from mascarin.building.parts.air.measured_values import Driven
 
     Array = npt.NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin.building.formula_sides import formula_sides
+from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -427,7 +427,7 @@ class Simulation(VectorRuns):
     @cached_property
     def building_warnings(self) -> tuple[str, ...]:
         """Warnings that every run has: areas, volumes, materials and mesh of the building, irradiance."""
-        from mascarin.building import plausibility  # pydantic, as above
+        from mascarin.building.checks import plausibility  # pydantic, as above
 
         site = self.building.site
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))

@@ -169,7 +169,7 @@ class VectorRuns:
     def followers(self, paths: Sequence[str]) -> dict[str, str]:
         """Parameters that follow varied ones: varied path -> path of the equal set point."""
         # The package imports pydantic, which an evaluation for GenOpt does without.
-        from mascarin.building.set_points import tied_set_points
+        from mascarin.building.parameters.set_point_pairs import tied_set_points
 
         tied = tied_set_points(self.building)
         named = [self.building.parameter(path) for path in paths] if tied else []

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.ties import expanded
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector

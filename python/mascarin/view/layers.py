@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building.material import PhaseChangeMaterial, Resistance
-from mascarin.building.phases import phase
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
+from mascarin.building.parts.materials.phases import phase
 from mascarin.report import text
 from mascarin.report.building_drawings import fill_of
 from mascarin.report.svg import Svg
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from mascarin.building import Building
-    from mascarin.building.surface import Layer
+    from mascarin.building.parts.envelope.surface import Layer
 
 #: Width of the thickest construction of a building, and height of the drawings [px].
 _WIDTH, _HEIGHT = 300.0, 84.0

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.building.surface import Surface
-    from mascarin.building.window import Window
+    from mascarin.building.parts.envelope.surface import Surface
+    from mascarin.building.parts.openings.window import Window
 
 Array = npt.NDArray[np.float64]
 

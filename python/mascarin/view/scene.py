@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from mascarin.building.ratings import window_ratings
-from mascarin.building.u_values import described_u_value, resistance_words, u_value, window_u_value
+from mascarin.building.checks.u_values import described_u_value, resistance_words, u_value, window_u_value
+from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.report import text
 from mascarin.view.panels import Array, home, panels, window_panels
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.building.surface import Side, Surface
-    from mascarin.building.window import Window
+    from mascarin.building.parts.envelope.surface import Side, Surface
+    from mascarin.building.parts.openings.window import Window
 
 Facts: TypeAlias = list[tuple[str, str]]
 #: Warnings by section and name.

@@ -12,7 +12,7 @@ from mascarin.tables.timezones import parse_timezone, standard_offset
 from mascarin.weather.sun import SunPath
 
 if TYPE_CHECKING:
-    from mascarin.building.site import Site
+    from mascarin.building.parts.site import Site
 
 #: Any year without a leap day: the sun is at the same place within half a degree in others.
 YEAR: Final = 2025
