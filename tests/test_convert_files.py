@@ -10,7 +10,7 @@ import pytest
 
 from conftest import DATA, unavailable
 from mascarin.building.reading import parse
-from mascarin.convert import convert, yaml_text
+from mascarin.energyplus import convert, yaml_text
 
 BENCH = Path(__file__).resolve().parent.parent / "bench"
 #: What is left out of each file: beginnings of the classes.

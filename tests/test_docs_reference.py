@@ -151,7 +151,7 @@ def test_public_names_of_python_are_listed() -> None:
         "mascarin.study.StudyResults",
         "mascarin.design.run_design",
         "mascarin.comfort.assess",
-        "mascarin.convert.convert",
+        "mascarin.energyplus.convert",
         "mascarin.fmu.export",
         "mascarin.calibration.calibrate",
     ):

@@ -38,8 +38,8 @@ def convert(
     weather : Path
         Weather file (EPW) that gives the site, for a model without Site:Location.
     """
-    from mascarin.convert import convert as converted
-    from mascarin.convert import report, run_options, terminal_lines, yaml_text
+    from mascarin.energyplus import convert as converted
+    from mascarin.energyplus import report, run_options, terminal_lines, yaml_text
 
     target = Path(f"{model.stem}.yaml") if out is None else out
     if target.suffix.lower() not in (".yaml", ".yml"):

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
 
 #: Coefficients D + E V + F V^2 of the algorithm SimpleCombined by roughness, radiation included
 #: (ASHRAE Handbook of Fundamentals 1989, p. 22.4, as in the EnergyPlus Engineering Reference).

@@ -12,10 +12,10 @@ from typing import Final
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
-from mascarin.convert.context import Context
-from mascarin.convert.field_checks import finite
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.field_checks import finite
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
 from mascarin.tables.timezones import YEARS
 
 SCHEDULES: Final = (

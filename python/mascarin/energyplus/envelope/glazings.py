@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
-from mascarin.convert.context import Context, Section
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.materials import layers_of
-from mascarin.convert.window_data import DataFile, read_data_file
+from mascarin.energyplus.envelope.materials import layers_of
+from mascarin.energyplus.envelope.window_data import DataFile, read_data_file
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.idf import IdfObject
 
 _SHADES: Final = ("shade", "blind", "screen", "drape", "complexshade")
 _GASES: Final = ("air", "argon", "krypton", "xenon")

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from mascarin.convert.findings import Findings
-from mascarin.convert.idf import IdfModel, IdfObject
+from mascarin.energyplus.model.findings import Findings
+from mascarin.energyplus.model.idf import IdfModel, IdfObject
 
 Section = dict[str, Any]
 

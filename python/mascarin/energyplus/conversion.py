@@ -9,22 +9,22 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin.building import Building
-from mascarin.convert.airflow import describe_air
-from mascarin.convert.conditioning import describe_conditioning, usual_temperatures
-from mascarin.convert.context import Context, Section
-from mascarin.convert.convection import ConvectionCoefficients
-from mascarin.convert.enclosures import describe_enclosures
-from mascarin.convert.findings import Finding
-from mascarin.convert.gains import describe_gains
-from mascarin.convert.idf import read
-from mascarin.convert.idf_surfaces import read_openings, read_surfaces
-from mascarin.convert.schedules import calendar_year, day_of
-from mascarin.convert.shades import describe_shades
-from mascarin.convert.site import describe_site
-from mascarin.convert.surfaces import describe_surfaces
-from mascarin.convert.unsupported import note_unsupported
-from mascarin.convert.windows import describe_openings
-from mascarin.convert.zones import describe_zones
+from mascarin.energyplus.envelope.convection import ConvectionCoefficients
+from mascarin.energyplus.envelope.idf_surfaces import read_openings, read_surfaces
+from mascarin.energyplus.envelope.shades import describe_shades
+from mascarin.energyplus.envelope.surfaces import describe_surfaces
+from mascarin.energyplus.envelope.windows import describe_openings
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.findings import Finding
+from mascarin.energyplus.model.idf import read
+from mascarin.energyplus.model.schedules import calendar_year, day_of
+from mascarin.energyplus.model.site import describe_site
+from mascarin.energyplus.unsupported import note_unsupported
+from mascarin.energyplus.zones.airflow import describe_air
+from mascarin.energyplus.zones.conditioning import describe_conditioning, usual_temperatures
+from mascarin.energyplus.zones.enclosures import describe_enclosures
+from mascarin.energyplus.zones.gains import describe_gains
+from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
 
 _ORDER: Final = (
@@ -95,7 +95,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
 
     Examples
     --------
-    >>> from mascarin.convert import convert
+    >>> from mascarin.energyplus import convert
     >>> convert("office.idf")  # doctest: +SKIP
     """
     context = Context(read(Path(file)))

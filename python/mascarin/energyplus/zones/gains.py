@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.schedules import fraction, year
-from mascarin.convert.year import Year, combined, constant
-from mascarin.convert.zones import Zone
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import fraction, year
+from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.zones.zones import Zone
 
 _EQUIPMENT: Final = (
     "ElectricEquipment",

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.idf import IdfObject
+from mascarin.energyplus.model.idf import IdfObject
 
 #: Surface resistances that a conductance of the file does not contain (EN 673) [m2 K/W].
 _FILMS: Final = 0.17

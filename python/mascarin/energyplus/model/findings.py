@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from mascarin.convert.idf import IdfObject
+from mascarin.energyplus.model.idf import IdfObject
 
 Level = Literal["left out", "approximated", "no effect"]
 

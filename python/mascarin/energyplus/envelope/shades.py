@@ -9,12 +9,12 @@ from typing import Final
 import numpy as np
 
 from mascarin.building.geometry import Polygon
-from mascarin.convert import geometry as g
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.idf_surfaces import SURFACES, IdfOpening, IdfSurface
-from mascarin.convert.schedules import SCHEDULES, year
-from mascarin.convert.setbacks import setback, shift_of_shades
+from mascarin.energyplus.envelope.idf_surfaces import SURFACES, IdfOpening, IdfSurface
+from mascarin.energyplus.envelope.setbacks import setback, shift_of_shades
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import SCHEDULES, year
 from mascarin.errors import InputError
 
 _DETAILED: Final = ("Shading:Site:Detailed", "Shading:Building:Detailed", "Shading:Zone:Detailed")

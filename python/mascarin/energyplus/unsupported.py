@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from mascarin.convert.context import Context
+from mascarin.energyplus.model.context import Context
 
 #: Beginnings of classes without effect on heat, with the reason.
 _IDLE: Final = {

@@ -7,17 +7,17 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from mascarin.building.geometry import Polygon
-from mascarin.convert import geometry as g
-from mascarin.convert.constructions import construction
-from mascarin.convert.context import Context, Section
-from mascarin.convert.convection import ConvectionCoefficients
-from mascarin.convert.glazings import construction_of
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.idf_surfaces import IdfSurface
-from mascarin.convert.materials import skin
-from mascarin.convert.schedules import temperature, year
-from mascarin.convert.site import ground
-from mascarin.convert.year import Year, combined, constant
+from mascarin.energyplus.envelope.constructions import construction
+from mascarin.energyplus.envelope.convection import ConvectionCoefficients
+from mascarin.energyplus.envelope.glazings import construction_of
+from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
+from mascarin.energyplus.envelope.materials import skin
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import temperature, year
+from mascarin.energyplus.model.site import ground
+from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.errors import InputError
 
 #: Boundary conditions that stand for ground whose temperature another program or model finds.

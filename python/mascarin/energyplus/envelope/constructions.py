@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.convert.context import Context, Section
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.materials import plain_layers
+from mascarin.energyplus.envelope.materials import plain_layers
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.idf import IdfObject
 
 #: Layers below this are left out where a construction is cut [m].
 _MIN_THICKNESS = 1e-5

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
-from mascarin.convert.airflow import ventilate
-from mascarin.convert.context import Context
-from mascarin.convert.gains import people_in
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
-from mascarin.convert.year import Year, combined, constant
-from mascarin.convert.zones import Zone
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
+from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.zones.airflow import ventilate
+from mascarin.energyplus.zones.gains import people_in
+from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import AIR_SPECIFIC_HEAT
 
 #: Control types: 1 heating, 2 cooling, 3 one set point for both, 4 two set points.

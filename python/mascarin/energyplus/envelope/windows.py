@@ -7,16 +7,16 @@ from typing import Final
 import numpy as np
 
 from mascarin.building.geometry import Polygon
-from mascarin.convert import geometry as g
-from mascarin.convert.constructions import construction
-from mascarin.convert.context import Context, Section
-from mascarin.convert.convection import ConvectionCoefficients
-from mascarin.convert.glazings import construction_of, glazing
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.idf_surfaces import IdfOpening
-from mascarin.convert.materials import skin
-from mascarin.convert.setbacks import describe_setback, setback
-from mascarin.convert.surfaces import Surfaces
+from mascarin.energyplus.envelope.constructions import construction
+from mascarin.energyplus.envelope.convection import ConvectionCoefficients
+from mascarin.energyplus.envelope.glazings import construction_of, glazing
+from mascarin.energyplus.envelope.idf_surfaces import IdfOpening
+from mascarin.energyplus.envelope.materials import skin
+from mascarin.energyplus.envelope.setbacks import describe_setback, setback
+from mascarin.energyplus.envelope.surfaces import Surfaces
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.idf import IdfObject
 from mascarin.errors import InputError
 
 _WINDOWS: Final = ("window", "glassdoor")

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from mascarin.building.parts.site import Wind, wind_factor
-from mascarin.convert import geometry as g
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.idf_surfaces import IdfSurface, floor_area
+from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
 from mascarin.errors import InputError
 
 #: Height of a zone of which neither volume nor closed surfaces are known [m].

@@ -6,8 +6,8 @@ import math
 from itertools import pairwise
 from typing import Any, Final
 
-from mascarin.convert.context import Context, Section
-from mascarin.convert.idf import IdfObject
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.idf import IdfObject
 
 MATERIALS: Final = (
     "Material",

@@ -2,14 +2,14 @@
 
 Examples
 --------
->>> from mascarin.convert import convert
+>>> from mascarin.energyplus import convert
 >>> convert("office.idf").building  # doctest: +SKIP
 """
 
 from __future__ import annotations
 
-from mascarin.convert.conversion import Conversion, convert
-from mascarin.convert.findings import Finding
-from mascarin.convert.writing import report, run_options, terminal_lines, yaml_text
+from mascarin.energyplus.conversion import Conversion, convert
+from mascarin.energyplus.model.findings import Finding
+from mascarin.energyplus.writing import report, run_options, terminal_lines, yaml_text
 
 __all__ = ["Conversion", "Finding", "convert", "report", "run_options", "terminal_lines", "yaml_text"]

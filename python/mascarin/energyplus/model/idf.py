@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.field_checks import AUTO, wrong_number
+from mascarin.energyplus.model.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
 
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')

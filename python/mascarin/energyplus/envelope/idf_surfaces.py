@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.convert import geometry as g
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
 
 #: Class of the surfaces that one kind of object describes, and what they face unless the object says it.
 _DETAILED: Final = {

@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 
 from mascarin.building.geometry import TOLERANCE
-from mascarin.convert import geometry as g
-from mascarin.convert.context import Context
-from mascarin.convert.idf_surfaces import IdfOpening, IdfSurface
+from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context
 
 #: Cosine of the angle up to which a window counts as parallel to its wall [-].
 _PARALLEL: Final = 1.0 - 1e-6

@@ -10,10 +10,10 @@ import numpy as np
 from mascarin.building import Building
 from mascarin.building.geometry import view_factors
 from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
-from mascarin.convert.context import Context
-from mascarin.convert.geometry import Array
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.zones import Zone
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.geometry import Array
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.zones.zones import Zone
 from mascarin.errors import InputError
 
 #: Surfaces whose directions differ by less do not see each other [deg].

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.convert.idf import IdfModel, IdfObject
+from mascarin.energyplus.model.idf import IdfModel, IdfObject
 
 Array = npt.NDArray[np.float64]
 

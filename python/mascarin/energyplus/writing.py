@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from mascarin.building.files.yaml_text import text_of
-from mascarin.convert.conversion import Conversion
-from mascarin.convert.findings import LEVELS
+from mascarin.energyplus.conversion import Conversion
+from mascarin.energyplus.model.findings import LEVELS
 
 _HEADINGS: Final = {
     "left out": "Left out; the results change:",

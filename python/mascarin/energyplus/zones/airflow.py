@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import Any, Final
 
-from mascarin.convert.context import Context
-from mascarin.convert.gains import people_in
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.schedules import fraction, year
-from mascarin.convert.year import Year, combined
-from mascarin.convert.zones import Zone
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import fraction, year
+from mascarin.energyplus.model.year import Year, combined
+from mascarin.energyplus.zones.gains import people_in
+from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import GRAVITY
 
 _ZONE_KEYS: Final = (

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
-from mascarin.convert.context import Context
-from mascarin.convert.idf import IdfObject
-from mascarin.convert.year import DAYS, Year, constant, year_of
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.year import DAYS, Year, constant, year_of
 from mascarin.errors import InputError
 
 _TERRAINS: Final = {
