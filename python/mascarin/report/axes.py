@@ -9,8 +9,7 @@ from datetime import datetime, timedelta
 import numpy as np
 from markupsafe import Markup
 
-from mascarin.report.series import Array
-from mascarin.report.svg import Axis
+from mascarin.report.svg import Array, Axis
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from markupsafe import Markup
 
 from mascarin._io import units
 from mascarin.report import text
-from mascarin.report.series import Array
-from mascarin.report.svg import Svg
+from mascarin.report.svg import Array, Svg
 
 
 def _polygons(building: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Array]]:

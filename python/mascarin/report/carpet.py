@@ -5,12 +5,12 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.report.series import Array, Series
+from mascarin.report.svg import Array
 
 #: Colors at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; distinct in the
 #: common kinds of color blindness because they differ in lightness and on the blue-yellow axis.
@@ -44,22 +44,24 @@ class Carpet:
     days: list[tuple[int, str]]
 
 
-def carpet(series: Series, values: Array, limit: float) -> Carpet:
+def carpet(start: datetime, step: float, values: Array, limit: float) -> Carpet:
     """Draw values over days (across) and hours (midnight at the bottom).
 
     Parameters
     ----------
-    series : Series
-        Gives the time axis.
+    start : datetime
+        Time of the first value.
+    step : float
+        Distance of two values. [s]
     values : array, shape (n,)
         One value per instant.
     limit : float
         Value of the darkest colors, the same to both sides.
     """
-    first = series.time(0).replace(hour=0, minute=0, second=0, microsecond=0)
-    offset = (series.time(0) - first).total_seconds()
-    rows = int(min(_MAX_ROWS, max(1.0, 86400.0 // series.step)))
-    seconds = offset + series.step * np.arange(len(values))
+    first = start.replace(hour=0, minute=0, second=0, microsecond=0)
+    offset = (start - first).total_seconds()
+    rows = int(min(_MAX_ROWS, max(1.0, 86400.0 // step)))
+    seconds = offset + step * np.arange(len(values))
     days = (seconds // 86400.0).astype(np.intp)
     slots = (seconds % 86400.0 / 86400.0 * rows).astype(np.intp)
     columns = int(days[-1]) + 1 if len(days) else 1

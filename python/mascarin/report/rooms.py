@@ -17,8 +17,7 @@ from markupsafe import Markup
 from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.labels import label_of, main_model, period_label
-from mascarin.report.series import Array
-from mascarin.report.svg import Svg
+from mascarin.report.svg import Array, Svg
 
 #: Assumed height of a room without vertices. [m]
 _STOREY_HEIGHT: Final = 2.5

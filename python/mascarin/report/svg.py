@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 from markupsafe import Markup, escape
 
 from mascarin.report import text
-from mascarin.report.series import Array
 
+Array = npt.NDArray[np.float64]
 Attribute = str | float | int
 
 

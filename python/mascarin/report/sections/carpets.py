@@ -66,4 +66,9 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
 
 def _own_carpet(series: Series, error: Array) -> Carpet:
     finite = np.abs(error[np.isfinite(error)])
-    return carpet(series, error, round_limit(float(np.quantile(finite, 0.98))) if finite.size else 1.0)
+    return carpet(
+        series.time(0),
+        series.step,
+        error,
+        round_limit(float(np.quantile(finite, 0.98))) if finite.size else 1.0,
+    )
