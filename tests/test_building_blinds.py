@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from mascarin.building import Blind, Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.parameters.sources import sources
 from mascarin.errors import InputError
 from mascarin.simulation.objectives import Mean

@@ -10,7 +10,7 @@ import pytest
 
 from mascarin import cli
 from mascarin.building import Building, Gain, load
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import measured_columns
 from mascarin.building.parameters.sources import sources
 from mascarin.building.parts.site_air import heat_capacity

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from mascarin.building.base.number import Number
 from mascarin.building.building import Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription
 from mascarin.building.engine_input.ratings import WindowRating, window_ratings
 from mascarin.building.ground_floor import on_ground

@@ -19,8 +19,9 @@ from mascarin.building.base.names import known_names
 from mascarin.building.base.number import Interval, Number
 from mascarin.building.base.part import Part, insist, is_number, plain_value
 from mascarin.building.base.replacement import piece_at, put, replaced_at, without_parts
-from mascarin.building.checks import check, summary
+from mascarin.building.checks import summary
 from mascarin.building.checks.consistency import faults, faults_of_values
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription, describe
 from mascarin.building.files.yaml_document import read
 from mascarin.building.files.yaml_text import text_of
