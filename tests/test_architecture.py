@@ -20,7 +20,7 @@ ORDER = [
     {"building"},
     {"weather"},
     {"comfort"},
-    {"simulation", "convert"},
+    {"simulation", "energyplus"},
     {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},
@@ -121,7 +121,7 @@ ROOMS_IN_CIRCLES = [
 MOST_FILES_OF_A_FOLDER = 15
 #: Folders with more files, until they are taken apart. Only to be shortened.
 FULL_FOLDERS = {
-    "_io": 18, "calibration": 24, "commands": 22, "convert": 26, "design": 18, "genopt": 21, "report": 20,
+    "_io": 18, "calibration": 24, "commands": 22, "design": 18, "genopt": 21, "report": 20,
     "simulation": 37, "study": 42, "weather": 26,
 }  # fmt: skip
 

@@ -11,6 +11,8 @@ import pytest
 from conftest import DATA, unavailable
 from mascarin.building.reading import parse
 from mascarin.energyplus import convert, yaml_text
+from mascarin.energyplus.model.handlers import HANDLERS
+from mascarin.energyplus.model.idf import IdfModel, read
 
 BENCH = Path(__file__).resolve().parent.parent / "bench"
 #: What is left out of each file: beginnings of the classes.
@@ -52,8 +54,15 @@ def bench(files: Path) -> Any:
 
 
 @pytest.mark.parametrize("name", sorted(LEFT_OUT))
-def test_every_file_converts_and_names_what_it_leaves_out(files: Path, name: str) -> None:
+def test_every_file_converts_and_names_what_it_leaves_out(
+    files: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    models: list[IdfModel] = []
+    monkeypatch.setattr(
+        "mascarin.energyplus.conversion.read", lambda path: models.append(read(path)) or models[-1]
+    )
     found = convert(files / f"{name}.idf")
+    assert models[0].looked_up <= set(HANDLERS), "a handler declares the classes that it reads"
     kinds = {one.kind.partition(":")[0] for one in found.findings if one.level == "left out"}
     assert kinds == LEFT_OUT[name]
     assert found.building.check()

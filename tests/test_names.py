@@ -19,7 +19,7 @@ EMPTY_WORDS = frozenset([
 
 #: Packages without such names; add a package when it is free of them.
 PACKAGES = (
-    "calibration", "convert", "design", "explore", "figures", "genopt", "optimization", "report",
+    "calibration", "design", "energyplus", "explore", "figures", "genopt", "optimization", "report",
     "sensitivity", "validation", "verification", "view",
 )  # fmt: skip
 

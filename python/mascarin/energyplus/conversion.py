@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from datetime import date, timedelta
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from mascarin.building import Building
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
@@ -16,6 +16,7 @@ from mascarin.energyplus.envelope.surfaces import describe_surfaces
 from mascarin.energyplus.envelope.windows import describe_openings
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.findings import Finding
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import read
 from mascarin.energyplus.model.schedules import calendar_year, day_of
 from mascarin.energyplus.model.site import describe_site
@@ -26,11 +27,6 @@ from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
-
-_ORDER: Final = (
-    "site", "materials", "constructions", "glazings", "schedules", "zones", "air_paths", "openings",
-    "surfaces", "windows", "shades",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -113,28 +109,40 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_air(context, zones)
     describe_conditioning(context, zones)
     describe_enclosures(context, _built(context), zones)
+    version = _version(context)
     note_unsupported(context)
     building = _built(context)
     start, end = _period(context)
-    step = context.model.one("Timestep")
     return Conversion(
         file=Path(file),
-        version=".".join(str(part) for part in context.model.version[:2]),
+        version=version,
         building=building,
         description=_ordered(context),
         findings=tuple(context.findings.unique),
         names=context.names.original,
         start=start,
         end=end,
-        steps_per_hour=int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6),
+        steps_per_hour=_steps_per_hour(context),
     )
 
 
+@reads("Version")
+def _version(context: Context) -> str:
+    return ".".join(str(part) for part in context.model.version[:2])
+
+
+@reads("Timestep")
+def _steps_per_hour(context: Context) -> int:
+    step = context.model.one("Timestep")
+    return int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6)
+
+
+@reads("Building")
 def _ordered(context: Context) -> Section:
     main = context.model.one("Building")
     title = (main.name if main is not None else "") or context.model.file.stem
     title = context.model.file.stem if title.casefold() == "none" else title
-    return {"name": title} | {key: context.sections[key] for key in _ORDER if context.sections.get(key)}
+    return {"name": title} | context.ordered()
 
 
 def _built(context: Context) -> Building:
@@ -166,6 +174,7 @@ def _origins(context: Context, text: str) -> str:
     return "".join(lines_of_objects)
 
 
+@reads("RunPeriod")
 def _period(context: Context) -> tuple[str, str]:
     """First day, and day after the last one, of the first run period."""
     year, item = calendar_year(context), context.model.one("RunPeriod")

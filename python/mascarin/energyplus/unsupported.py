@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 
 #: Beginnings of classes without effect on heat, with the reason.
 _IDLE: Final = {
     "output": "a report",
     "meter": "a report",
-    "version": "read",
     "timestep": "the step of a run is an option here",
     "simulationcontrol": "what is simulated is an option here",
     "runperiod": "the period is an option of a run here",
@@ -35,7 +35,7 @@ _IDLE: Final = {
     "outdoorair:node": "connections of systems",
     "branch": "connections of systems",
     "connector": "connections of systems",
-    "surfaceconvectionalgorithm": "read",
+    "surfaceconvectionalgorithm": "settings of an algorithm that is not carried over",
     "site:groundtemperature": "ground that no surface of the file touches",
     "site:watermainstemperature": "water",
     "water": "water",
@@ -55,7 +55,6 @@ _MISSING: Final = {
     "zonecontaminant": "no contaminants are simulated",
     "roomair": "the air of a zone is well mixed: no stratification",
     "runperiodcontrol:daylightsavingtime": "schedules do not move in summer: an hour later than there",
-    "runperiodcontrol:specialdays": "read",
     "site:groundreflectance:snowmodifier": "the ground reflects the same with snow: less sun in winter",
     "site:precipitation": "rain has no effect: surfaces stay dry",
     "roofirrigation": "no water on roofs",
@@ -100,7 +99,7 @@ _SYSTEM_GROUPS: Final = (
 
 
 def note_unsupported(context: Context) -> None:
-    """Note every object that was not read.
+    """Note every object that no handler has read, and that nothing else says something about.
 
     Parameters
     ----------
@@ -108,18 +107,16 @@ def note_unsupported(context: Context) -> None:
         The conversion.
     """
     _beside(context)
-    for kind, items in context.model.unread():
+    for kind, all_items in context.model.unread():
+        items = [item for item in all_items if not context.findings.about(item)]
         low = kind.casefold()
         missing = _longest(low, _MISSING)
         idle = _longest(low, _IDLE)
         if missing and len(missing) >= len(idle):
-            if _MISSING[missing] == "read":
-                continue
             for item in items:
                 context.findings.left_out(item, "not carried over", _MISSING[missing])
         elif idle:
-            if _IDLE[idle] != "read":
-                context.findings.no_effect(items, "not needed", _IDLE[idle])
+            context.findings.no_effect(items, "not needed", _IDLE[idle])
         elif low.startswith(_NAMED):
             context.findings.no_effect(items, "not needed", "nothing that is carried over uses it")
         elif any(word in context.model.groups.get(kind, "").casefold() for word in _SYSTEM_GROUPS):
@@ -136,6 +133,7 @@ def _longest(kind: str, table: dict[str, str]) -> str:
     return max((start for start in table if kind.startswith(start)), key=len, default="")
 
 
+@reads("RunPeriodControl:SpecialDays", "Site:HeightVariation", "RunPeriod")
 def _beside(context: Context) -> None:
     """What is read, and acts on more than what is carried over."""
     for item in context.model.of("RunPeriodControl:SpecialDays"):

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.energyplus.envelope.materials import plain_layers
+from mascarin.energyplus.envelope.materials import MELTING, plain_layers
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
 #: Layers below this are left out where a construction is cut [m].
@@ -44,8 +45,9 @@ def construction(context: Context, item: IdfObject, *, cut: bool, finite_differe
     return name
 
 
+@reads(*MELTING)
 def _can_melt(context: Context, item: IdfObject) -> bool:
-    properties = context.model.of("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+    properties = context.model.of(*MELTING)
     names = {material_property.name.casefold() for material_property in properties}
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     return any(item.word(key) in names for key in keys if item.word(key))

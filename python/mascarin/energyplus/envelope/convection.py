@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
 #: Coefficients D + E V + F V^2 of the algorithm SimpleCombined by roughness, radiation included
@@ -53,24 +54,30 @@ class ConvectionCoefficients:
     """
 
     def __init__(self, context: Context) -> None:
-        self._context = context
-        self._by_surface: dict[tuple[str, str], IdfObject] = {}
-        for item in context.model.of("SurfaceProperty:ConvectionCoefficients"):
+        self._context, self.model = context, context.model
+        self._by_surface = self._stated_coefficients()
+
+    @reads("SurfaceProperty:ConvectionCoefficients", "SurfaceProperty:ConvectionCoefficients:MultipleSurface")
+    def _stated_coefficients(self) -> dict[tuple[str, str], IdfObject]:
+        by_surface: dict[tuple[str, str], IdfObject] = {}
+        for item in self.model.of("SurfaceProperty:ConvectionCoefficients"):
             for k in (1, 2):
                 side = item.word(f"convection_coefficient_{k}_location")
                 if side:
-                    self._by_surface[item.word("surface_name"), side] = item
-        for item in context.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
-            context.findings.left_out(
+                    by_surface[item.word("surface_name"), side] = item
+        for item in self.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
+            self._context.findings.left_out(
                 item, "coefficients of a group of surfaces", "those of the algorithm of the building are used"
             )
+        return by_surface
 
+    @reads("SurfaceConvectionAlgorithm:Inside")
     def inside(self, user: IdfObject, zone: IdfObject | None, tilt: float, *, window: bool = False) -> Any:
         """Coefficient of an inner surface."""
         own_coefficient = self._stated(user, "inside")
         if own_coefficient is not None:
             return own_coefficient
-        main = self._context.model.one("SurfaceConvectionAlgorithm:Inside")
+        main = self.model.one("SurfaceConvectionAlgorithm:Inside")
         word = zone.word("zone_inside_convection_algorithm") if zone is not None else ""
         source = zone if word else main
         word = word or (main.word("algorithm") if main is not None else "") or "tarp"
@@ -82,12 +89,13 @@ class ConvectionCoefficients:
             )
         return "iso15099" if window else "tarp"
 
+    @reads("SurfaceConvectionAlgorithm:Outside")
     def outside(self, user: IdfObject, zone: IdfObject | None, roughness: str) -> OuterCoefficient:
         """Coefficient of a surface outdoors."""
         own_coefficient = self._stated(user, "outside")
         if own_coefficient is not None:
             return OuterCoefficient(own_coefficient)
-        main = self._context.model.one("SurfaceConvectionAlgorithm:Outside")
+        main = self.model.one("SurfaceConvectionAlgorithm:Outside")
         word = zone.word("zone_outside_convection_algorithm") if zone is not None else ""
         source = zone if word else main
         word = word or (main.word("algorithm") if main is not None else "") or "doe-2"

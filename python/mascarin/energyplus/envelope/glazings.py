@@ -10,6 +10,7 @@ from typing import Any, Final
 from mascarin.energyplus.envelope.materials import layers_of
 from mascarin.energyplus.envelope.window_data import DataFile, read_data_file
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
 _SHADES: Final = ("shade", "blind", "screen", "drape", "complexshade")
@@ -169,6 +170,7 @@ def _body(context: Context, item: IdfObject) -> Section:
     }
 
 
+@reads("MaterialProperty:GlazingSpectralData")
 def _spectral(context: Context, item: IdfObject) -> Section | None:
     """Solar means of a table over the wavelength, weighted by the intervals; no solar spectrum is at hand."""
     data = context.model.named(
@@ -268,17 +270,6 @@ def _rated(context: Context, item: IdfObject) -> Section:
     }
 
 
-def construction_of(context: Context, user: IdfObject, *, name: str | None = None) -> IdfObject:
-    """Construction that a surface or window names.
-
-    Raises
-    ------
-    InputError
-        There is none.
-    """
-    return context.model.require(user, "construction_name", *CONSTRUCTIONS, name=name)
-
-
 CONSTRUCTIONS: Final = (
     "Construction",
     "Construction:CfactorUndergroundWall",
@@ -290,3 +281,15 @@ CONSTRUCTIONS: Final = (
     "Construction:ComplexFenestrationState",
     "Construction:WindowTransitions",
 )
+
+
+@reads(*CONSTRUCTIONS)
+def construction_of(context: Context, user: IdfObject, *, name: str | None = None) -> IdfObject:
+    """Construction that a surface or window names.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    return context.model.require(user, "construction_name", *CONSTRUCTIONS, name=name)

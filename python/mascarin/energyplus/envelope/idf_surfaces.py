@@ -9,6 +9,7 @@ import numpy as np
 
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
 #: Class of the surfaces that one kind of object describes, and what they face unless the object says it.
@@ -100,6 +101,7 @@ class IdfOpening:
     copies: int
 
 
+@reads(*SURFACES)
 def read_surfaces(context: Context) -> list[IdfSurface]:
     """All surfaces of the zones.
 
@@ -108,11 +110,12 @@ def read_surfaces(context: Context) -> list[IdfSurface]:
     InputError
         A surface without a zone, corners or a rectangle that cannot be used.
     """
-    rules = g.rules_of(context.model)
+    rules = g.rules_of(context)
     detailed = [_detailed(context, rules, item) for item in context.model.of(*_DETAILED)]
     return detailed + [_simple(context, rules, item) for item in context.model.of(*_SIMPLE)]
 
 
+@reads("Zone", "Space")
 def _zone_of(context: Context, item: IdfObject) -> IdfObject:
     if not item.text("zone_name") and item.text("space_name"):
         space = context.model.require(item, "space_name", "Space")
@@ -158,6 +161,7 @@ def _checked(item: IdfObject, points: g.Array) -> g.Array:
     return points
 
 
+@reads(*OPENINGS)
 def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpening]:
     """All openings in the surfaces.
 
@@ -167,7 +171,7 @@ def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpeni
         An opening in a surface that does not exist, or corners that cannot be used.
     """
     by_name = {surface.item.name.casefold(): surface for surface in surfaces}
-    rules = g.rules_of(context.model)
+    rules = g.rules_of(context)
     all_openings = []
     for item in context.model.of(*OPENINGS):
         base = by_name.get(item.word("building_surface_name"))

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 
 MATERIALS: Final = (
@@ -16,28 +17,6 @@ MATERIALS: Final = (
     "Material:InfraredTransparent",
     "Material:RoofVegetation",
 )
-#: Concrete and surface resistances that EnergyPlus puts into constructions of C and F factors: thickness
-#: [m], conductivity [W/(m K)], density [kg/m3], specific heat [J/(kg K)]; inside, outside [m2 K/W]
-#: (EnergyPlus Engineering Reference, ground heat transfer calculations using C and F factor constructions).
-CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
-_FILMS: Final = (0.125, 0.03)
-#: Distance from a jump of the heat capacity over which it is smoothed, of the shorter interval [-].
-_JUMP_WIDTH: Final = 0.25
-
-
-def layers_of(context: Context, construction: IdfObject) -> list[IdfObject]:
-    """Materials of a construction, from outside to inside.
-
-    Raises
-    ------
-    InputError
-        A material that does not exist.
-    """
-    keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
-    kinds = (*MATERIALS, *WINDOW_MATERIALS)
-    return [context.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
-
-
 WINDOW_MATERIALS: Final = (
     "WindowMaterial:Glazing",
     "WindowMaterial:Glazing:RefractionExtinctionMethod",
@@ -59,6 +38,31 @@ WINDOW_MATERIALS: Final = (
 )
 
 
+#: Properties without which a material does not melt.
+MELTING: Final = ("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+#: Concrete and surface resistances that EnergyPlus puts into constructions of C and F factors: thickness
+#: [m], conductivity [W/(m K)], density [kg/m3], specific heat [J/(kg K)]; inside, outside [m2 K/W]
+#: (EnergyPlus Engineering Reference, ground heat transfer calculations using C and F factor constructions).
+CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
+_FILMS: Final = (0.125, 0.03)
+#: Distance from a jump of the heat capacity over which it is smoothed, of the shorter interval [-].
+_JUMP_WIDTH: Final = 0.25
+
+
+@reads(*MATERIALS, *WINDOW_MATERIALS)
+def layers_of(context: Context, construction: IdfObject) -> list[IdfObject]:
+    """Materials of a construction, from outside to inside.
+
+    Raises
+    ------
+    InputError
+        A material that does not exist.
+    """
+    keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
+    kinds = (*MATERIALS, *WINDOW_MATERIALS)
+    return [context.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
+
+
 def plain_layers(context: Context, construction: IdfObject, finite_differences: bool) -> list[Section]:
     """Layers of a construction as the description has them, each with its material entered.
 
@@ -78,6 +82,7 @@ def plain_layers(context: Context, construction: IdfObject, finite_differences: 
     return [_layer(context, item, finite_differences) for item in layers_of(context, construction)]
 
 
+@reads(*MELTING)
 def _layer(context: Context, item: IdfObject, finite_differences: bool) -> Section:
     source = f"EnergyPlus {item.label}"
     melts = finite_differences and (
@@ -119,6 +124,7 @@ def _material(context: Context, item: IdfObject, melts: bool) -> Section:
     return _enthalpy_table(context, table, solid)
 
 
+@reads("MaterialProperty:VariableThermalConductivity")
 def _variable_conductivity(context: Context, item: IdfObject) -> None:
     variable = context.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
     if variable is not None:

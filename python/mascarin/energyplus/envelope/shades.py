@@ -13,16 +13,21 @@ from mascarin.energyplus.envelope.idf_surfaces import SURFACES, IdfOpening, IdfS
 from mascarin.energyplus.envelope.setbacks import setback, shift_of_shades
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import SCHEDULES, year
 from mascarin.errors import InputError
 
 _DETAILED: Final = ("Shading:Site:Detailed", "Shading:Building:Detailed", "Shading:Zone:Detailed")
 _SIMPLE: Final = ("Shading:Site", "Shading:Building")
+_ATTACHED: Final = (
+    "Shading:Overhang", "Shading:Overhang:Projection", "Shading:Fin", "Shading:Fin:Projection",
+)  # fmt: skip
 #: Mean transmittance above which a shade is left out rather than taken as opaque [-].
 _OPAQUE_BELOW: Final = 0.5
 
 
+@reads(*_DETAILED, *_SIMPLE, *_ATTACHED)
 def describe_shades(context: Context, surfaces: list[IdfSurface], openings: list[IdfOpening]) -> None:
     """Enter all shading surfaces.
 
@@ -32,7 +37,7 @@ def describe_shades(context: Context, surfaces: list[IdfSurface], openings: list
         A shade of a window or surface that does not exist.
     """
     rules, by_face = (
-        g.rules_of(context.model),
+        g.rules_of(context),
         {surface.item.name.casefold(): surface for surface in surfaces},
     )
     by_opening = {opening.item.name.casefold(): opening for opening in openings}
@@ -42,11 +47,8 @@ def describe_shades(context: Context, surfaces: list[IdfSurface], openings: list
             _enter(context, item, item.name, points)
     for item in context.model.of(*_SIMPLE):
         _enter(context, item, item.name, _simple(rules, item))
-    attached = {
-        "Shading:Overhang": _overhang, "Shading:Overhang:Projection": _overhang,
-        "Shading:Fin": _fins, "Shading:Fin:Projection": _fins,
-    }  # fmt: skip
-    for kind, outlines_of in attached.items():
+    for kind in _ATTACHED:
+        outlines_of = _fins if "Fin" in kind else _overhang
         for item in context.model.of(kind):
             window = by_opening.get(item.word("window_or_door_name"))
             if window is None:
@@ -90,6 +92,7 @@ def _simple(rules: g.Rules, item: IdfObject) -> g.Array:
     return g.rectangle(frame.place(start)[0], plane, item.needed("length"), item.needed("height"))
 
 
+@reads(*SCHEDULES)
 def _opaque(context: Context, item: IdfObject) -> bool:
     """Whether a shade is carried over as an opaque one."""
     if not item.text("transmittance_schedule_name"):
@@ -182,6 +185,7 @@ def _leaning(item: IdfObject, key: str, along: g.Array, out: g.Array) -> g.Array
     return direction
 
 
+@reads("Building", "ShadingProperty:Reflectance")
 def _reflectances(context: Context) -> None:
     building = context.model.one("Building")
     reflects = building is not None and "reflections" in building.word("solar_distribution")

@@ -14,6 +14,7 @@ from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
 from mascarin.energyplus.envelope.materials import skin
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import temperature, year
 from mascarin.energyplus.model.site import ground
@@ -28,6 +29,12 @@ _OTHER_GROUND: Final = (
 )  # fmt: skip
 #: What the outside of a surface is: a side, and whether the construction is cut at its plane without flow.
 Outside = tuple[Section, bool]
+
+
+_ALGORITHMS: Final = tuple(
+    f"SurfaceProperty:HeatTransferAlgorithm{ending}"
+    for ending in ("", ":Construction", ":SurfaceList", ":MultipleSurface")
+)
 
 
 @dataclass
@@ -217,6 +224,7 @@ def _between_zones(
     return outer
 
 
+@reads("SurfaceProperty:OtherSideCoefficients")
 def _other_side(context: Context, surface: IdfSurface) -> Outside:
     """A side of a given temperature, as far as it depends on no weather."""
     item = context.model.require(
@@ -283,6 +291,7 @@ def _air_boundary(context: Context, surface: IdfSurface, item: IdfObject) -> str
     return layers
 
 
+@reads("InternalMass")
 def _masses(context: Context, coefficients: ConvectionCoefficients, finite: bool) -> None:
     """Internal masses: their area, and the part of their construction inside of its plane without flow."""
     for item in context.model.of("InternalMass"):
@@ -306,6 +315,7 @@ def _masses(context: Context, coefficients: ConvectionCoefficients, finite: bool
             }
 
 
+@reads("HeatBalanceAlgorithm", *_ALGORITHMS)
 def _finite_differences(context: Context) -> dict[str, bool]:
     """Whether EnergyPlus uses finite differences: by surface, by construction, and for the rest under ''."""
     main = context.model.one("HeatBalanceAlgorithm")

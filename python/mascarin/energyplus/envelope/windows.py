@@ -16,6 +16,7 @@ from mascarin.energyplus.envelope.setbacks import describe_setback, setback
 from mascarin.energyplus.envelope.surfaces import Surfaces
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.errors import InputError
 
@@ -146,6 +147,7 @@ def _framed(points: g.Array, width: float) -> g.Array:
     return np.array(moved)
 
 
+@reads("WindowProperty:FrameAndDivider")
 def _frame_of(context: Context, item: IdfObject) -> FrameData | None:
     if not item.text("frame_and_divider_name"):
         return None
@@ -208,6 +210,7 @@ def _door(
     }
 
 
+@reads("WindowShadingControl", "WindowProperty:ShadingControl")
 def _shading_controls(context: Context) -> None:
     for item in context.model.of("WindowShadingControl", "WindowProperty:ShadingControl"):
         device = item.text("shading_type") or "a device"

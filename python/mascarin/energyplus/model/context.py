@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
+from mascarin.building.parts.description import Description
 from mascarin.energyplus.model.findings import Findings
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject
 
 Section = dict[str, Any]
+#: Sections of a description, in its order: that of the written file.
+SECTIONS: Final = tuple(name for name in Description.model_fields if name != "name")
 
 
 @dataclass
@@ -72,13 +76,27 @@ class Context:
     sections: dict[str, Section] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
-        """A section of the description."""
+        """A section of the description.
+
+        Raises
+        ------
+        KeyError
+            A description has no such section: it would be lost.
+        """
+        if name not in SECTIONS:
+            raise KeyError(f"{name}: expected one of {', '.join(SECTIONS)}")
         return self.sections.setdefault(name, {})
 
+    def ordered(self) -> Section:
+        """All sections that are not empty, in the order of the description."""
+        return {name: self.sections[name] for name in SECTIONS if self.sections.get(name)}
+
+    @reads("Zone")
     def zone_items(self) -> list[IdfObject]:
         """Zones of the file."""
         return self.model.of("Zone")
 
+    @reads("Zone", "ZoneList", "Space", "SpaceList")
     def zones_of(self, user: IdfObject, *keys: str) -> list[IdfObject]:
         """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
 

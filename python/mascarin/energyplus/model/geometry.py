@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from mascarin.energyplus.model.handlers import HasModel, reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject
 
 Array = npt.NDArray[np.float64]
@@ -37,8 +38,10 @@ class Rules:
     north: float
 
 
-def rules_of(model: IdfModel) -> Rules:
+@reads("GlobalGeometryRules", "Building")
+def rules_of(context: HasModel) -> Rules:
     """Read ``GlobalGeometryRules`` and ``Building``."""
+    model: IdfModel = context.model
     geometry_rules, building = model.one("GlobalGeometryRules"), model.one("Building")
 
     def word(key: str) -> str:

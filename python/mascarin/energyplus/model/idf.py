@@ -142,7 +142,9 @@ class IdfModel:
         self, file: Path, version: tuple[int, ...], items: list[IdfObject], groups: Mapping[str, str]
     ) -> None:
         self.file, self.version, self.items, self.groups = file, version, items, groups
-        self._asked: set[str] = set()
+        #: Classes that handlers have read, and all that were looked up, in small letters.
+        self.read: set[str] = set()
+        self.looked_up: set[str] = set()
         self._by_kind: dict[str, list[IdfObject]] = {}
         self._by_name: dict[tuple[str, str], IdfObject] = {}
         for item in items:
@@ -150,8 +152,8 @@ class IdfModel:
             self._by_name.setdefault((item.kind.casefold(), item.name.casefold()), item)
 
     def of(self, *kinds: str) -> list[IdfObject]:
-        """Objects of some classes; the classes count as read."""
-        self._asked |= {kind.casefold() for kind in kinds}
+        """Objects of some classes."""
+        self.looked_up |= {kind.casefold() for kind in kinds}
         return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
 
     def one(self, kind: str) -> IdfObject | None:
@@ -161,7 +163,11 @@ class IdfModel:
 
     def named(self, name: str, *kinds: str) -> IdfObject | None:
         """The object of one of some classes with a name."""
-        self._asked |= {kind.casefold() for kind in kinds}
+        self.looked_up |= {kind.casefold() for kind in kinds}
+        return self.of_any_class(name, *kinds)
+
+    def of_any_class(self, name: str, *kinds: str) -> IdfObject | None:
+        """The object with a name of classes that the file names itself: no handler need read them."""
         keys = ((kind.casefold(), name.strip().casefold()) for kind in kinds)
         return next((self._by_name[key] for key in keys if key in self._by_name), None)
 
@@ -184,10 +190,14 @@ class IdfModel:
             )
         return target_object
 
+    def count_as_read(self, classes: tuple[str, ...]) -> None:
+        """Count classes as read; see `reads`."""
+        self.read |= {name.casefold() for name in classes}
+
     def unread(self) -> Iterator[tuple[str, list[IdfObject]]]:
-        """Classes that no part of the conversion has read, with their objects."""
+        """Classes that no handler has read, with their objects."""
         for key, items in self._by_kind.items():
-            if key not in self._asked:
+            if key not in self.read:
                 yield items[0].kind, items
 
 

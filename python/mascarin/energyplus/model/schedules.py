@@ -14,6 +14,7 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.field_checks import finite
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
 from mascarin.tables.timezones import YEARS
@@ -43,6 +44,7 @@ _GROUPS: Final = {
 NEVER_HEATS, NEVER_COOLS = -50.0, 80.0
 
 
+@reads(*SCHEDULES)
 def year(context: Context, user: IdfObject, *keys: str, default: float = 1.0) -> Year:
     """Values of the schedule that a field names; the default all year where it names none.
 
@@ -119,6 +121,7 @@ def _entered(context: Context, name: str, values: Year, kind: str) -> str:
 # --- the year that is simulated -----------------------------------------------------------------------------
 
 
+@reads("RunPeriod")
 def calendar_year(context: Context) -> int:
     """Year without a 29 February whose days of the week are those of the run period."""
     item = context.model.one("RunPeriod")
@@ -155,6 +158,7 @@ def day_of(item: IdfObject, in_year: int, month: int, day: int) -> date:
         raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
 
 
+@reads("RunPeriodControl:SpecialDays")
 def holidays(context: Context) -> list[str]:
     """Holidays of the file, as ``MM-DD``, in order."""
     dates: set[str] = set()
@@ -289,6 +293,7 @@ def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) ->
     return tuple(day_of_kind[name] for name in DAYS)
 
 
+@reads(*_WEEKS)
 def _weeks(context: Context, item: IdfObject) -> Year:
     seasons = []
     for row in item.rows("schedule_weeks"):
@@ -300,6 +305,7 @@ def _weeks(context: Context, item: IdfObject) -> Year:
     return year_of(sorted(seasons))
 
 
+@reads(*_DAYS)
 def _week_of(context: Context, item: IdfObject) -> Week:
     if item.kind == "Schedule:Week:Daily":
         keys = [f"{name}_schedule_day_name" for name in DAYS]

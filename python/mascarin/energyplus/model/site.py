@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from mascarin._io.regular import require_regular
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.year import DAYS, Year, constant, year_of
 from mascarin.errors import InputError
@@ -33,6 +34,7 @@ _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 _GROUND: Final = 18.0
 
 
+@reads("Site:GroundReflectance")
 def describe_site(context: Context, weather: Path | None) -> None:
     """Enter the site.
 
@@ -54,6 +56,7 @@ def describe_site(context: Context, weather: Path | None) -> None:
     _sky(context, site)
 
 
+@reads("Site:Location")
 def _location(context: Context, weather: Path | None) -> dict[str, Any]:
     item = context.model.one("Site:Location")
     if item is not None:
@@ -83,6 +86,7 @@ def _of_weather(path: Path) -> list[float]:
     return [latitude, longitude, altitude, zone]
 
 
+@reads("Building", "Site:HeightVariation", "Site:WeatherStation")
 def _wind(context: Context) -> dict[str, Any]:
     building = context.model.one("Building")
     word = building.word("terrain") if building is not None else ""
@@ -103,6 +107,7 @@ def _wind(context: Context) -> dict[str, Any]:
     return wind
 
 
+@reads("WeatherProperty:SkyTemperature")
 def _sky(context: Context, site: dict[str, Any]) -> None:
     items = context.model.of("WeatherProperty:SkyTemperature")
     if not items:
@@ -134,9 +139,19 @@ def ground(context: Context, kind: str = "BuildingSurface") -> Year:
     kind : str
         Which temperatures: ``BuildingSurface`` or ``FCfactorMethod``.
     """
-    item = context.model.one(f"Site:GroundTemperature:{kind}")
+    item = _under_floors(context) if kind == "BuildingSurface" else _under_factors(context)
     values = _monthly(item, "ground_temperature")
     if values is None:
         return constant(_GROUND)
     ends = [f"{month:02d}-{length:02d}" for month, length in enumerate(_LENGTHS, start=1)]
     return year_of([(end, (((0, value),),) * len(DAYS)) for end, value in zip(ends, values, strict=True)])
+
+
+@reads("Site:GroundTemperature:BuildingSurface")
+def _under_floors(context: Context) -> IdfObject | None:
+    return context.model.one("Site:GroundTemperature:BuildingSurface")
+
+
+@reads("Site:GroundTemperature:FCfactorMethod")
+def _under_factors(context: Context) -> IdfObject | None:
+    return context.model.one("Site:GroundTemperature:FCfactorMethod")

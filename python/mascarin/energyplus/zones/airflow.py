@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined
@@ -65,6 +66,7 @@ class Flow:
     values: Year
 
 
+@reads(*SIMPLE)
 def describe_air(context: Context, zones: dict[str, Zone]) -> None:
     """Enter infiltration, ventilation and mixing.
 
@@ -100,6 +102,7 @@ def zones_of(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[
     return [zone for zone in named if zone is not None]
 
 
+@reads("AirflowNetwork:SimulationControl", *SIMPLE)
 def _network(context: Context) -> bool:
     """Whether an air flow network replaces infiltration, ventilation and mixing."""
     item = context.model.one("AirflowNetwork:SimulationControl")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
 from mascarin.energyplus.model.year import Year, combined, constant
@@ -101,6 +102,7 @@ def usual_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, fl
     return temperatures
 
 
+@reads("ZoneControl:Thermostat", _TEMPLATE, "HVACTemplate:Thermostat")
 def _thermostats(context: Context, zones: dict[str, Zone]) -> Iterator[tuple[str, SetPoints]]:
     for item in context.model.of("ZoneControl:Thermostat"):
         points = _set_points(context, item)
@@ -132,6 +134,7 @@ def _thermostats(context: Context, zones: dict[str, Zone]) -> Iterator[tuple[str
             yield zone.name.casefold(), set_points
 
 
+@reads(*_SETPOINTS)
 def _set_points(context: Context, item: IdfObject) -> SetPoints:
     """Set points of the control that is active at each time."""
     kinds: dict[int, IdfObject] = {}
@@ -167,6 +170,7 @@ def _set_points(context: Context, item: IdfObject) -> SetPoints:
     return SetPoints(totals["heating"], totals["cooling"])
 
 
+@reads("ZoneHVAC:EquipmentConnections", "ZoneHVAC:EquipmentList", IDEAL, _TEMPLATE)
 def _systems(context: Context) -> dict[str, IdfObject]:
     """System of each zone: its ideal loads, or else the first of what it has."""
     system_of_zone: dict[str, IdfObject] = {}
@@ -178,7 +182,7 @@ def _systems(context: Context) -> dict[str, IdfObject]:
         systems = []
         for row in rows:
             kind = str(row.get("zone_equipment_object_type", ""))
-            system = context.model.named(str(row.get("zone_equipment_name", "")), kind)
+            system = context.model.of_any_class(str(row.get("zone_equipment_name", "")), kind)
             systems += [] if system is None else [system]
         ideal = [system for system in systems if system.kind == IDEAL]
         for system in ideal[:1] or systems[:1]:
@@ -285,6 +289,7 @@ def _limit(context: Context, system: IdfObject, which: str) -> float | None:
     return min(limits)
 
 
+@reads("DesignSpecification:OutdoorAir")
 def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zones: dict[str, Zone]) -> None:
     """Outdoor air of the ideal loads as ventilation, whenever the system is available."""
     flow, values = 0.0, constant(1.0)

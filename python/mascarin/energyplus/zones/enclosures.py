@@ -12,6 +12,7 @@ from mascarin.building.geometry import view_factors
 from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.geometry import Array
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.errors import InputError
@@ -21,6 +22,7 @@ _SAME_DIRECTION: Final = 10.0
 _NO_CORNERS: Final = "surfaces without corners"
 
 
+@reads("Building")
 def describe_enclosures(context: Context, building: Building, zones: dict[str, Zone]) -> None:
     """Enter the distribution of the sun, and view factors where those from the corners do not exist.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined, constant
@@ -48,6 +49,7 @@ class Heat:
     radiative: float
 
 
+@reads(*KINDS)
 def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, float]) -> None:
     """Enter all internal gains.
 

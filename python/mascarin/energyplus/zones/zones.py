@@ -10,6 +10,7 @@ from mascarin.building.parts.site import Wind, wind_factor
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.errors import InputError
 
@@ -126,6 +127,7 @@ def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], w
     )
 
 
+@reads("ZoneCapacitanceMultiplier:ResearchSpecial")
 def _capacities(context: Context) -> None:
     """Multipliers of the heat capacity of the air."""
     for item in context.model.of("ZoneCapacitanceMultiplier:ResearchSpecial"):
