@@ -12,7 +12,7 @@ from mascarin.building import Blind, Building
 from mascarin.building.checks.overview import check
 from mascarin.building.parameters.sources import sources
 from mascarin.errors import InputError
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation

@@ -11,7 +11,7 @@ import xarray as xr
 
 from mascarin import __version__, cli
 from mascarin.progress import Report
-from mascarin.simulation.compiled import CompiledRun
+from mascarin.simulation.preparation.engine_run import CompiledRun
 
 BOX = """\
 name: Box
@@ -172,7 +172,7 @@ def test_a_failure_while_writing_leaves_the_older_file(
         raise OSError(28, "No space left on device", "box.nc")
 
     Path("box.nc").write_text("older", encoding="utf-8")
-    monkeypatch.setattr("mascarin.simulation.netcdf.NetcdfDraft.take", fail)
+    monkeypatch.setattr("mascarin.simulation.records.netcdf.NetcdfDraft.take", fail)
     assert cli.main([*call, "-o", "box.nc"]) == 2
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"

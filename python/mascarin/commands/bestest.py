@@ -111,7 +111,7 @@ def _compared(
     rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series, known)]
     _warn_unused(rows_found, known)
     if out is not None:
-        from mascarin.report.bestest import write
+        from mascarin.pages.suites.bestest import write
 
         facts = {
             "Command": " ".join(("mascarin bestest", *words, "--weather", climate.file, "--step", step)),

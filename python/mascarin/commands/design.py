@@ -80,7 +80,7 @@ def _print_plan(inputs: DesignInputs, as_json: bool) -> int:
 
 def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     """Print the ranking; the exit code."""
-    from mascarin.simulation.judgement import all_sound
+    from mascarin.simulation.checks.judgement import all_sound
 
     found = results.summary()
     sound = all(all_sound(table) for table in (results.sampled, results.nominal))

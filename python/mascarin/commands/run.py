@@ -36,8 +36,8 @@ from mascarin.errors import InputError
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import Report
-    from mascarin.simulation.finished import Finished
     from mascarin.simulation.results import Results
+    from mascarin.simulation.run_summary import Finished
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
 
@@ -99,7 +99,7 @@ def run(
         Temperature of the whole building at the start [degC]. Default: the first day is repeated until it is
         periodic, which takes long in heavy buildings.
     """
-    from mascarin.simulation.files import require_ending
+    from mascarin.simulation.records.files import require_ending
 
     described = read_building(building, settings)
     if out is not None:
@@ -145,7 +145,7 @@ def _start(temperature: float | None) -> float | Literal["repeat"]:
     InputError
         The temperature is not possible; the text is about the option, not about the forms of Python.
     """
-    from mascarin.building.initial_state import LIMITS
+    from mascarin.simulation.preparation.initial_state import LIMITS
 
     if temperature is None:
         return "repeat"
@@ -167,12 +167,12 @@ def _compiled(
     **options: Any,
 ) -> Simulation:
     """Compile a run, with warnings about the building on standard error; `more`: record what a page shows."""
-    from mascarin.simulation.compiling import chosen_outputs
+    from mascarin.simulation.preparation.prepare import chosen_outputs
     from mascarin.simulation.simulation import Simulation
 
     names = matching_outputs(building, outputs)
     if more:
-        from mascarin.report.run_page import needed
+        from mascarin.pages.run.page import needed
 
         own = [output.name for output in chosen_outputs(building, names)]
         names = list(dict.fromkeys([*own, *needed(building)]))
@@ -211,7 +211,7 @@ def _print_lines(warnings: Sequence[str]) -> None:
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
     from mascarin.building import check
-    from mascarin.report.run_page import Notes, write
+    from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
     lines = check(simulation.building, simulation.step_seconds)

@@ -30,10 +30,10 @@ from mascarin.ensemble.work import (
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.judgement import OUTSIDE
+from mascarin.simulation.checks.judgement import OUTSIDE
 from mascarin.simulation.nominal import of_nominal
-from mascarin.simulation.options import RunOptions, described, require_precision
+from mascarin.simulation.preparation.options import RunOptions, described, require_precision
+from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base, of_members
 from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Precision, Scheme, TimeLike
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Precision, Scheme, TimeLike
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate, Measurements
 

@@ -24,8 +24,8 @@ from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
-from mascarin.simulation.judgement import JUDGED, OUTSIDE, all_sound
-from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.checks.judgement import JUDGED, OUTSIDE, all_sound
+from mascarin.simulation.records.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.tables.timezones import parse_timezone

@@ -15,14 +15,14 @@ from mascarin.building.parameters.set_point_pairs import tied_set_points
 from mascarin.building.parameters.ties import expanded, spread
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.sensitivity.factors import DistributionName, Factor
+from mascarin.sensitivity.base.factors import DistributionName, Factor
+from mascarin.sensitivity.base.result import Sensitivity
+from mascarin.sensitivity.base.runs import Collector, batches
 from mascarin.sensitivity.methods import MethodName, collector, plan
-from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import Collector, batches
-from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.nominal import of_nominal
-from mascarin.simulation.options import described, require_precision
+from mascarin.simulation.preparation.options import described, require_precision
+from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity.methods import Plan
-    from mascarin.simulation.compiled import EnsembleRun
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Precision, Scheme, TimeLike
+    from mascarin.simulation.preparation.engine_run import EnsembleRun
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Precision, Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]

@@ -13,14 +13,14 @@ from mascarin._io import display
 from mascarin._io.durations import seconds_of
 from mascarin._io.own_files import json_of, require
 from mascarin.errors import InputError, did_you_mean
-from mascarin.simulation import files, labels
-from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.finished import Finished
-from mascarin.simulation.judgement import Judgement
-from mascarin.simulation.provenance import Provenance
-from mascarin.simulation.spacing import means, state_means
-from mascarin.simulation.times import Times
-from mascarin.simulation.vapour import VapourLedger
+from mascarin.simulation.checks.energy import EnergyLedger
+from mascarin.simulation.checks.judgement import Judgement
+from mascarin.simulation.checks.vapour import VapourLedger
+from mascarin.simulation.records import files, labels
+from mascarin.simulation.records.provenance import Provenance
+from mascarin.simulation.records.resample import means, state_means
+from mascarin.simulation.records.times import Times
+from mascarin.simulation.run_summary import Finished
 
 if TYPE_CHECKING:
     import numpy.typing as npt

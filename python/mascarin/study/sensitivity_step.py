@@ -16,7 +16,7 @@ from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
-from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.checks.judgement import ensemble_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt
