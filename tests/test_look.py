@@ -163,7 +163,7 @@ def test_a_building_without_vertices_is_called_schematic() -> None:
 
 def test_the_vendored_library_is_the_pinned_one(repository: Path) -> None:
     pinned, name = (repository / "packaging" / "three" / "three.sha256").read_text().split()
-    vendored = repository / "python" / "mascarin" / "view" / "vendor" / name
+    vendored = repository / "python" / "mascarin" / "pages" / "view" / "vendor" / name
     assert hashlib.sha256(vendored.read_bytes()).hexdigest() == pinned
 
 

@@ -19,8 +19,8 @@ EMPTY_WORDS = frozenset([
 
 #: Packages without such names; add a package when it is free of them.
 PACKAGES = (
-    "calibration", "design", "energyplus", "explore", "figures", "genopt", "optimization", "report",
-    "sensitivity", "validation", "verification", "view",
+    "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
+    "sensitivity", "validation", "verification",
 )  # fmt: skip
 
 

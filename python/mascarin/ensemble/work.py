@@ -112,7 +112,8 @@ class Chunk:
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
     step_errors : ndarray, shape (members,)
-        Error of an air by the time step, as of `mascarin.simulation.checks.step_check`; NaN where none was recorded. [K]
+        Error of an air by the time step, as of `mascarin.simulation.checks.step_check`; NaN where none was
+        recorded. [K]
     """
 
     first: int

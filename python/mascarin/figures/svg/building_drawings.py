@@ -147,7 +147,7 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     building : mapping
         As in :class:`~mascarin.pages.study.data.schema.BuildingEntry`.
     sensors : mapping
-        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; the output gives the position of a sensor.
+        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; the output gives where a sensor is.
 
     Returns
     -------
@@ -311,7 +311,8 @@ def layers(
     construction : mapping
         ``name`` and ``layers``.
     sensors : mapping
-        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; those in surfaces of this construction are marked.
+        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; those in surfaces of this construction
+        are marked.
     """
     entries = list(construction.get("layers", []))
     thick = _thickness(entries)

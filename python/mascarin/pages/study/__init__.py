@@ -1,8 +1,9 @@
 """The report of a study: one HTML file without anything outside of it.
 
-Its only input are the results of a study: the content of ``study.json`` (:mod:`mascarin.pages.study.data.schema`) and
-its series (:mod:`mascarin.pages.study.data.series`). Styles, scripts and pictures are part of the file, and its content
-security policy forbids the browser to load anything else.
+Its only input are the results of a study: the content of ``study.json``
+(:mod:`mascarin.pages.study.data.schema`) and its series (:mod:`mascarin.pages.study.data.series`). Styles,
+scripts and pictures are part of the file, and its content security policy forbids the browser to load
+anything else.
 """
 
 from __future__ import annotations

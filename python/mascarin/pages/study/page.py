@@ -222,7 +222,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
             sections.append(
                 {
                     "id": key.replace("_", "-"),
-                    "template": f"report/sections/{key}.html",
+                    "template": f"pages/study/sections/{key}.html",
                     "title": module.TITLE,
                     "number": number,
                     "content": content,
