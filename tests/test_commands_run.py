@@ -77,12 +77,12 @@ def test_a_long_run_shows_its_steps_and_the_time_left(
     monkeypatch.setattr("mascarin.progress._LINE_EVERY", 0.0)
     whole = CompiledRun.run_into
 
-    def reporting(compiled: CompiledRun, *given: Any, kept: bool, progress: Report) -> dict[str, Any]:
+    def reporting(compiled: CompiledRun, *given: Any, keeps_rows: bool, progress: Report) -> dict[str, Any]:
         steps = len(compiled.forcing)
         progress(0, steps)
         progress(steps // 4, steps)
         progress(steps // 2, steps)
-        return whole(compiled, *given, kept=kept)
+        return whole(compiled, *given, keeps_rows=keeps_rows)
 
     monkeypatch.setattr(CompiledRun, "run_into", reporting)
     assert cli.main(call) == 0

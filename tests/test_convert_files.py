@@ -58,9 +58,12 @@ def test_every_file_converts_and_names_what_it_leaves_out(
     files: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     models: list[IdfModel] = []
-    monkeypatch.setattr(
-        "mascarin.energyplus.conversion.read", lambda path: models.append(read(path)) or models[-1]
-    )
+
+    def remembered(path: Path) -> IdfModel:
+        models.append(read(path))
+        return models[-1]
+
+    monkeypatch.setattr("mascarin.energyplus.conversion.read", remembered)
     found = convert(files / f"{name}.idf")
     assert models[0].looked_up <= set(HANDLERS), "a handler declares the classes that it reads"
     kinds = {one.kind.partition(":")[0] for one in found.findings if one.level == "left out"}

@@ -11,6 +11,8 @@ from mascarin.energyplus import convert
 from mascarin.energyplus.model.context import SECTIONS, Context
 from mascarin.energyplus.model.handlers import HANDLERS, reads
 from mascarin.energyplus.model.idf import IdfModel, read
+from mascarin.energyplus.zones.conditioning import describe_conditioning
+from mascarin.energyplus.zones.zones import Zone
 from test_convert import box, converted
 
 TEXT = """\
@@ -92,16 +94,13 @@ def test_a_section_that_a_handler_writes_reaches_the_building(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A step of the conversion that adds a vent and humidity: both are in the building that comes out."""
-    from mascarin.energyplus import conversion
 
-    describe = conversion.describe_conditioning
-
-    def with_humidity(context: Context, zones: dict[str, object]) -> None:
-        describe(context, zones)  # type: ignore[arg-type]
+    def with_humidity(context: Context, zones: dict[str, Zone]) -> None:
+        describe_conditioning(context, zones)
         context.section("humidity")["zones"] = {"Room": {"storage": 2.0}}
         context.section("sensors")["middle"] = {"surface": "Mass", "depth": 0.02}
 
-    monkeypatch.setattr(conversion, "describe_conditioning", with_humidity)
+    monkeypatch.setattr("mascarin.energyplus.conversion.describe_conditioning", with_humidity)
     (tmp_path / "model.idf").write_text(TEXT, encoding="utf-8")
     conversion_result = convert(tmp_path / "model.idf")
     assert conversion_result.building.humidity is not None

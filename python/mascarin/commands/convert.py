@@ -45,11 +45,11 @@ def convert(
     if target.suffix.lower() not in (".yaml", ".yml"):
         raise InputError(f"--out: found '{target}'; expected a file that ends with .yaml")
     with writing(target):
-        found = converted(model, weather=weather)
-        atomic.write(target, yaml_text(found))
+        conversion = converted(model, weather=weather)
+        atomic.write(target, yaml_text(conversion))
     if as_json:
-        print_json(report(found) | {"building": str(target)})
+        print_json(report(conversion) | {"building": str(target)})
     else:
-        print("\n".join(terminal_lines(found)))
-    print(f"wrote {target}; mascarin run {target} --weather EPW {run_options(found)}", file=sys.stderr)
-    return 0 if found.complete else 1
+        print("\n".join(terminal_lines(conversion)))
+    print(f"wrote {target}; mascarin run {target} --weather EPW {run_options(conversion)}", file=sys.stderr)
+    return 0 if conversion.complete else 1

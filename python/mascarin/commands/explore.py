@@ -98,7 +98,7 @@ def explore(
 
     target = _target(out, building)
     described = read_building(building, settings)
-    given = set_values(settings)
+    start_values = set_values(settings)
     with lines_named(building), identity.outputs(target):
         climate, measured = run_inputs(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
@@ -121,11 +121,17 @@ def explore(
             options=options,
         )
 
-    _serve(session, building, given, target, port=port, open_it=not no_open)
+    _serve(session, building, start_values, target, port=port, open_it=not no_open)
 
 
 def _serve(
-    session: Session, building: Path, given: Mapping[str, float], target: Path, *, port: int, open_it: bool
+    session: Session,
+    building: Path,
+    start_values: Mapping[str, float],
+    target: Path,
+    *,
+    port: int,
+    open_it: bool,
 ) -> None:
     """Serve the page until Ctrl-C."""
     from mascarin.pages.explore import Server
@@ -133,7 +139,7 @@ def _serve(
 
     def save(content: Mapping[str, Any]) -> dict[str, str]:
         with writing(target):
-            session.save(target, building, _values(content), given)
+            session.save(target, building, _values(content), start_values)
         return {"file": str(target)}
 
     server = Server(

@@ -174,8 +174,8 @@ def _compiled(
     if more:
         from mascarin.pages.run.page import needed
 
-        own = [output.name for output in chosen_outputs(building, names)]
-        names = list(dict.fromkeys([*own, *needed(building)]))
+        chosen = [output.name for output in chosen_outputs(building, names)]
+        names = list(dict.fromkeys([*chosen, *needed(building)]))
     simulation = Simulation(building, climate, step=seconds(step), outputs=names, **options)
     _print_warnings(building, simulation)
     _print_cost(building, simulation)
@@ -193,10 +193,10 @@ def _simulated(simulation: Simulation) -> Results:
 def _stored(simulation: Simulation, out: Path) -> Finished:
     """Run once, and write the series while the run goes on; messages as `_simulated`."""
     with _progress() as progress:
-        found = simulation.run_into(out, progress=progress).finished
-    _print_lines(_new(found.warnings, simulation))
+        summary = simulation.run_into(out, progress=progress).finished
+    _print_lines(_new(summary.warnings, simulation))
     print(f"wrote {out}", file=sys.stderr)
-    return found
+    return summary
 
 
 def _new(warnings: Sequence[str], simulation: Simulation) -> list[str]:
@@ -228,13 +228,13 @@ def _only(results: Results, names: Sequence[str] | None) -> Results:
     """The results with these outputs alone, or with the usual ones."""
     from dataclasses import replace
 
-    kept = [
+    rows_kept = [
         k
         for k, output in enumerate(results.outputs)
         if (output.usual if names is None else output.name in names)
     ]
-    outputs = [results.outputs[k] for k in kept]
-    return replace(results, outputs=outputs, records=results.records[:, kept])
+    outputs = [results.outputs[k] for k in rows_kept]
+    return replace(results, outputs=outputs, records=results.records[:, rows_kept])
 
 
 @contextlib.contextmanager

@@ -103,7 +103,7 @@ class Chunk:
     ----------
     first : int
         Its first member.
-    kept : ndarray, shape (members, rows, outputs) or (members, objectives)
+    recorded : ndarray, shape (members, rows, outputs) or (members, objectives)
         Series, or objectives where there are some; NaN for a member that failed. [unit of each]
     closure : ndarray, shape (members,)
         Relative energy-balance residual. [-]
@@ -117,7 +117,7 @@ class Chunk:
     """
 
     first: int
-    kept: Array
+    recorded: Array
     closure: Array
     outside: Array
     failures: Mapping[int, str]

@@ -139,7 +139,7 @@ class Simulation(VectorRuns):
         self.times = Times(first, last, self.step_seconds, climate.grid.zone)
         self.outputs = prepare.chosen_outputs(self.building, outputs)
         self._replaced = prepare.changed_parameters(building, self.building, options.parameters)
-        wanted = prepare.read_initial(initial)
+        stated_start = prepare.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
@@ -147,7 +147,7 @@ class Simulation(VectorRuns):
             self.building, climate, description, times=self.times, scheme=scheme, measurements=measurements
         )  # fmt: skip
         self.channels = tuple(description.channels)
-        self.initial = prepare.start_of(wanted, self.building, description, forcing, self.times.start)
+        self.initial = prepare.start_of(stated_start, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
             description=description.json,
             forcing=forcing,
@@ -292,10 +292,12 @@ class Simulation(VectorRuns):
             vector = self.vector(parameters or {})
             trajectory = self.trajectory(vector, memory=memory)
             report(1, 2)
-            known = [self.building.parameter(path) for path in self.paths]
-            found = gradient_of(objective, trajectory, [output.name for output in self.outputs], known)
+            free_parameters = [self.building.parameter(path) for path in self.paths]
+            derivatives = gradient_of(
+                objective, trajectory, [output.name for output in self.outputs], free_parameters
+            )
             report(2, 2)
-        return replace(found, warnings=self.warnings_at(vector))
+        return replace(derivatives, warnings=self.warnings_at(vector))
 
     def run_vector(self, vector: Array, *, progress: Report | None = None) -> Results:
         """Run once with a parameter vector; as `run`.
@@ -307,17 +309,17 @@ class Simulation(VectorRuns):
         progress : callable, optional
             Called with the number of steps done and their total.
         """
-        whole = InMemory(self.times.rows, len(self.outputs))
-        found = self._run_through(vector, whole.take, progress, kept=True)
+        memory = InMemory(self.times.rows, len(self.outputs))
+        summary = self._run_through(vector, memory.take, progress, keeps_rows=True)
         return Results(
             outputs=self.outputs,
             times=self.times,
-            records=whole.records,
-            energy=found.energy,
-            provenance=found.provenance,
-            warnings=found.warnings,
-            vapour=found.vapour,
-            judgement=found.judgement,
+            records=memory.records,
+            energy=summary.energy,
+            provenance=summary.provenance,
+            warnings=summary.warnings,
+            vapour=summary.vapour,
+            judgement=summary.judgement,
         )
 
     def run_into(
@@ -377,13 +379,18 @@ class Simulation(VectorRuns):
         ):
             steps = len(self.compiled.forcing)
             report(0, steps)
-            found = self._run_through(self.vector(parameters or {}), draft.take, report)
-            draft.finish(found.attributes(self.outputs, self.times.timezone))
+            summary = self._run_through(self.vector(parameters or {}), draft.take, report)
+            draft.finish(summary.attributes(self.outputs, self.times.timezone))
             report(steps, steps)
-        return StoredRun(target, self.outputs, self.times, found)
+        return StoredRun(target, self.outputs, self.times, summary)
 
     def _run_through(
-        self, vector: Array, take: Callable[[Array], object], progress: Report | None, *, kept: bool = False
+        self,
+        vector: Array,
+        take: Callable[[Array], object],
+        progress: Report | None,
+        *,
+        keeps_rows: bool = False,
     ) -> Finished:
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
@@ -394,7 +401,7 @@ class Simulation(VectorRuns):
             watch.add(rows)
             take(rows[:, :count])
 
-        raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
+        raw = self.compiled.run_into(vector, seen, self._recorded, keeps_rows=keeps_rows, progress=progress)
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)

@@ -83,12 +83,12 @@ def inactive_parameters(
     failed = {failure.member for failure in failures}
     if 0 in failed:
         raise SolverError(failures[0].reason)
-    found = {}
+    reasons = {}
     for member, path in enumerate(trial.paths, start=1):
         same = np.array_equal(records[member], records[0]) and residuals[member] == residuals[0]
         if same and member not in failed:
-            found[path] = building.parameter(path).reason or "did not act in this period"
-    return found
+            reasons[path] = building.parameter(path).reason or "did not act in this period"
+    return reasons
 
 
 def _moved(parameter: Parameter) -> float:

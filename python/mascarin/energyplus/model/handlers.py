@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar, cast
 
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
-_H = TypeVar("_H", bound="HasModel")
+_Handler = TypeVar("_Handler", bound=Callable[..., Any])
 
 #: Functions that read a class, by its name in small letters.
 HANDLERS: Final[dict[str, list[str]]] = {}
@@ -22,9 +20,7 @@ class HasModel(Protocol):
         """The file, an `IdfModel`."""
 
 
-def reads(
-    *classes: str,
-) -> Callable[[Callable[Concatenate[_H, _P], _R]], Callable[Concatenate[_H, _P], _R]]:
+def reads(*classes: str) -> Callable[[_Handler], _Handler]:
     """Declare that a function reads classes of EnergyPlus; they count as read once it has been called.
 
     Looking at a class is not enough: what no handler has read is reported to the user.
@@ -47,15 +43,15 @@ def reads(
     True
     """
 
-    def declare(handler: Callable[Concatenate[_H, _P], _R]) -> Callable[Concatenate[_H, _P], _R]:
+    def declare(handler: _Handler) -> _Handler:
         for name in classes:
             HANDLERS.setdefault(name.casefold(), []).append(f"{handler.__module__}.{handler.__qualname__}")
 
         @wraps(handler)
-        def handled(context: _H, *args: _P.args, **kwargs: _P.kwargs) -> _R:
+        def handled(context: HasModel, *args: Any, **kwargs: Any) -> Any:
             context.model.count_as_read(classes)
             return handler(context, *args, **kwargs)
 
-        return handled
+        return cast(_Handler, handled)
 
     return declare

@@ -43,21 +43,21 @@ def require_balanced_flows(
     InputError
         Naming the zone, the step with the largest difference, and all flows.
     """
-    places = {name: len(CHANNELS) + k for k, name in enumerate(channels)}
+    columns = {name: len(CHANNELS) + k for k, name in enumerate(channels)}
 
     def of(part: Driven) -> Array:
         """Mean flow of each step. [m3/s]"""
         name = part.course.name if part.course is not None else getattr(part, "schedule", None)
-        whole = float(part.number if part.course is None else part.factor or 0.0)
-        course = np.ones(len(forcing)) if name is None else forcing[:, 0, places[f"schedule {name}"]]
-        return np.asarray(whole * course)
+        design_flow = float(part.number if part.course is None else part.factor or 0.0)
+        course = np.ones(len(forcing)) if name is None else forcing[:, 0, columns[f"schedule {name}"]]
+        return np.asarray(design_flow * course)
 
     for zone, parts in flows_of_zones(building).items():
         if building.zones[zone].makeup_air is not None:
             continue
         flows = {path: sign * of(part) for path, part, sign in parts}
-        every = np.array(list(flows.values()))
-        enters, leaves = every.clip(min=0.0).sum(axis=0), -every.clip(max=0.0).sum(axis=0)
+        all_flows = np.array(list(flows.values()))
+        enters, leaves = all_flows.clip(min=0.0).sum(axis=0), -all_flows.clip(max=0.0).sum(axis=0)
         worst = int(np.argmax(np.abs(enters - leaves) - BALANCED * np.maximum(enters, leaves)))
         wrong = imbalance({path: float(flow[worst]) for path, flow in flows.items()})
         if wrong is not None:

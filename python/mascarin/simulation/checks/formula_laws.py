@@ -77,9 +77,9 @@ def range_warnings(raw: Mapping[str, Any], dated: Callable[[str], str]) -> list[
     "roof (outside): its law of convection is outside of its 'valid"
     """
     return [
-        f"{place}: its law of convection is outside of its 'valid' at the end of {steps} "
+        f"{surface}: its law of convection is outside of its 'valid' at the end of {steps} "
         f"{'step' if steps == 1 else 'steps'}, first in {dated(f'step {first}')}; farthest at dT = "
         f"{difference:.1f} K with a wind of {wind:.1f} m/s at the mast. The formula is used as it is there: "
         "take a law that holds, or widen 'valid' where its source does"
-        for place, steps, first, difference, wind in raw["out_of_range"]
+        for surface, steps, first, difference, wind in raw["out_of_range"]
     ]

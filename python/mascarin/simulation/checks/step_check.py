@@ -35,9 +35,9 @@ START: Final = 3
 def watched(building: Building, outputs: Sequence[Output]) -> list[Output]:
     """Air temperatures of zones without plant that are not among the outputs of a run."""
     names = {output.name for output in outputs}
-    every = building.outputs()
-    places = _free(building, every).values()
-    return [every[column] for column in places if every[column].name not in names]
+    all_outputs = building.outputs()
+    free_airs = _free(building, all_outputs).values()
+    return [all_outputs[column] for column in free_airs if all_outputs[column].name not in names]
 
 
 def member_errors(

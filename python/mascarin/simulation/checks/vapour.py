@@ -70,31 +70,31 @@ class VapourLedger:
         step_seconds : float
             Time step. [s]
         """
-        found = []
+        messages = []
         if self.corrected and self.fastest > 0.0 and step_seconds > SHORTEST:
             longest = min(MOST_EXCHANGES / self.fastest, 0.99 * step_seconds) / 60.0
             better = next((step for step in STEPS if step <= longest), STEPS[-1])
             within = 1.0 / self.fastest / 60.0
-            found.append(
+            messages.append(
                 f"the time step of {step_seconds / 60.0:g} min is too long for the vapour of the air, which "
                 f"was exchanged within {within:.2g} min in {self.corrected} steps: its humidity was kept "
                 "between that of the air and of the surfaces that drive it, and is less accurate there; "
                 f"take a step of {better} min"
             )
         if not self.closes:
-            found.append(
+            messages.append(
                 "the vapour balance does not close: the vapour stored and the vapour that flowed in differ "
                 f"by {self.relative_residual:.1e} of all vapour exchanged, expected {CLOSED:g} at most. "
                 "Humidities may be wrong by as much or more: take a shorter step"
             )
         lost = -self.into["condensation"]
         if lost > 0.01 * self.exchanged:
-            found.append(
+            messages.append(
                 f"the air of zones was saturated: {lost:.3g} kg of vapour condensed, "
                 f"{100 * lost / self.exchanged:.0f} % of all vapour exchanged. It is taken away, and its "
                 "heat is not given to the room. Check the sources of vapour and the ventilation"
             )
-        return found
+        return messages
 
     @classmethod
     def read(cls, raw: Mapping[str, Any]) -> Self:

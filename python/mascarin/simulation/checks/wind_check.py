@@ -63,5 +63,5 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
 
 
 def _some(names: list[str]) -> str:
-    rest = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    return f"vents.{names[0]}{rest}"
+    ending = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return f"vents.{names[0]}{ending}"

@@ -84,8 +84,8 @@ class EnsembleRun:
     def __iter__(self) -> Iterator[Any]:
         return iter((self.records, self.residuals, self.failures))
 
-    def __getitem__(self, place: int) -> Any:
-        return (self.records, self.residuals, self.failures)[place]
+    def __getitem__(self, index: int) -> Any:
+        return (self.records, self.residuals, self.failures)[index]
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,9 +193,9 @@ class CompiledRun:
             A step or the repeated first period did not converge.
         """
         recorded = readings or self.readings
-        whole = InMemory(self._rows(0, 1), len(recorded.columns))
-        raw = self.run_into(vector, whole.take, recorded, kept=True, progress=progress)
-        return whole.records, raw
+        memory = InMemory(self._rows(0, 1), len(recorded.columns))
+        raw = self.run_into(vector, memory.take, recorded, keeps_rows=True, progress=progress)
+        return memory.records, raw
 
     def run_into(
         self,
@@ -203,7 +203,7 @@ class CompiledRun:
         take: Callable[[Array], object],
         readings: Readings | None = None,
         *,
-        kept: bool = False,
+        keeps_rows: bool = False,
         progress: Report | None = None,
     ) -> dict[str, Any]:
         """Run once, and hand the outputs over in blocks of rows while the run goes on.
@@ -216,7 +216,7 @@ class CompiledRun:
             Called with the next rows, shape (n, outputs); what it raises ends the run.
         readings : Readings, optional
             Outputs other than those of the compiled run.
-        kept : bool
+        keeps_rows : bool
             Whether the rows stay in memory: blocks are smaller then.
         progress : callable, optional
             Called with the number of steps done and their total; with 0 while a first period is repeated.
@@ -239,7 +239,7 @@ class CompiledRun:
                 vector,
                 self.forcing,
                 self.options(recorded),
-                rows_of(len(recorded.columns), kept=kept),
+                rows_of(len(recorded.columns), keeps_rows=keeps_rows),
                 lambda rows: take(recorded.values(rows)),
                 _of_total(progress, len(self.forcing)),
             )
@@ -328,11 +328,11 @@ class CompiledRun:
         """
         options = self.options(None, record_from, record_every)
         report = _of_total(progress, len(directions))
-        rows, many = self._rows(record_from, record_every), len(directions) + 1
-        self._require_room(many, rows, f"derivatives by {len(directions)} parameters", "take fewer")
+        rows, lanes = self._rows(record_from, record_every), len(directions) + 1
+        self._require_room(lanes, rows, f"derivatives by {len(directions)} parameters", "take fewer")
         with translated(self.dated):
             raw, slopes = self.plan.jacobian(
-                vector, [list(one) for one in directions], self.forcing, options, report
+                vector, [list(direction) for direction in directions], self.forcing, options, report
             )
         return self.readings.values(raw), self.readings.values(slopes)
 

@@ -62,14 +62,14 @@ class MeasuredStart:
     measurements: Measurements
     sensors: Mapping[str, str | Sequence[str]]
 
-    def known(self, building: Building, found: Sequence[Wall], start: datetime) -> Known:
+    def known(self, building: Building, wall_list: Sequence[Wall], start: datetime) -> Known:
         """The first value of each sensor.
 
         Parameters
         ----------
         building : Building
             The building.
-        found : sequence of Wall
+        wall_list : sequence of Wall
             Its walls.
         start : datetime
             Start of the run.
@@ -83,15 +83,15 @@ class MeasuredStart:
         points: dict[str, list[tuple[float, float]]] = {}
         notes = []
         for name, columns in self.sensors.items():
-            place = located(building.output(name), found, building)
-            if place is None:
+            position = located(building.output(name), wall_list, building)
+            if position is None:
                 continue
             value = self._first(name, [columns] if isinstance(columns, str) else list(columns), start)
             notes.append(f"{name} {value:g}")
-            if place[1] is None:
-                zones[place[0]] = value
+            if position[1] is None:
+                zones[position[0]] = value
             else:
-                points.setdefault(place[0], []).append((place[1], value))
+                points.setdefault(position[0], []).append((position[1], value))
         if building.zones and not zones:
             raise StartError(
                 ("initial",),
@@ -132,7 +132,7 @@ Initial = Literal["repeat"] | float | Mapping[str, Any] | GivenStart | MeasuredS
 """Values of the option ``initial``."""
 
 
-def read(wanted: object) -> float | GivenStart | MeasuredStart | None:
+def read(start: object) -> float | GivenStart | MeasuredStart | None:
     """Read the option ``initial``: one temperature [degC], given or measured ones, or None for ``repeat``.
 
     Raises
@@ -140,28 +140,28 @@ def read(wanted: object) -> float | GivenStart | MeasuredStart | None:
     InputError
         Another value.
     """
-    if isinstance(wanted, GivenStart | MeasuredStart):
-        return wanted
-    if isinstance(wanted, str) and wanted == "repeat":
+    if isinstance(start, GivenStart | MeasuredStart):
+        return start
+    if isinstance(start, str) and start == "repeat":
         return None
-    if isinstance(wanted, (int, float)) and not isinstance(wanted, bool) and LIMITS[0] < wanted < LIMITS[1]:
-        return float(wanted)
-    if isinstance(wanted, Mapping):
+    if isinstance(start, (int, float)) and not isinstance(start, bool) and LIMITS[0] < start < LIMITS[1]:
+        return float(start)
+    if isinstance(start, Mapping):
         from mascarin.building.reading import explained
 
-        plain = dict(wanted)
+        plain = dict(start)
         try:
             return GivenStart.model_validate(plain)
         except ValidationError as error:
             raise explained(error, plain, "initial") from None
     raise InputError(
-        f"initial: found {wanted!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
+        f"initial: found {start!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
         "such as {'zones': {'room': 21}}, or a MeasuredStart"
     )
 
 
 def resolved(
-    wanted: GivenStart | MeasuredStart,
+    stated: GivenStart | MeasuredStart,
     building: Building,
     nodes: Mapping[tuple[str, str], int],
     ambient: Ambient,
@@ -171,7 +171,7 @@ def resolved(
 
     Parameters
     ----------
-    wanted : GivenStart or MeasuredStart
+    stated : GivenStart or MeasuredStart
         Temperatures that are given or measured.
     building : Building
         The building.
@@ -187,7 +187,7 @@ def resolved(
     StartError
         A name that does not exist, a sensor without a value, no temperature of any air.
     """
-    found = walls(building, nodes)
-    if isinstance(wanted, MeasuredStart):
-        return profile(building, found, wanted.known(building, found, start), ambient)
-    return profile(building, found, given(wanted, found, building), ambient)
+    wall_list = walls(building, nodes)
+    if isinstance(stated, MeasuredStart):
+        return profile(building, wall_list, stated.known(building, wall_list, start), ambient)
+    return profile(building, wall_list, given(stated, wall_list, building), ambient)

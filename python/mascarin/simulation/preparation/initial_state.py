@@ -88,9 +88,9 @@ class StartError(InputError):
         The entry with the error.
     """
 
-    def __init__(self, place: tuple[str, ...], text: str) -> None:
-        super().__init__(f"{'.'.join(place)}: {text}")
-        self.place = place
+    def __init__(self, location: tuple[str, ...], text: str) -> None:
+        super().__init__(f"{'.'.join(location)}: {text}")
+        self.place = location
 
 
 @dataclass(frozen=True)
@@ -191,11 +191,11 @@ class Wall:
 
     def at_depth(self, depth: float) -> float:
         """Position at a depth [m], on the outer side of a layer without thickness. [m2 K/W]"""
-        place, before = 0.0, 0.0
+        resistance_before, before = 0.0, 0.0
         for thickness, resistance in self.layers:
             part = min(max((depth - before) / thickness, 0.0), 1.0) if thickness else float(before < depth)
-            place, before = place + part * resistance, before + thickness
-        return place
+            resistance_before, before = resistance_before + part * resistance, before + thickness
+        return resistance_before
 
 
 def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall]:
@@ -208,15 +208,15 @@ def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall
     nodes : mapping of (str, str) to int
         Finite volumes by construction and layer.
     """
-    found = [_opaque(building, name, nodes) for name in building.surfaces]
+    wall_list = [_opaque(building, name, nodes) for name in building.surfaces]
     for name, window in building.windows.items():
         glass = _glazed(name, building.glazings[window.glazing], building.surfaces[window.surface].sides)
-        found.append(glass if window.blind is None else _behind(glass, window.blind))
+        wall_list.append(glass if window.blind is None else _behind(glass, window.blind))
     for window in building.windows.values():
         if window.frame is not None:
             resistance = max(1.0 / window.frame.u_value - sum(FILMS), _LEAST)
-            found.append(Wall("", building.surfaces[window.surface].sides, ((0.0, resistance),), ()))
-    return found
+            wall_list.append(Wall("", building.surfaces[window.surface].sides, ((0.0, resistance),), ()))
+    return wall_list
 
 
 def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int]) -> Wall:
@@ -230,7 +230,7 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
             layers.append((0.0, float(getattr(material, "resistance", 0.0))))
             continue
         # The mean of solid and liquid: which of the two it is depends on the profile.
-        both = [phase(material.conductivity, one) for one in ("solid", "liquid")]
+        both = [phase(material.conductivity, state) for state in ("solid", "liquid")]
         resistance = float(layer.thickness) / (0.5 * sum(both))
         count = nodes[surface.construction, layer.name]
         cells += [before + (i + 0.5) / count * resistance for i in range(count)]
@@ -242,17 +242,17 @@ def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
     """Nodes of a window as in the engine: pane surfaces at gaps, and middles of panes with heat capacity."""
     if isinstance(glazing, SimpleGlazing):
         films = glazing.outside_film + glazing.inside_film
-        whole = float(1.0 / glazing.u_value - films)
-        outer = min(_PANE, 0.25 * whole)
-        return Wall(name, sides, ((0.0, whole),), (outer, whole - outer))
+        total = float(1.0 / glazing.u_value - films)
+        outer = min(_PANE, 0.25 * total)
+        return Wall(name, sides, ((0.0, total),), (outer, total - outer))
     layers: list[tuple[float, float]] = []
     cells: list[float] = []
     for k, pane in enumerate(glazing.panes):
-        before, own = sum(r for _, r in layers), float(pane.thickness / pane.conductivity)
+        before, pane_resistance = sum(r for _, r in layers), float(pane.thickness / pane.conductivity)
         last = k + 1 == len(glazing.panes)
         marks = [(0.0, k > 0), (0.5, pane.density is not None), (1.0, not last)]
-        cells += [before + part * own for part, node in marks if node]
-        layers.append((float(pane.thickness), own))
+        cells += [before + part * pane_resistance for part, node in marks if node]
+        layers.append((float(pane.thickness), pane_resistance))
         if not last:
             gap = glazing.gaps[k]
             layers.append((0.0, 1.0 / gap.conductance if isinstance(gap, GivenGap) else _GAP))
@@ -268,7 +268,7 @@ def _behind(glass: Wall, blind: Blind) -> Wall:
     return Wall(glass.name, glass.sides, (*glass.layers, opened), (*glass.cells, glass.whole))
 
 
-def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known:
+def given(start: GivenStart, wall_list: Sequence[Wall], building: Building) -> Known:
     """Known temperatures as the user gave them.
 
     Raises
@@ -276,23 +276,23 @@ def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known
     StartError
         A zone or surface that does not exist.
     """
-    known = {wall.name: wall for wall in found if wall.name}
+    by_name = {wall.name: wall for wall in wall_list if wall.name}
     points, said = {}, []
-    for section, names, there in (
+    for section, names, existing in (
         ("zones", start.zones, building.zones),
-        ("surfaces", start.surfaces, known),
+        ("surfaces", start.surfaces, by_name),
     ):
         for name in names:
-            if name not in there:
+            if name not in existing:
                 raise StartError(
                     ("initial", section, name),
                     f"found '{name}', expected the name of a {_SINGULAR[section]} of the building. "
-                    f"{did_you_mean(name, there)}".rstrip(),
+                    f"{did_you_mean(name, existing)}".rstrip(),
                 )
     said += [f"{name} {value:g}" for name, value in start.zones.items()]
     for name, faces in start.surfaces.items():
         outside, inside = faces if isinstance(faces, tuple) else (faces, faces)
-        points[name] = ((0.0, outside), (known[name].whole, inside))
+        points[name] = ((0.0, outside), (by_name[name].whole, inside))
         said.append(f"{name} {outside:g}" + (f" to {inside:g}" if inside != outside else ""))
     if start.default is not None:
         said.append(f"{'other ' if start.zones else ''}zones {start.default:g}")
@@ -302,14 +302,14 @@ def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known
 _SINGULAR: Final = {"zones": "zone", "surfaces": "surface or window"}
 
 
-def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[str, float | None] | None:
+def located(output: Output, wall_list: Sequence[Wall], building: Building) -> tuple[str, float | None] | None:
     """Position of an output that is a temperature of the state: zone and None, or surface and position.
 
     Parameters
     ----------
     output : Output
         An output of the building.
-    found : sequence of Wall
+    wall_list : sequence of Wall
         Its walls.
     building : Building
         The building.
@@ -318,11 +318,11 @@ def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[
         return list(building.zones)[output.zone], None
     if output.kind == "sensor" and output.sensor is not None:
         sensor = list(building.sensors.values())[output.sensor]
-        wall = next(wall for wall in found if wall.name == sensor.surface)
+        wall = next(wall for wall in wall_list if wall.name == sensor.surface)
         return wall.name, wall.at_depth(float(sensor.depth))
     if output.surface is None:
         return None
-    wall = found[output.surface]
+    wall = wall_list[output.surface]
     if output.kind == "face_temperature":
         return wall.name, wall.whole if output.side else 0.0
     if output.kind == "interface_temperature" and output.interface is not None:
@@ -332,7 +332,7 @@ def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[
     return None
 
 
-def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Ambient) -> Profile:
+def profile(building: Building, wall_list: Sequence[Wall], start: Known, ambient: Ambient) -> Profile:
     """All temperatures from those that are known.
 
     Air of unknown temperature takes the default, or the mean of the others. In a wall the temperature is
@@ -343,9 +343,9 @@ def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Am
     ----------
     building : Building
         The building.
-    found : sequence of Wall
+    wall_list : sequence of Wall
         Its walls.
-    known : Known
+    start : Known
         Known temperatures.
     ambient : Ambient
         Surroundings.
@@ -357,29 +357,29 @@ def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Am
     """
     import numpy as np
 
-    air = _airs(building, known)
+    air = _airs(building, start)
     cells: list[float] = []
     faces: list[float] = []
-    for wall in found:
+    for wall in wall_list:
         # The frame of a window has no name: nothing is known of it.
-        points = _points(wall, known.points.get(wall.name, ()) if wall.name else (), air, ambient)
-        places, values = zip(*points, strict=True)
-        cells += np.interp(wall.cells, places, values).tolist()
-        faces += np.interp([0.0, wall.whole], places, values).tolist()
-    return Profile(tuple(cells), tuple(faces), tuple(air.values()), known.words + _rest(building))
+        points = _points(wall, start.points.get(wall.name, ()) if wall.name else (), air, ambient)
+        positions, values = zip(*points, strict=True)
+        cells += np.interp(wall.cells, positions, values).tolist()
+        faces += np.interp([0.0, wall.whole], positions, values).tolist()
+    return Profile(tuple(cells), tuple(faces), tuple(air.values()), start.words + _advice(building))
 
 
-def _airs(building: Building, known: Known) -> dict[str, float]:
-    rest = known.default
-    if rest is None and known.zones:
-        rest = sum(known.zones.values()) / len(known.zones)
-    if rest is None and building.zones:
+def _airs(building: Building, start: Known) -> dict[str, float]:
+    mean = start.default
+    if mean is None and start.zones:
+        mean = sum(start.zones.values()) / len(start.zones)
+    if mean is None and building.zones:
         raise StartError(
             ("initial",),
             f"found no air temperature in {', '.join(building.zones)}, expected that of at least "
             "one zone: add it under zones, or give a default",
         )
-    return {name: float(known.zones.get(name, rest or 0.0)) for name in building.zones}
+    return {name: float(start.zones.get(name, mean or 0.0)) for name in building.zones}
 
 
 def _points(
@@ -425,7 +425,7 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
     return film, ambient.columns[str(side.measured)]
 
 
-def _rest(building: Building) -> str:
+def _advice(building: Building) -> str:
     said = "; all others interpolated linearly in between"
     melts = any(isinstance(material, PhaseChangeMaterial) for material in _used(building))
     return said + ("; phase-change layers on the heating curve" if melts else "")

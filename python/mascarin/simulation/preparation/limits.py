@@ -104,15 +104,15 @@ def require_set_points_apart(
         """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC] or [-]"""
         if course is None:
             return vectors[:, [positions[path]]]
-        place = len(CHANNELS) + list(channels).index(f"schedule {course}")
-        return forcing[None, :, -1, place]
+        channel = len(CHANNELS) + list(channels).index(f"schedule {course}")
+        return forcing[None, :, -1, channel]
 
     for pair in _pairs(building):
         (low, high) = (set_point(path, course) for path, course in pair.points)
-        found = _first_above(low, high + 1e-9)
-        if found is None:
+        crossing = _first_above(low, high + 1e-9)
+        if crossing is None:
             continue
-        member, step = found
+        member, step = crossing
         shape = (len(vectors), len(forcing))
         first, second = (float(np.broadcast_to(x, shape)[member, step]) for x in (low, high))
         raise InputError(
@@ -137,12 +137,12 @@ class _Pair:
 def _pairs(building: Building) -> Iterator[_Pair]:
     for name, zone in building.zones.items():
         if zone.heating is not None and zone.cooling is not None:
-            at = f"zones.{name}"
+            prefix = f"zones.{name}"
             yield _Pair(
-                at, "heating", "cooling", " degC",
+                prefix, "heating", "cooling", " degC",
                 (
-                    (f"{at}.heating.setpoint.temperature", zone.heating.setpoint.course),
-                    (f"{at}.cooling.setpoint.temperature", zone.cooling.setpoint.course),
+                    (f"{prefix}.heating.setpoint.temperature", zone.heating.setpoint.course),
+                    (f"{prefix}.cooling.setpoint.temperature", zone.cooling.setpoint.course),
                 ),
             )  # fmt: skip
     for name, vapour in building.humidity.zones.items() if building.humidity is not None else ():
@@ -152,10 +152,10 @@ def _pairs(building: Building) -> Iterator[_Pair]:
         key, low, high = wet.setpoint[0], wet.setpoint[1].course, dry.setpoint[1].course
         # Ranges of two constant ones may overlap: drying decides there.
         if low is not None or high is not None:
-            at = f"humidity.zones.{name}"
+            prefix = f"humidity.zones.{name}"
             yield _Pair(
-                at, "humidifying", "drying", "" if key == "relative_humidity" else " kg/kg",
-                ((f"{at}.humidifying.{key}.constant", low), (f"{at}.drying.{key}.constant", high)),
+                prefix, "humidifying", "drying", "" if key == "relative_humidity" else " kg/kg",
+                ((f"{prefix}.humidifying.{key}.constant", low), (f"{prefix}.drying.{key}.constant", high)),
             )  # fmt: skip
 
 
@@ -202,7 +202,9 @@ def _first_above(high: Array, low: Array) -> tuple[int, int] | None:
     rows, columns = np.broadcast_shapes(high.shape, low.shape)
     part = max(_AT_ONCE // columns, 1)
     for first in range(0, rows, part):
-        above, below = (one if len(one) == 1 else one[first : first + part] for one in (high, low))
+        above, below = (
+            values if len(values) == 1 else values[first : first + part] for values in (high, low)
+        )
         bad = np.argwhere(above > below)
         if len(bad):
             return first + int(bad[0][0]), int(bad[0][1])

@@ -121,7 +121,7 @@ class VectorRuns:
         path : str
             The parameter.
         """
-        position, weight = next(one for one in self._spread(path) if one[1] != 0.0)
+        position, weight = next(entry for entry in self._spread(path) if entry[1] != 0.0)
         value = float(vector[position])
         return value if weight is None else value / weight
 
@@ -130,9 +130,9 @@ class VectorRuns:
         parameter = self.building.parameter(path)
         if not parameter.members:
             return [(self.position(path), None)]
-        places = [self.position(member) for member in parameter.members]
+        positions = [self.position(member) for member in parameter.members]
         by_factor = self.building.ties[parameter.path] == "factor"
-        return [(place, float(self.values[place]) if by_factor else None) for place in places]
+        return [(position, float(self.values[position]) if by_factor else None) for position in positions]
 
     def varied(self, paths: Sequence[str], values: Array, base: Array | None = None) -> Array:
         """Parameter vectors with some parameters varied.
@@ -173,7 +173,7 @@ class VectorRuns:
 
         tied = tied_set_points(self.building)
         named = [self.building.parameter(path) for path in paths] if tied else []
-        full = [path for one in named for path in one.members or (one.path,)]
+        full = [path for parameter in named for path in parameter.members or (parameter.path,)]
         return {path: tied[path] for path in full if path in tied and tied[path] not in full}
 
     def position(self, path: str) -> int:
@@ -255,7 +255,7 @@ class VectorRuns:
             )
         # The numbers that a tied parameter stands for change together.
         directions = [
-            [(place, 1.0 if weight is None else weight) for place, weight in self._spread(path)]
+            [(position, 1.0 if weight is None else weight) for position, weight in self._spread(path)]
             for path in vary
         ]
         return self.compiled.jacobian(
@@ -284,9 +284,9 @@ class VectorRuns:
         return {path: index for index, path in enumerate(self.compiled.paths)}
 
     def _checked(self, vector: Array | None) -> Array:
-        found: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
-        self._require_possible(found[None, :])
-        return found
+        checked: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
+        self._require_possible(checked[None, :])
+        return checked
 
     def _require_possible(self, vectors: Array) -> None:
         """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""

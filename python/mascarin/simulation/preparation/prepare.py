@@ -232,19 +232,19 @@ def forcing_of(
 
 
 def start_of(
-    wanted: float | GivenStart | MeasuredStart | None,
+    initial: float | GivenStart | MeasuredStart | None,
     building: Building,
     description: EngineDescription,
     forcing: Array,
     start: datetime,
 ) -> float | Profile | None:
     """Temperature or temperatures at the start; None to repeat the first period."""
-    if wanted is None or isinstance(wanted, float):
-        return wanted
+    if initial is None or isinstance(initial, float):
+        return initial
     # The weather of the first stage is also used at the start.
     now = dict(zip((*CHANNELS, *description.channels), forcing[0, 0].tolist(), strict=True))
     ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
-    return resolved(wanted, building, description.nodes, ambient, start)
+    return resolved(initial, building, description.nodes, ambient, start)
 
 
 def settings_of(
@@ -280,8 +280,8 @@ def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
     temperatures = {side.measured: TEMPERATURES for side in sides if isinstance(side.measured, str)}
     panes = [side for window in building.windows.values() for side in (window.outside, window.inside)]
-    lit = (side.irradiance for side in [*sides, *panes])
-    irradiances = {column: IRRADIANCES for column in lit if column is not None}
+    measured = (side.irradiance for side in [*sides, *panes])
+    irradiances = {column: IRRADIANCES for column in measured if column is not None}
     films = [measured_column(side.convection) for side in [*sides, *panes]]
     return temperatures | irradiances | {film: COEFFICIENTS for film in films if film is not None}
 

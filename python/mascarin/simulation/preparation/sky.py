@@ -37,8 +37,8 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     >>> with_sky_of(building, box_climate()) is building
     True
     """
-    given = {"sky", "cloud"} & building.site.model_fields_set
-    if given or any(path.startswith(_MODEL) for path in used):
+    stated = {"sky", "cloud"} & building.site.model_fields_set
+    if stated or any(path.startswith(_MODEL) for path in used):
         return building
     values = climate.data.get("infrared")
     if values is None or not bool(values.notna().all()):

@@ -45,15 +45,15 @@ def gradient_of(
     InputError
         The objective needs an output that was not recorded.
     """
-    given: Any = objective  # of any type, where no type checker has looked
-    found = given(dict(zip(names, trajectory.records.T, strict=True))) if callable(given) else None
-    if not (isinstance(found, tuple) and len(found) == 2 and isinstance(found[1], Mapping)):
-        shown = kind_of(found if callable(given) else given)
+    function: Any = objective  # of any type, where no type checker has looked
+    result = function(dict(zip(names, trajectory.records.T, strict=True))) if callable(function) else None
+    if not (isinstance(result, tuple) and len(result) == 2 and isinstance(result[1], Mapping)):
+        shown = kind_of(result if callable(function) else function)
         raise InputError(
             f"objective: found {shown}, expected a function of the series by output that returns the value "
             "and a mapping from output to derivatives"
         )
-    value, by_series = found
+    value, by_series = result
     weights = np.zeros_like(trajectory.records)
     for name, slopes in by_series.items():
         series_of(dict.fromkeys(names, weights), name)

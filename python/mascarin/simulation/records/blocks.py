@@ -23,14 +23,14 @@ SIZE: Final = 32 * 2**20
 PARTS: Final = 8
 
 
-def rows_of(columns: int, *, kept: bool = False) -> int:
+def rows_of(columns: int, *, keeps_rows: bool = False) -> int:
     """Rows of a block.
 
     Parameters
     ----------
     columns : int
         Numbers in a row.
-    kept : bool
+    keeps_rows : bool
         Whether the records stay in memory.
 
     Examples
@@ -38,7 +38,7 @@ def rows_of(columns: int, *, kept: bool = False) -> int:
     >>> rows_of(1024)
     4096
     """
-    size = SIZE // PARTS if kept else SIZE
+    size = SIZE // PARTS if keeps_rows else SIZE
     return max(size // (8 * max(columns, 1)), 1)
 
 

@@ -51,7 +51,7 @@ def rows(
     """
     shown = ", ".join(names[:3]) + (f", ... {len(names) - 3} more" if len(names) > 3 else "")
     source = notes.climate.get("file")
-    found = [
+    lines = [
         ("climate", str(source) if source else "table"),
         ("period", f"{index[0]:%Y-%m-%d %H:%M} to {index[-1]:%Y-%m-%d %H:%M} {index.tz}"),
         ("step", f"{notes.step_seconds:g} s, {notes.scheme}, {len(index)} rows"),
@@ -61,5 +61,5 @@ def rows(
     ]
     changed = [f"{path} = {value:g}" for path, value in notes.changed.items()]
     if changed:
-        found.append(("parameters", ", ".join(changed)))
-    return [*found, *(("warning", warning) for warning in warnings)]
+        lines.append(("parameters", ", ".join(changed)))
+    return [*lines, *(("warning", warning) for warning in warnings)]

@@ -69,10 +69,10 @@ class _Lasting:
 
     def write(self, data: bytes | memoryview) -> int:
         """Write all, or keep the error."""
-        left = memoryview(data).cast("B")
+        remaining = memoryview(data).cast("B")
         try:
-            while left:
-                left = left[self._file.write(left) :]
+            while remaining:
+                remaining = remaining[self._file.write(remaining) :]
         except OSError as error:
             self.error = self.error or error
         return len(memoryview(data).cast("B"))
@@ -148,13 +148,13 @@ class NetcdfDraft:
         """
         offset = self._done * _NUMBER.itemsize
         for first in range(0, len(self._places), _TOGETHER):
-            places = self._places[first : first + _TOGETHER]
+            offsets = self._places[first : first + _TOGETHER]
             columns = np.ascontiguousarray(rows[:, first : first + _TOGETHER].T, dtype=_NUMBER)
-            for place, column in zip(places, columns, strict=True):
-                self._raw.seek(place + offset)
-                left = memoryview(column).cast("B")
-                while left:  # a full disk takes a part, and refuses the next
-                    left = left[self._raw.write(left) :]
+            for start, column in zip(offsets, columns, strict=True):
+                self._raw.seek(start + offset)
+                remaining = memoryview(column).cast("B")
+                while remaining:  # a full disk takes a part, and refuses the next
+                    remaining = remaining[self._raw.write(remaining) :]
         self._done += len(rows)
 
     def finish(self, attributes: Mapping[str, Any]) -> None:
@@ -195,7 +195,7 @@ class _Stamps:
     def add(self, name: str, moments: npt.NDArray[np.int64], *, scale: bool = False) -> None:
         """Add stamps. [ns since 1970-01-01]"""
         steps = np.unique(np.diff(moments))
-        unit, length = next(one for one in _UNITS if not (steps % one[1]).any())
+        unit, length = next(candidate for candidate in _UNITS if not (steps % candidate[1]).any())
         begin = np.datetime64(int(moments[0]), "ns")
         text = str(begin.astype("datetime64[s]")).replace("T", " ")
         fraction = int(moments[0]) % 1_000_000_000
@@ -217,8 +217,8 @@ class _Stamps:
         """Tell the dimension which series run along it."""
         # All at once: `attach_scale` of HDF5 writes the whole list again for each.
         kind = np.dtype([("dataset", h5py.ref_dtype), ("dimension", "<u4")])
-        every = [*self._references, *references]
-        listed = np.array([(reference, 0) for reference in every], dtype=kind)
+        all_references = [*self._references, *references]
+        listed = np.array([(reference, 0) for reference in all_references], dtype=kind)
         self._file["time"].attrs.create("REFERENCE_LIST", listed)
 
 
@@ -246,23 +246,23 @@ class _Series:
 
     def add(self, name: str, unit: str) -> int:
         """Add a series. Returns where its values begin in the file. [B]"""
-        made = h5py.h5d.create(self.file.id, name.encode(), self._kind, self.stamps.space, self._plan)
-        _attach(made, self._dimension)
-        _number(made, "_Netcdf4Coordinates", np.zeros(1, np.int32))
-        _number(made, "_Netcdf4Dimid", np.int32(0))
-        _number(made, "_FillValue", np.array([np.nan]))
+        dataset = h5py.h5d.create(self.file.id, name.encode(), self._kind, self.stamps.space, self._plan)
+        _attach(dataset, self._dimension)
+        _number(dataset, "_Netcdf4Coordinates", np.zeros(1, np.int32))
+        _number(dataset, "_Netcdf4Dimid", np.int32(0))
+        _number(dataset, "_FillValue", np.array([np.nan]))
         for key, value in (
             ("units", unit),
             ("long_name", name),
             ("timezone", self.timezone),
             ("coordinates", "local_time"),
         ):
-            _text(made, key, value)
+            _text(dataset, key, value)
         self.references.append(h5py.h5r.create(self.file.id, name.encode(), h5py.h5r.OBJECT))
-        place = made.get_offset()
-        if place is None:
+        offset = dataset.get_offset()
+        if offset is None:
             raise RuntimeError(f"{name}: HDF5 gave its values no place in the file")
-        return int(place)
+        return int(offset)
 
 
 def _attach(series: h5py.h5d.DatasetID, dimension: h5py.h5d.DatasetID) -> None:
@@ -281,5 +281,5 @@ def _number(series: h5py.h5d.DatasetID, name: str, value: Any) -> None:
 
 def _text(series: h5py.h5d.DatasetID, name: str, value: str) -> None:
     kind = h5py.h5t.py_create(_TEXT, logical=True)
-    made = h5py.h5a.create(series, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR))
-    made.write(np.array(value, dtype=_TEXT))
+    attribute = h5py.h5a.create(series, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR))
+    attribute.write(np.array(value, dtype=_TEXT))

@@ -59,13 +59,13 @@ def _hash(path: Path, size: int) -> bytes:
     """SHA-256 of the first bytes of a file."""
     digest = hashlib.sha256()
     with path.open("rb") as file:
-        left = size
-        while left:
-            block = file.read(min(left, _BLOCK))
+        remaining = size
+        while remaining:
+            block = file.read(min(remaining, _BLOCK))
             if not block:
                 break
             digest.update(block)
-            left -= len(block)
+            remaining -= len(block)
     return digest.digest()
 
 
@@ -121,14 +121,14 @@ def read(path: Path) -> tuple[dict[str, Array], npt.NDArray[np.int64], dict[str,
     try:
         with h5py.File(path, "r") as file:
             attributes = {name: _attribute(file, name) for name in list(file.attrs)}
-            places = {name: _series(file, name, size) for name in list(file)}
-            times = places.pop("time")
-            memory.require(8 * len(times) * len(places), f"{path}: the series", "use a part of the file")
+            offsets = {name: _series(file, name, size) for name in list(file)}
+            times = offsets.pop("time")
+            memory.require(8 * len(times) * len(offsets), f"{path}: the series", "use a part of the file")
             stamps = _nanoseconds(times[()], str(_attribute(times, "units")))
             series = {
-                name: np.asarray(place[()], dtype=np.float64)
-                for name, place in places.items()
-                if name != "local_time" and len(place) == len(times)
+                name: np.asarray(offset[()], dtype=np.float64)
+                for name, offset in offsets.items()
+                if name != "local_time" and len(offset) == len(times)
             }
     except RuntimeError as error:  # of the HDF5 library
         raise ValueError(str(error)) from None
@@ -137,11 +137,11 @@ def read(path: Path) -> tuple[dict[str, Array], npt.NDArray[np.int64], dict[str,
 
 def _attribute(part: Any, name: str) -> Any:
     """A text or a number; None for all else, such as references."""
-    place = part.attrs.get_id(name)
+    attribute_id = part.attrs.get_id(name)
     if (
-        place.dtype.kind not in "iufSO"
-        or place.get_storage_size() > _LARGEST
-        or place.shape not in ((), (1,))
+        attribute_id.dtype.kind not in "iufSO"
+        or attribute_id.get_storage_size() > _LARGEST
+        or attribute_id.shape not in ((), (1,))
     ):
         return None
     value = part.attrs[name]

@@ -65,7 +65,7 @@ class Readings:
         ndarray, shape (rows, records)
             Derivative of the quantity by each record.
         """
-        found = np.zeros_like(records)
+        of_records = np.zeros_like(records)
         for k, column in enumerate(self.columns):
-            found[:, column] += weights[:, k]
-        return found
+            of_records[:, column] += weights[:, k]
+        return of_records

@@ -41,9 +41,9 @@ class Times:
         seconds = epoch_seconds(index[[0, min(1, len(index) - 1), -1]])
         zone = index.tz
         assert zone is not None, "times of records have a zone"  # noqa: S101 (a defect, not an input)
-        made = cls(float(seconds[0]), float(seconds[2]), float(seconds[1] - seconds[0]), zone)
-        made.__dict__["index"] = index
-        return made
+        times = cls(float(seconds[0]), float(seconds[2]), float(seconds[1] - seconds[0]), zone)
+        times.__dict__["index"] = index
+        return times
 
     @property
     def start(self) -> datetime:
@@ -67,18 +67,18 @@ class Times:
     @property
     def timezone(self) -> str:
         """Name of the zone of the local clock."""
-        made = self.__dict__.get("index")
-        return str(self.zone if made is None else made.tz)
+        index = self.__dict__.get("index")
+        return str(self.zone if index is None else index.tz)
 
     @property
     def rows(self) -> int:
         """Number of times."""
-        made = self.__dict__.get("index")
-        return len(made) if made is not None else round((self.last - self.first) / self.step) + 1
+        index = self.__dict__.get("index")
+        return len(index) if index is not None else round((self.last - self.first) / self.step) + 1
 
     def nanoseconds(self) -> npt.NDArray[np.int64]:
         """Times since 1970-01-01 UTC, shape (rows,). [ns]"""
-        if self._whole:
+        if self._whole_microseconds:
             first, step = round(self.first * 1e6), round(self.step * 1e6)
             return (first + step * np.arange(self.rows, dtype=np.int64)) * 1000
         return _nanoseconds(self.index.tz_convert("UTC"))
@@ -86,15 +86,15 @@ class Times:
     def clock_nanoseconds(self) -> npt.NDArray[np.int64]:
         """Readings of the local clock since its 1970-01-01, shape (rows,). [ns]"""
         offset = self.zone.utcoffset(None)
-        if offset is None or not self._whole:  # a zone whose clocks change
+        if offset is None or not self._whole_microseconds:  # a zone whose clocks change
             return _nanoseconds(self.index)
         return self.nanoseconds() + round(offset.total_seconds() * 1e6) * 1000
 
     @property
-    def _whole(self) -> bool:
+    def _whole_microseconds(self) -> bool:
         """Whether the times are known without their index: at equal distances of whole microseconds."""
         micro = (self.first * 1e6, self.step * 1e6)
-        return "index" not in self.__dict__ and all(one == round(one) for one in micro)
+        return "index" not in self.__dict__ and all(moment == round(moment) for moment in micro)
 
     @property
     def since_start(self) -> npt.NDArray[np.float64]:
