@@ -17,16 +17,17 @@ EMPTY_WORDS = frozenset([
     "rest", "lit",
 ])  # fmt: skip
 
-#: Packages without such names; add a package when it is free of them.
+#: Packages and rooms without such names; add one when it is free of them.
 PACKAGES = (
     "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
     "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
-    "_io",
+    "_io", "building/checks", "building/files", "building/geometry", "building/outputs",
+    "building/parameters", "building/parts/air", "building/parts/openings", "building/quantities",
 )  # fmt: skip
 
 
 #: Names that users or files have: a key of a record, a key of YAML.
-PUBLIC = {("simulation/checks/judgement.py", "place")}
+PUBLIC = {("simulation/checks/judgement.py", "place"), ("building/parts/air/schedule.py", "at")}
 
 
 def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:

@@ -109,7 +109,7 @@ def _describe(properties: dict[str, Any], parts: dict[str, Any]) -> None:
     for entry in properties.values():
         if isinstance(entry, dict) and "description" not in entry:
             held = (entry, *entry.get("anyOf", ()), entry.get("items", {}))
-            if text := next(filter(None, (_text(one, parts) for one in held)), None):
+            if text := next(filter(None, (_text(option, parts) for option in held)), None):
                 entry["description"] = text
 
 

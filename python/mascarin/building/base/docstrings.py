@@ -44,17 +44,17 @@ def documented(text: str, fields: Mapping[str, FieldInfo]) -> str:
         The fields.
     """
     text = inspect.cleandoc(text)
-    found = _SECTION.search(text)
-    summary, rest = (text[: found.start()].rstrip(), text[found.start() :]) if found else (text, "")
+    heading = _SECTION.search(text)
+    summary, sections = (text[: heading.start()].rstrip(), text[heading.start() :]) if heading else (text, "")
     lines = [line for key, field in fields.items() if key != "kind" for line in _entry(key, field)]
     section = "\n".join(["Parameters", "----------", *lines]) if lines else ""
-    return "\n\n".join(piece for piece in (summary, section, rest) if piece)
+    return "\n\n".join(piece for piece in (summary, section, sections) if piece)
 
 
 def summary_of(text: str) -> str:
     """Docstring without its sections."""
-    found = re.search(r"^ *[A-Z][A-Za-z ]+\n *-{3,}$", text, re.MULTILINE)
-    return (text[: found.start()] if found else text).strip()
+    section = re.search(r"^ *[A-Z][A-Za-z ]+\n *-{3,}$", text, re.MULTILINE)
+    return (text[: section.start()] if section else text).strip()
 
 
 def _entry(key: str, field: FieldInfo) -> list[str]:

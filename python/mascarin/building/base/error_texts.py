@@ -21,9 +21,9 @@ class Line(int):
     file: str
 
     def __new__(cls, number: int, file: str) -> Line:  # noqa: D102
-        made = super().__new__(cls, number)
-        made.file = file
-        return made
+        line = super().__new__(cls, number)
+        line.file = file
+        return line
 
 
 def explained(
@@ -47,17 +47,17 @@ def explained(
     InputError
         To be raised by the caller.
     """
-    found = sorted(
+    entries = sorted(
         (
-            (*_where(place, lines or {}, name), _column(place, lines or {}, fault.get("ctx", {}))),
-            _dotted(place, plain),
+            (*_where(path, lines or {}, name), _column(path, lines or {}, fault.get("ctx", {}))),
+            _dotted(path, plain),
             _sentences(dict(fault)),
         )
         for fault in error.errors(include_url=False)
-        for place in [_place(fault["loc"], plain)]
+        for path in [_path_of(fault["loc"], plain)]
     )
     blocks = []
-    for (file, line, column), dotted, sentences in dict.fromkeys(found):
+    for (file, line, column), dotted, sentences in dict.fromkeys(entries):
         where = f"{file}:{line}" if line else file
         where += f":{column}" if column else ""
         blocks.append(f"{where}: {dotted or 'the whole description'}\n{sentences}")
@@ -74,25 +74,25 @@ def _sentences(fault: dict[str, Any]) -> str:
     return "\n".join(parts)
 
 
-def _place(location: Place, plain: Any) -> Place:
+def _path_of(location: Place, plain: Any) -> Place:
     """Remove from pydantic's location the steps that are not in the file, such as the kinds of a union."""
-    place: list[str | int] = []
+    path: list[str | int] = []
     # An error in the whole description has an empty location.
     for step, following in zip(location, (*location, None)[1:], strict=True):
         # The kind of a union may have the name of one of its lists (panes).
         kind = isinstance(plain, Mapping) and plain.get("kind") == step and isinstance(following, str)
         if not kind and holds(plain, step):
-            place.append(step)
+            path.append(step)
             plain = _written(plain[step])
     last = location[-1] if location else None
-    if isinstance(last, str) and "]" not in last and _lacks(plain, last, place):
-        place.append(last)
-    return tuple(place)
+    if isinstance(last, str) and "]" not in last and _lacks(plain, last, path):
+        path.append(last)
+    return tuple(path)
 
 
-def _lacks(plain: Any, key: str, place: list[str | int]) -> bool:
+def _lacks(plain: Any, key: str, path: list[str | int]) -> bool:
     """Whether the last step of a location is a missing key, and not the kind of the part."""
-    return isinstance(plain, Mapping) and place[-1:] != [key] and key not in _kinds(plain)
+    return isinstance(plain, Mapping) and path[-1:] != [key] and key not in _kinds(plain)
 
 
 def _kinds(plain: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -117,25 +117,25 @@ def _written(plain: Any) -> Any:
     return {name: getattr(plain, name) for name in names}
 
 
-def _where(place: Place, lines: Mapping[Place, int], name: str) -> tuple[str, int]:
+def _where(path: Place, lines: Mapping[Place, int], name: str) -> tuple[str, int]:
     """File and line of a place, else of the nearest part around it; 0 where there is none."""
-    for length in range(len(place), -1, -1):
-        line = lines.get(place[:length])
+    for length in range(len(path), -1, -1):
+        line = lines.get(path[:length])
         if line is not None:
             return getattr(line, "file", name), int(line)
     return name, 0
 
 
-def _column(place: Place, lines: Mapping[Place, int], context: Mapping[str, Any]) -> int:
+def _column(path: Place, lines: Mapping[Place, int], context: Mapping[str, Any]) -> int:
     """Column of a fault inside of a text of one line in the file; 0 where it is not known."""
-    first = lines.get((*place, COLUMN), 0)
+    first = lines.get((*path, COLUMN), 0)
     return int(first) + context["column"] - 1 if first and context.get("text_line") == 1 else 0
 
 
-def _dotted(place: Place, plain: Any) -> str:
+def _dotted(path: Place, plain: Any) -> str:
     """Write a place as the path of a parameter, with the names of layers."""
     steps = []
-    for step in place:
+    for step in path:
         plain = _written(plain[step]) if holds(plain, step) else None
         named = isinstance(step, int) and isinstance(plain, Mapping)
         steps.append(str((plain.get("name") or plain.get("material") or step) if named else step))

@@ -14,21 +14,21 @@ Leaf = tuple[str, Number, str]
 
 def leaves(part: Any, path: str = "", source: str | None = None) -> list[Leaf]:
     """All numbers of a part: path, number, source."""
-    found: list[Leaf] = []
-    _add(found, part, path, source)
-    return found
+    entries: list[Leaf] = []
+    _add(entries, part, path, source)
+    return entries
 
 
-def _add(found: list[Leaf], part: Any, path: str, source: str | None) -> None:
+def _add(entries: list[Leaf], part: Any, path: str, source: str | None) -> None:
     if isinstance(part, Number):
-        found.append((path, part, part.source or source or ""))
+        entries.append((path, part, part.source or source or ""))
         return
     if isinstance(part, Part):
         source = getattr(part, "source", None) or source
     for key, value in steps(part):
         # Most fields are empty, or words.
         if value is not None and not isinstance(value, str):
-            _add(found, value, f"{path}.{key}" if path else str(key), source)
+            _add(entries, value, f"{path}.{key}" if path else str(key), source)
 
 
 def steps(part: Any) -> Iterator[tuple[str, Any]]:

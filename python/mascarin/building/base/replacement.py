@@ -52,14 +52,14 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
         The path leads through a part that was replaced by a short form.
     """
     holder: Any = plain
-    at: Any = part
+    holder_or_leaf: Any = part
     for step in path[:-1]:
-        below = piece_at(at, [step])
+        below = piece_at(holder_or_leaf, [step])
         key = _index(holder, step)
         if key is None:
-            holder[step] = _kind_of(below, beside=at)
+            holder[step] = _kind_of(below, beside=holder_or_leaf)
             key = step
-        holder, at = holder[key], below
+        holder, holder_or_leaf = holder[key], below
         if not isinstance(holder, dict | list):
             raise InputError(
                 f"{'.'.join(path)}: found {holder!r} at '{step}', which replaces the whole part; expected a "
@@ -70,7 +70,7 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
     if value is None and isinstance(holder, dict):
         holder.pop(key, None)
         return
-    before = piece_at(at, [path[-1]])
+    before = piece_at(holder_or_leaf, [path[-1]])
     if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
         value = Number(value, range=before.range, quantity=before.quantity)
     holder[key] = value

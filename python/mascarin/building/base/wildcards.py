@@ -40,32 +40,32 @@ def matching(pattern: str, paths: Iterable[str], *, parts: bool = False) -> list
     >>> matching("zones.*.volume", ["zones.hall.volume", "zones.hall.height", "zones.attic.volume"])
     ['zones.hall.volume', 'zones.attic.volume']
     """
-    wanted, known = pattern.split("."), [path.split(".") for path in paths]
-    there = [steps[: len(wanted)] if parts else steps for steps in known]
-    found = [".".join(steps) for steps in there if _fits(steps, wanted)]
-    if not found:
+    pattern_steps, all_steps = pattern.split("."), [path.split(".") for path in paths]
+    candidates = [steps[: len(pattern_steps)] if parts else steps for steps in all_steps]
+    matches = [".".join(steps) for steps in candidates if _fits(steps, pattern_steps)]
+    if not matches:
         raise InputError(
             f"{pattern}: found nothing in the building that matches; expected paths as listed by 'mascarin "
-            f"parameters'. {did_you_mean(pattern, _nearest(wanted, known))}".rstrip()
+            f"parameters'. {did_you_mean(pattern, _nearest(pattern_steps, all_steps))}".rstrip()
         )
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(matches))
 
 
-def _fits(steps: list[str], wanted: list[str]) -> bool:
-    return len(steps) == len(wanted) and all(map(_same, steps, wanted))
+def _fits(steps: list[str], pattern_steps: list[str]) -> bool:
+    return len(steps) == len(pattern_steps) and all(map(_same, steps, pattern_steps))
 
 
-def _same(step: str, wanted: str) -> bool:
+def _same(step: str, pattern_step: str) -> bool:
     # Names of layers and materials may have brackets, which fnmatch would read as a choice of letters.
-    return fnmatchcase(step, wanted.replace("[", "[[]"))
+    return fnmatchcase(step, pattern_step.replace("[", "[[]"))
 
 
-def _nearest(wanted: list[str], known: list[list[str]]) -> set[str]:
+def _nearest(pattern_steps: list[str], all_steps: list[list[str]]) -> set[str]:
     """All paths with the stars of a pattern where they have the names that these stand for."""
     return {
         ".".join(
             star if is_pattern(star) and _same(step, star) else step
-            for step, star in zip(steps, [*wanted, *[""] * len(steps)], strict=False)
+            for step, star in zip(steps, [*pattern_steps, *[""] * len(steps)], strict=False)
         )
-        for steps in known
+        for steps in all_steps
     }

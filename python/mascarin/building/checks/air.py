@@ -28,16 +28,16 @@ ZoneFlowAt = tuple[str, "Driven", float]
 
 def flows_of_zones(building: Description) -> dict[str, list[ZoneFlowAt]]:
     """Flows that fans drive, by the zones that they enter and leave; zones without any are left out."""
-    found: dict[str, list[ZoneFlowAt]] = {}
+    flows: dict[str, list[ZoneFlowAt]] = {}
     for name, unit in building.ventilation_units.items():
         for section, sign in (("supply", 1.0), ("exhaust", -1.0)):
             for zone, flow in getattr(unit, section).items():
-                found.setdefault(zone, []).append((f"ventilation_units.{name}.{section}.{zone}", flow, sign))
+                flows.setdefault(zone, []).append((f"ventilation_units.{name}.{section}.{zone}", flow, sign))
     for name, path in building.air_paths.items():
         if path.one_way:
             for zone, sign in zip(path.between, (-1.0, 1.0), strict=True):
-                found.setdefault(zone, []).append((f"air_paths.{name}", path, sign))
-    return found
+                flows.setdefault(zone, []).append((f"air_paths.{name}", path, sign))
+    return flows
 
 
 def imbalance(flows: Mapping[str, float]) -> str | None:
@@ -93,10 +93,10 @@ def vent_faults(building: Description) -> Iterator[InitErrorDetails]:
     for name, vent in building.vents.items():
         if vent.surface is None:
             continue
-        surface, at = building.surfaces[vent.surface], ("vents", name, "surface")
+        surface, location = building.surfaces[vent.surface], ("vents", name, "surface")
         if not surface.outside.outdoors or surface.inside.zone != vent.zone:
             yield fault(
-                at,
+                location,
                 f"'{vent.surface}' between {surface.inside.in_words()} and {surface.outside.in_words()}",
                 f"a surface between zone '{vent.zone}' and outdoors",
                 "Name another surface, or give 'azimuth:' in its place.",
@@ -134,14 +134,14 @@ def _bridges(building: Description, zone: str) -> Iterator[InitErrorDetails]:
 
 
 def _solar_to_air(building: Description, zone: str) -> Iterator[InitErrorDetails]:
-    at = ("zones", zone, "solar_to_air")
+    location = ("zones", zone, "solar_to_air")
     names = {name for name, _ in building.connections.sides(zone)}
     walls = [window.surface for window in building.windows.values() if window.surface in names]
     if not walls:
-        yield fault(at, "a zone without windows", "a window through which the sun enters", "Remove it.")
+        yield fault(location, "a zone without windows", "a window through which the sun enters", "Remove it.")
     if any(not building.surfaces[wall].outside.outdoors for wall in walls):
         yield fault(
-            at,
+            location,
             "a zone with a window to another zone",
             "windows to outdoors only",
             "Remove 'solar_to_air:', or describe that window as an opaque surface.",

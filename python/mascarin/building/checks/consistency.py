@@ -106,16 +106,19 @@ def _one_namespace(building: Description) -> Faults:
 def _layers_have_what_they_need(building: Description) -> Faults:
     for name, construction in building.constructions.items():
         for index, layer in enumerate(construction.layers):
-            at = ("constructions", name, "layers", index)
+            location = ("constructions", name, "layers", index)
             bare = isinstance(building.materials[layer.material], Resistance)
             if not bare and layer.thickness is None:
                 yield fault(
-                    (*at, "thickness"), "nothing", "thickness of the layer, above 0 [m]", "Add 'thickness:'."
+                    (*location, "thickness"),
+                    "nothing",
+                    "thickness of the layer, above 0 [m]",
+                    "Add 'thickness:'.",
                 )
             for key in ("thickness", "nodes"):
                 if bare and getattr(layer, key) is not None:
                     yield fault(
-                        (*at, key),
+                        (*location, key),
                         f"'{key}' of '{layer.material}'",
                         "none: the material is a resistance",
                         f"Remove '{key}:', or give the material conductivity, density and specific_heat.",
@@ -161,13 +164,13 @@ def _sides(building: Description) -> Iterator[tuple[tuple[str, str, str], Side]]
 
 
 def _emissivities_where_exchange_is(building: Description) -> Faults:
-    for at, side in _sides(building):
+    for location, side in _sides(building):
         if side.zone is None:
             continue
         exchange = not isinstance(building.zones[side.zone].longwave, NoLongwave)
         if exchange and side.emissivity is None:
             yield fault(
-                (*at, "emissivity"),
+                (*location, "emissivity"),
                 "nothing",
                 f"long-wave emissivity, above 0 and at most 1 [-]: zone '{side.zone}' exchanges radiation",
                 f"Add 'emissivity:', or write 'longwave: none' in zone '{side.zone}'.",
@@ -175,17 +178,17 @@ def _emissivities_where_exchange_is(building: Description) -> Faults:
 
 
 def _convection_suits_its_side(building: Description) -> Faults:
-    for at, side in _sides(building):
+    for location, side in _sides(building):
         if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground or side.scheduled):
             yield fault(
-                (*at, "convection"),
+                (*location, "convection"),
                 f"'{side.convection.kind}' on a side facing {side.faces}",
                 "a coefficient for a given temperature: a number, linear_wind, alamdari_hammond, power",
                 "Write the surface heat transfer coefficient to that air.",
             )
         if isinstance(side.convection, Doe2) and not side.outdoors:
             yield fault(
-                (*at, "convection"),
+                (*location, "convection"),
                 f"'doe2' on a side facing {side.faces}",
                 "a coefficient without wind",
                 "Write 'tarp', which has the same buoyant part, or another coefficient without wind.",
@@ -194,7 +197,7 @@ def _convection_suits_its_side(building: Description) -> Faults:
             for key in ("roughness", "perimeter"):
                 if getattr(side.convection, key) is not None:
                     yield fault(
-                        (*at, "convection", key),
+                        (*location, "convection", key),
                         f"'{key}' on a side facing {side.faces}",
                         "none: only the forced part by wind uses it",
                         f"Remove '{key}:'.",
@@ -216,10 +219,10 @@ def _sensors_inside_walls(building: Description) -> Faults:
 
 def _columns_have_one_meaning(building: Description) -> Faults:
     temperatures = {column for _, side in _sides(building) for column in side.measured_columns}
-    for at, side in _sides(building):
+    for location, side in _sides(building):
         if side.irradiance is not None and side.irradiance in temperatures:
             yield fault(
-                (*at, "irradiance"),
+                (*location, "irradiance"),
                 f"'{side.irradiance}', which is a measured temperature elsewhere",
                 "a column of irradiance [W/m2]",
                 "Name the right column.",
@@ -227,7 +230,7 @@ def _columns_have_one_meaning(building: Description) -> Faults:
         film = side.convection
         if isinstance(film, Measured) and film.column in temperatures | {side.irradiance}:
             yield fault(
-                (*at, "convection", "column"),
+                (*location, "convection", "column"),
                 f"'{film.column}', which has another meaning elsewhere",
                 "a column of a heat transfer coefficient [W/(m2 K)]",
                 "Name the right column.",
@@ -236,29 +239,32 @@ def _columns_have_one_meaning(building: Description) -> Faults:
 
 def _view_factors_sum_to_one(building: Description) -> Faults:
     for zone in building.zones:
-        given = building.zones[zone].view_factors
-        if given is None:
+        view_factors = building.zones[zone].view_factors
+        if view_factors is None:
             continue
         names = surface_names(building.connections.of(zone))
-        for row, factors in given.items():
-            at = ("zones", zone, "view_factors", row)
+        for row, factors in view_factors.items():
+            location = ("zones", zone, "view_factors", row)
             if row not in names:
-                yield fault(at, f"'{row}'", "a surface of this zone", did_you_mean(row, names))
+                yield fault(location, f"'{row}'", "a surface of this zone", did_you_mean(row, names))
             for column in factors:
                 if column not in names:
                     yield fault(
-                        (*at, column), f"'{column}'", "a surface of this zone", did_you_mean(column, names)
+                        (*location, column),
+                        f"'{column}'",
+                        "a surface of this zone",
+                        did_you_mean(column, names),
                     )
             total = sum(factors.values())
             if abs(total - 1.0) > VIEW_FACTOR_TOLERANCE:
                 yield fault(
-                    at,
+                    location,
                     f"a sum of {total:.3f}",
                     "view factors from one surface that sum to 1",
                     "Complete the row.",
                 )
         for name in names:
-            if name not in given:
+            if name not in view_factors:
                 yield fault(
                     ("zones", zone, "view_factors"),
                     f"no row '{name}'",
@@ -269,15 +275,15 @@ def _view_factors_sum_to_one(building: Description) -> Faults:
 
 def _sun_can_be_absorbed(building: Description) -> Faults:
     for zone, definition in building.zones.items():
-        seen = building.connections.of(zone)
-        lit = any(item.window is not None for item in seen)
+        surfaces = building.connections.of(zone)
+        has_glass = any(item.window is not None for item in surfaces)
         sun = definition.sun
         if isinstance(sun, GivenSun):
-            names = [item.name for item in seen if item.surface is not None]
-            for part, at in ((sun, ("sun",)), (sun.diffuse, ("sun", "diffuse"))):
+            names = [item.name for item in surfaces if item.surface is not None]
+            for part, keys in ((sun, ("sun",)), (sun.diffuse, ("sun", "diffuse"))):
                 if part is not None:
-                    yield from _fractions_sum_to_one(("zones", zone, *at), part, names)
-        if sun is not None and not lit:
+                    yield from _fractions_sum_to_one(("zones", zone, *keys), part, names)
+        if sun is not None and not has_glass:
             yield fault(
                 ("zones", zone, "sun"),
                 "a zone without windows",
@@ -285,17 +291,17 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
                 "Remove 'sun:'.",
             )
         if isinstance(sun, TracedSun):
-            yield from _rays_end_on_surfaces(zone, seen)
-        if isinstance(sun, FloorSun) and not any(floors(seen)):
+            yield from _rays_end_on_surfaces(zone, surfaces)
+        if isinstance(sun, FloorSun) and not any(floors(surfaces)):
             yield fault(
                 ("zones", zone, "sun"),
                 "floor, in a zone without a floor",
                 "a surface that faces up into the zone, within 30 deg",
                 "Correct 'tilt:' of the floor (180 deg for its inner side up), or write 'sun: area'.",
             )
-        if not lit or isinstance(sun, GivenSun):
+        if not has_glass or isinstance(sun, GivenSun):
             continue
-        for item in seen:
+        for item in surfaces:
             if item.surface is not None and getattr(item.surface, item.side).absorptance is None:
                 yield fault(
                     ("surfaces", item.name, item.side, "absorptance"),
@@ -305,8 +311,8 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
                 )
 
 
-def _rays_end_on_surfaces(zone: str, seen: Sequence[ZoneSurface]) -> Faults:
-    bare = ", ".join(f"'{item.name}'" for item in seen if item.polygon is None)
+def _rays_end_on_surfaces(zone: str, surfaces: Sequence[ZoneSurface]) -> Faults:
+    bare = ", ".join(f"'{item.name}'" for item in surfaces if item.polygon is None)
     if bare:
         yield fault(
             ("zones", zone, "sun"),
@@ -318,14 +324,14 @@ def _rays_end_on_surfaces(zone: str, seen: Sequence[ZoneSurface]) -> Faults:
 
 def shaded(building: Description) -> tuple[list[str], list[str]]:
     """Outdoor surfaces in the sun on which shades act, and those without vertices, on which they cannot."""
-    found: tuple[list[str], list[str]] = ([], [])
+    lists: tuple[list[str], list[str]] = ([], [])
     for name, surface in building.surfaces.items():
         if any(side.exposed.sun for side in surface.sides):
-            found[surface.vertices is None].append(name)
+            lists[surface.vertices is None].append(name)
     for name, window in building.windows.items():
         if building.surfaces[window.surface].outside.outdoors:
-            found[window.vertices is None].append(name)
-    return found
+            lists[window.vertices is None].append(name)
+    return lists
 
 
 def _shades_can_act(building: Description) -> Faults:
@@ -341,25 +347,28 @@ def _shades_can_act(building: Description) -> Faults:
         )
 
 
-def _fractions_sum_to_one(at: Location, sun: GivenSun | SunShares, names: list[str]) -> Faults:
+def _fractions_sum_to_one(location: Location, sun: GivenSun | SunShares, names: list[str]) -> Faults:
     for name in sun.shares:
         if name not in names:
             yield fault(
-                (*at, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
+                (*location, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
             )
     total = float(sum(sun.shares.values()) + sun.lost)
     if abs(total - 1.0) > FRACTION_TOLERANCE:
         yield fault(
-            at, f"fractions that sum to {total:.3f}", "fractions that, with lost, sum to 1", "Complete them."
+            location,
+            f"fractions that sum to {total:.3f}",
+            "fractions that, with lost, sum to 1",
+            "Complete them.",
         )
 
 
 def _schedules_suit_their_use(building: Description) -> Faults:
-    for name, at, needed in schedule_uses(building):
+    for name, location, needed in schedule_uses(building):
         kind = building.schedules[name].kind
         if kind != needed:
             yield fault(
-                at,
+                location,
                 f"'{name}', a schedule of kind {kind}",
                 f"a schedule of kind {needed}",
                 f"Name another one, or write 'kind: {needed}' under 'schedules.{name}:'.",
@@ -372,9 +381,9 @@ def _set_points_apart(building: Description) -> Faults:
         if len(zone.loads) < 2:
             continue
         points = [zone.loads[which].setpoint for which in ("heating", "cooling")]
-        found = first_crossing(building, *((point.temperature, point.schedule) for point in points))
-        if found is not None:
-            when, warm, cold = found
+        crossing = first_crossing(building, *((point.temperature, point.schedule) for point in points))
+        if crossing is not None:
+            when, warm, cold = crossing
             yield fault(
                 ("zones", name, "heating", "setpoint"),
                 f"heating to {warm:g} degC, above cooling to {cold:g} degC, on {when}",

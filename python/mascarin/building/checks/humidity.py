@@ -49,19 +49,19 @@ def _materials_hold_moisture(building: Description, humidity: Humidity) -> Fault
 
 def _units_can_recover(building: Description, humidity: Humidity) -> Faults:
     for name in humidity.recovery:
-        at = ("humidity", "recovery", name)
+        location = ("humidity", "recovery", name)
         unit = building.ventilation_units.get(name)
         if unit is None:
             hint = did_you_mean(name, building.ventilation_units)
             yield fault(
-                at,
+                location,
                 f"'{name}'",
                 "the name of a unit under 'ventilation_units:'",
                 hint or "Add the unit there.",
             )
         elif not unit.supply or not unit.exhaust:
             yield fault(
-                at,
+                location,
                 "recovery of vapour in a unit that does not both supply and extract air",
                 "a unit with supply and exhaust",
                 "Remove it, or add the other flow.",
@@ -69,33 +69,33 @@ def _units_can_recover(building: Description, humidity: Humidity) -> Faults:
 
 
 def _plants_can_act(building: Description, name: str, zone: ZoneHumidity) -> Faults:
-    at = ("humidity", "zones", name)
+    location = ("humidity", "zones", name)
     if isinstance(zone.drying, CoolingCoil) and building.zones[name].cooling is None:
         yield fault(
-            (*at, "drying"),
+            (*location, "drying"),
             "a cooling coil in a zone without cooling",
             "cooling of the zone",
             f"Add 'zones.{name}.cooling:', or dry to a set point: 'drying: {{relative_humidity: 0.6}}'.",
         )
     for which, plant in zone.plants.items():
-        yield from _schedules_are_humidities(building, (*at, which), plant)
+        yield from _schedules_are_humidities(building, (*location, which), plant)
     dry, wet = zone.plants.get("drying"), zone.plants.get("humidifying")
     if dry is None or wet is None or dry.setpoint[0] != wet.setpoint[0]:
         return
     key, high, low = dry.setpoint[0], dry.setpoint[1], wet.setpoint[1]
-    found = first_crossing(building, (low.constant, low.schedule), (high.constant, high.schedule))
-    if found is not None:
-        when, least, most = found
+    crossing = first_crossing(building, (low.constant, low.schedule), (high.constant, high.schedule))
+    if crossing is not None:
+        when, least, most = crossing
         always = low.constant is not None and high.constant is not None
         yield fault(
-            (*at, "humidifying", key),
+            (*location, "humidifying", key),
             f"{least:g}, above {most:g} of drying{'' if always else f', on {when}'}",
             "a set point of humidifying that is not above that of drying",
             "Exchange the two, or leave one out." if always else "Lower the one or raise the other.",
         )
 
 
-def _schedules_are_humidities(building: Description, at: tuple[str, ...], plant: Humidistat) -> Faults:
+def _schedules_are_humidities(building: Description, location: tuple[str, ...], plant: Humidistat) -> Faults:
     """Values of schedules that are no humidity of the kind, or dry the air to nothing."""
     key, setpoint = plant.setpoint
     if setpoint.schedule is None:
@@ -104,12 +104,12 @@ def _schedules_are_humidities(building: Description, at: tuple[str, ...], plant:
     quantity = quantity_of(type(setpoint).model_fields["constant"])
     if schedule.kind != setpoint.SCHEDULED or quantity is None:
         return  # the kind is compared with the use of all schedules
-    most, drying = quantity.limits.upper, at[-1] == "drying"
+    most, drying = quantity.limits.upper, location[-1] == "drying"
     values = [float(number) for _, number, _ in leaves(schedule)]
     wrong = [value for value in values if value > most or (drying and value <= 0.0)]
     if wrong:
         yield fault(
-            (*at, key, "schedule"),
+            (*location, key, "schedule"),
             f"'{setpoint.schedule}' with {wrong[0]:g}",
             f"values {'above' if drying else 'from'} 0, up to {most:g} [{quantity.unit}]",
             "Correct them. To turn the plant off, give its capacity a schedule: 'schedule:' beside it.",
@@ -151,8 +151,8 @@ def humidity_warnings(building: Description) -> Iterator[str]:
             "swings more. Add 'humidity.materials: {NAME: gypsum}' (or plaster, concrete, brick, wood, "
             "plywood, carpet, or own numbers), or 'humidity.surfaces: {NAME: {sealed: true}}'"
         )
-    seen = {side.material for side in sides}
-    hidden = [name for name in humidity.materials if name not in seen]
+    reached = {side.material for side in sides}
+    hidden = [name for name in humidity.materials if name not in reached]
     if hidden:
         yield (
             f"humidity.materials: {_listed(hidden)} is at no surface in a zone; only the material at the "
@@ -160,7 +160,7 @@ def humidity_warnings(building: Description) -> Iterator[str]:
         )
     taking = {side.surface for side in sides if side.takes_up}
     painted = [
-        name for name, one in humidity.surfaces.items() if one.paint is not None and name not in taking
+        name for name, entry in humidity.surfaces.items() if entry.paint is not None and name not in taking
     ]
     if painted:
         yield f"humidity.surfaces: paint of {_listed(painted)} has no effect: the surface takes up no vapour"

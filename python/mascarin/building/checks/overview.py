@@ -104,10 +104,10 @@ def _zones(building: Description) -> Iterator[str]:
             for surface, _ in building.connections.sides(name)
             if not building.surfaces[surface].internal_mass
         ]
-        total = sum(own * u_value(building, surface) for own, surface in shell)
-        glazed = [one for wall in names for one in building.connections.windows_in(wall).values()]
+        total = sum(net_area * u_value(building, surface) for net_area, surface in shell)
+        glazed = [pane for wall in names for pane in building.connections.windows_in(wall).values()]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
-        meant = sum(own * described_u_value(building, surface) for own, surface in shell)
+        meant = sum(net_area * described_u_value(building, surface) for net_area, surface in shell)
         meant += sum(_described_ua(building, window) for window in glazed)
         heavy = density(building.site)
         air = zone.infiltration.constant * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
@@ -364,8 +364,8 @@ def assumptions(building: Description) -> Iterator[str]:
     if any(not side.irradiance for side in outdoors) and "diffuse" not in building.site.model_fields_set:
         yield "site.diffuse: perez, because none is given"
     for name in building.zones:
-        seen = building.connections.of(name)
-        if any(item.window is not None for item in seen) and building.zones[name].sun is None:
+        surfaces = building.connections.of(name)
+        if any(item.window is not None for item in surfaces) and building.zones[name].sun is None:
             yield f"zones.{name}.sun: area (solar radiation over all surfaces, part of it lost through glass)"
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: view factors by areas, zero between surfaces in one plane"

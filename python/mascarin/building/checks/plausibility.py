@@ -112,11 +112,11 @@ def _implausible_enclosures(building: Description) -> Iterator[str]:
         if not areas:
             continue
         largest = max(areas, key=lambda surface: areas[surface])
-        others = sum(areas.values()) - areas[largest]
-        if areas[largest] > others * (1.0 + 1e-6):
+        other_areas = sum(areas.values()) - areas[largest]
+        if areas[largest] > other_areas * (1.0 + 1e-6):
             yield (
                 f"zones.{name}: the surfaces cannot enclose it, {largest} has {areas[largest]:.2f} m2, all "
-                f"others together {others:.2f} m2: add the missing surfaces, correct the area, or split "
+                f"others together {other_areas:.2f} m2: add the missing surfaces, correct the area, or split "
                 f"{largest} if it represents several walls"
             )
 
@@ -131,16 +131,16 @@ def _implausible_volumes(building: Description) -> Iterator[str]:
                 f"zones.{name}: {area:.2f} m2 of surfaces cannot enclose {volume:g} m3 "
                 f"(a sphere needs {least:.2f} m2): surfaces are missing, or the volume is too large"
             )
-        given = zone.volume is None or not zone.volume.derived
-        seen = enclosure(building.connections.sides(name), building.surfaces) if given else None
-        if seen is not None:
+        is_stated = zone.volume is None or not zone.volume.derived
+        outline_list = enclosure(building.connections.sides(name), building.surfaces) if is_stated else None
+        if outline_list is not None:
             try:
-                drawn = enclosed_volume(seen)
+                enclosed = enclosed_volume(outline_list)
             except InputError as error:
                 yield f"zones.{name}: {error}"
                 continue
-            if abs(drawn - volume) > 0.02 * volume:
-                yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {drawn:.2f} m3"
+            if abs(enclosed - volume) > 0.02 * volume:
+                yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {enclosed:.2f} m3"
 
 
 def _unshaded(building: Description) -> Iterator[str]:
@@ -150,10 +150,10 @@ def _unshaded(building: Description) -> Iterator[str]:
 
 
 def _implausible_areas(building: Description) -> Iterator[str]:
-    for name, drawn in drawn_areas(building.surfaces).items():
+    for name, outline_area in drawn_areas(building.surfaces).items():
         area = float(building.surfaces[name].area or 0.0)
-        if abs(area - drawn) > 0.01 * drawn:
-            yield f"surfaces.{name}: {area:.2f} m2 are given, the vertices enclose {drawn:.2f} m2"
+        if abs(area - outline_area) > 0.01 * outline_area:
+            yield f"surfaces.{name}: {area:.2f} m2 are given, the vertices enclose {outline_area:.2f} m2"
 
 
 def _unlimited_radiation(building: Description) -> Iterator[str]:

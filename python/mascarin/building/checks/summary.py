@@ -29,7 +29,7 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         Its parameters.
     """
     site = building.site
-    found = [
+    lines = [
         (
             "site",
             f"{site.latitude:g} deg N, {site.longitude:g} deg E, {site.altitude:g} m, {site.timezone}",
@@ -51,21 +51,21 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         "shades",
         "sensors",
     )
-    found += [
+    lines += [
         (section, f"{len(getattr(building, section))}: {_listed(getattr(building, section))}")
         for section in sections
         if getattr(building, section)
     ]
-    found.append(("parameters", f"{len(parameters)}, {sum(p.varies for p in parameters)} of which may vary"))
-    found.append(("outputs", str(len(outputs(building)))))
-    return found
+    lines.append(("parameters", f"{len(parameters)}, {sum(p.varies for p in parameters)} of which may vary"))
+    lines.append(("outputs", str(len(outputs(building)))))
+    return lines
 
 
 def tables(building: Description, parameters: Sequence[Parameter]) -> dict[str, pd.DataFrame]:
     """Zones, surfaces, windows and parameters as tables by heading."""
     import pandas as pd
 
-    found = {
+    by_title = {
         "Zones": pd.DataFrame(
             {
                 "volume [m3]": {name: zone.volume for name, zone in building.zones.items()},
@@ -106,19 +106,19 @@ def tables(building: Description, parameters: Sequence[Parameter]) -> dict[str, 
             columns=["path", "value", "unit", "low", "high", "source"],
         ).set_index("path"),
     }
-    return {heading: table for heading, table in found.items() if len(table)}
+    return {heading: table for heading, table in by_title.items() if len(table)}
 
 
 def _listed(names: Iterable[str]) -> str:
-    every = list(names)
-    return ", ".join([*every[:_NAMES], *(["..."] if len(every) > _NAMES else [])])
+    all_names = list(names)
+    return ", ".join([*all_names[:_NAMES], *(["..."] if len(all_names) > _NAMES else [])])
 
 
 def _set_point(loads: IdealLoads | None) -> str:
     if loads is None:
         return ""
-    given = loads.setpoint.schedule
-    return f"{loads.setpoint.temperature:g}" if given is None else f"schedule {given}"
+    schedule = loads.setpoint.schedule
+    return f"{loads.setpoint.temperature:g}" if schedule is None else f"schedule {schedule}"
 
 
 def _facing(side: Side) -> str:

@@ -25,25 +25,25 @@ def windows_lie_in_walls(building: Description) -> Faults:
     """Errors of windows: in walls that take none, outside of their wall, over each other, too large."""
     if not building.windows:
         return
-    drawn, glazed = outlines(building.surfaces), window_outlines(building.windows)
-    outdoors = _Drawn(list(drawn.items()), list(glazed.items()))
+    wall_outlines, glazed = outlines(building.surfaces), window_outlines(building.windows)
+    outdoors = _Drawn(list(wall_outlines.items()), list(glazed.items()))
     for name, window in building.windows.items():
-        wall, at = building.surfaces[window.surface], ("windows", name)
+        wall, location = building.surfaces[window.surface], ("windows", name)
         if wall.inside.zone is None or not (wall.outside.outdoors or wall.outside.zone) or wall.internal_mass:
             yield fault(
-                (*at, "surface"),
+                (*location, "surface"),
                 f"'{window.surface}', from {wall.outside.faces} to {wall.inside.faces}",
                 "a wall from outdoors (outside) to a zone (inside), or between two zones",
                 "Put the window into such a wall.",
             )
         elif wall.outside.zone is not None:
-            yield from _between_zones(building, at, window)
+            yield from _between_zones(building, location, window)
         if window.vertices is None:
             continue
-        outline = drawn.get(window.surface)
+        outline = wall_outlines.get(window.surface)
         if outline is None:
             yield fault(
-                (*at, "vertices"),
+                (*location, "vertices"),
                 f"vertices in '{window.surface}', which has none",
                 "a wall with vertices",
                 "Give the wall vertices, or the window an area.",
@@ -51,10 +51,10 @@ def windows_lie_in_walls(building: Description) -> Faults:
             continue
         polygon = glazed[name]
         if not outline.contains(polygon):
-            yield fault((*at, "vertices"), *_outside_of_its_wall(polygon, outline))
+            yield fault((*location, "vertices"), *_outside_of_its_wall(polygon, outline))
         for other in outdoors.overlapping(polygon, outline):
             yield fault(
-                (*at, "vertices"),
+                (*location, "vertices"),
                 f"a window that overlaps '{other}'",
                 "windows, doors and walls that do not overlap",
                 "Move its corners.",
@@ -62,27 +62,27 @@ def windows_lie_in_walls(building: Description) -> Faults:
     yield from _walls_are_larger_than_their_windows(building, glazed)
 
 
-def _between_zones(building: Description, at: Location, window: Window) -> Faults:
+def _between_zones(building: Description, location: Location, window: Window) -> Faults:
     """What has no effect on a window between two zones, and what says nothing of it."""
     wall, outside = building.surfaces[window.surface], window.outside
     for key in ("sky_view", "height", "longwave", "irradiance", "behind_obstacles"):
         if getattr(outside, key) is not None:
             yield fault(
-                (*at, "outside", key),
+                (*location, "outside", key),
                 f"'{key}' of a window between two zones",
                 "only what has an effect on this side",
                 f"Remove '{key}:': it has no effect here.",
             )
     if window.blind is not None:
         yield fault(
-            (*at, "blind"),
+            (*location, "blind"),
             "a blind of a window between two zones",
             "a blind of a window to outdoors",
             "Remove it, or give the window a glazing with its properties.",
         )
     if isinstance(outside.convection, Doe2):
         yield fault(
-            (*at, "outside", "convection"),
+            (*location, "outside", "convection"),
             "'doe2' on a side facing a zone",
             "a coefficient without wind",
             "Write 'tarp' or 'iso15099', or another coefficient without wind.",
@@ -91,7 +91,7 @@ def _between_zones(building: Description, at: Location, window: Window) -> Fault
         if isinstance(building.zones[str(side.zone)].sun, GivenSun):
             yield fault(
                 ("zones", str(side.zone), "sun"),
-                f"given shares, which say nothing of the window '{at[-1]}' to another zone",
+                f"given shares, which say nothing of the window '{location[-1]}' to another zone",
                 "area, floor or geometry",
                 "Write 'sun: area' or another model that finds the sun on this window.",
             )
@@ -99,19 +99,19 @@ def _between_zones(building: Description, at: Location, window: Window) -> Fault
 
 def _walls_are_larger_than_their_windows(building: Description, glazed: Mapping[str, Polygon]) -> Faults:
     areas_in: dict[str, dict[str, float]] = {}
-    for one, window in building.windows.items():
-        area = glazed[one].area if window.area is None else float(window.area)
-        areas_in.setdefault(window.surface, {})[one] = area
-    drawn = drawn_areas(building.surfaces)
+    for window_name, window in building.windows.items():
+        area = glazed[window_name].area if window.area is None else float(window.area)
+        areas_in.setdefault(window.surface, {})[window_name] = area
+    wall_areas = drawn_areas(building.surfaces)
     for name, surface in building.surfaces.items():
         areas = areas_in.get(name)
         if areas is None:
             continue
-        gross = float(surface.area or drawn.get(name, 0.0))
+        gross = float(surface.area or wall_areas.get(name, 0.0))
         if sum(areas.values()) >= gross:
-            listed = ", ".join(f"{one} {area:.2f}" for one, area in areas.items())
+            listed = ", ".join(f"{window_name} {area:.2f}" for window_name, area in areas.items())
             yield fault(
-                ("windows", max(areas, key=lambda one: areas[one]), "area"),
+                ("windows", max(areas, key=lambda window_name: areas[window_name]), "area"),
                 f"{sum(areas.values()):.2f} m2 of windows ({listed})",
                 f"less than the {gross:.2f} m2 of their wall '{name}'",
                 "The area of a wall includes its windows.",
@@ -129,13 +129,13 @@ class _Drawn:
 
     def overlapping(self, window: Polygon, wall: Polygon) -> list[str]:
         """Windows before a window, then walls beside the one it is in, that it overlaps."""
-        near = self._index.touching(window)
+        touched = self._index.touching(window)
         before = takewhile(
-            lambda one: one[1] is not window, (self._parts[k] for k in near if k >= self._walls)
+            lambda entry: entry[1] is not window, (self._parts[k] for k in touched if k >= self._walls)
         )
-        walls = (self._parts[k] for k in near if k < self._walls)
-        others = [*before, *((name, one) for name, one in walls if not one.contains(wall))]
-        return [name for name, one in others if window.overlaps(one)]
+        walls = (self._parts[k] for k in touched if k < self._walls)
+        candidates = [*before, *((name, entry) for name, entry in walls if not entry.contains(wall))]
+        return [name for name, entry in candidates if window.overlaps(entry)]
 
 
 def _outside_of_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:

@@ -27,7 +27,7 @@ def channels(building: Description) -> list[str]:
 
 def measured_columns(building: Description) -> list[str]:
     """Measured columns that a building needs, those of its schedules and other courses included."""
-    found = channels(building)
+    columns = channels(building)
     for course in courses(building).values():
-        found += course.columns
-    return list(dict.fromkeys(found))
+        columns += course.columns
+    return list(dict.fromkeys(columns))

@@ -70,8 +70,8 @@ def choose(building: Description, step_seconds: float, ranges: Mapping[str, Inte
 
 
 def _by_path(building: Description, ranges: Mapping[str, Interval]) -> dict[str, Interval]:
-    known = {path: number for path, number, _ in leaves(building)} if ranges else {}
-    return {resolve(building, path, known): ends for path, ends in ranges.items()}
+    numbers = {path: number for path, number, _ in leaves(building)} if ranges else {}
+    return {resolve(building, path, numbers): ends for path, ends in ranges.items()}
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class _Worst:
         path, held = f"materials.{material}.{name}", getattr(self.building.materials[material], name)
         if not isinstance(held, Phases):
             return self.ends(path, held)
-        solid, liquid = (self.ends(f"{path}.{one}", phase(held, one)) for one in ("solid", "liquid"))
+        solid, liquid = (self.ends(f"{path}.{state}", phase(held, state)) for state in ("solid", "liquid"))
         return (min(solid[0], liquid[0]), max(solid[1], liquid[1]))
 
 
@@ -98,22 +98,22 @@ def _of_layer(layer: Layer, path: str, worst: _Worst, step_seconds: float) -> tu
     if isinstance(material, Resistance) or layer.thickness is None:
         return 0, ""
     thickness = worst.ends(f"{path}.thickness", layer.thickness)[1]
-    wanted = diffusion_count(
+    count = diffusion_count(
         thickness,
         worst.property(layer.material, "conductivity")[0],
         worst.property(layer.material, "density")[1] * worst.property(layer.material, "specific_heat")[1],
         step_seconds,
     )
     if isinstance(material, PhaseChangeMaterial):
-        wanted = max(wanted, LEAST_IN_PCM, _melting_count(layer.material, material, thickness, worst))
+        count = max(count, LEAST_IN_PCM, _melting_count(layer.material, material, thickness, worst))
     if layer.nodes is not None:
-        given = int(layer.nodes)
-        short = f"{path}.nodes: {given} given, {wanted} would resolve a step of {step_seconds:g} s"
-        return given, short if given < wanted else ""
-    if wanted > MOST_IN_LAYER:
-        short = f"{path}: {wanted} nodes would resolve a step of {step_seconds:g} s, {MOST_IN_LAYER} taken"
+        stated = int(layer.nodes)
+        short = f"{path}.nodes: {stated} given, {count} would resolve a step of {step_seconds:g} s"
+        return stated, short if stated < count else ""
+    if count > MOST_IN_LAYER:
+        short = f"{path}: {count} nodes would resolve a step of {step_seconds:g} s, {MOST_IN_LAYER} taken"
         return MOST_IN_LAYER, f"{short}; split the layer or set its nodes"
-    return wanted, ""
+    return count, ""
 
 
 def diffusion_count(thickness: float, conductivity: float, capacity: float, step_seconds: float) -> int:

@@ -103,5 +103,5 @@ def window_ratings(building: Description, step_seconds: float = 900.0) -> dict[s
 
     described = describe(building, step_seconds)
     with translated():
-        found = plan_of(described.json).window_ratings(described.values)
-    return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, found, strict=True)}
+        ratings = plan_of(described.json).window_ratings(described.values)
+    return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, ratings, strict=True)}

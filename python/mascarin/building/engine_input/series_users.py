@@ -17,16 +17,16 @@ Use = tuple[str, tuple[str, ...], str]
 def schedule_uses(building: Description) -> Iterator[Use]:
     """Every use of a schedule: its name, the place, and the kind that is needed there."""
     for name, zone in building.zones.items():
-        at = ("zones", name)
+        location = ("zones", name)
         for section in ("gains", "ventilation"):
             for key, part in getattr(zone, section).items():
                 if part.schedule is not None:
-                    yield part.schedule, (*at, section, key, "schedule"), "fraction"
+                    yield part.schedule, (*location, section, key, "schedule"), "fraction"
         for which, loads in zone.loads.items():
             if loads.setpoint.schedule is not None:
-                yield loads.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
+                yield loads.setpoint.schedule, (*location, which, "setpoint", "schedule"), "temperature"
             if loads.schedule is not None:
-                yield loads.schedule, (*at, which, "schedule"), "fraction"
+                yield loads.schedule, (*location, which, "schedule"), "fraction"
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             if side.scheduled is not None:
@@ -46,42 +46,42 @@ def _of_humidity(building: Description) -> Iterator[Use]:
     if building.humidity is None:
         return
     for name, zone in building.humidity.zones.items():
-        at = ("humidity", "zones", name)
+        location = ("humidity", "zones", name)
         for key, gain in zone.gains.items():
             if gain.schedule is not None:
-                yield gain.schedule, (*at, "gains", key, "schedule"), "fraction"
+                yield gain.schedule, (*location, "gains", key, "schedule"), "fraction"
         for which, plant in zone.plants.items():
             if plant.schedule is not None:
-                yield plant.schedule, (*at, which, "schedule"), "fraction"
+                yield plant.schedule, (*location, which, "schedule"), "fraction"
             key, setpoint = plant.setpoint
             if setpoint.schedule is not None:
-                yield setpoint.schedule, (*at, which, key, "schedule"), setpoint.SCHEDULED
+                yield setpoint.schedule, (*location, which, key, "schedule"), setpoint.SCHEDULED
 
 
 def _of_units(building: Description) -> Iterator[Use]:
     for name, unit in building.ventilation_units.items():
-        at = ("ventilation_units", name)
+        location = ("ventilation_units", name)
         for section, flows in (("supply", unit.supply), ("exhaust", unit.exhaust)):
             for zone, flow in flows.items():
                 if flow.schedule is not None:
-                    yield flow.schedule, (*at, section, zone, "schedule"), "fraction"
+                    yield flow.schedule, (*location, section, zone, "schedule"), "fraction"
         if unit.temperature is not None and unit.temperature.schedule is not None:
-            yield unit.temperature.schedule, (*at, "temperature", "schedule"), "temperature"
+            yield unit.temperature.schedule, (*location, "temperature", "schedule"), "temperature"
 
 
 def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[str, ...]]]:
     """Every course that is taken from columns directly, and the place that names it."""
     for name, zone in building.zones.items():
-        at = ("zones", name)
+        location = ("zones", name)
         for key, gain in zone.gains.items():
             if gain.course is not None:
-                yield gain.course, (*at, "gains", key, "column")
+                yield gain.course, (*location, "gains", key, "column")
         for which, loads in zone.loads.items():
             if loads.setpoint.column is not None:
-                yield temperature_course(loads.setpoint.column), (*at, which, "setpoint", "column")
+                yield temperature_course(loads.setpoint.column), (*location, which, "setpoint", "column")
         for key, bridge in zone.thermal_bridges.items():
             if bridge.measured is not None:
-                yield temperature_course(bridge.measured), (*at, "thermal_bridges", key, "measured")
+                yield temperature_course(bridge.measured), (*location, "thermal_bridges", key, "measured")
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             if isinstance(side.measured, tuple):
@@ -115,7 +115,7 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
 def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:
     """Courses over time of a building by name: its used schedules, then those taken from columns directly."""
     used = {name for name, _, _ in schedule_uses(building)}
-    found: dict[str, Schedule | ColumnCourse] = {
+    by_channel: dict[str, Schedule | ColumnCourse] = {
         name: schedule for name, schedule in building.schedules.items() if name in used
     }
-    return found | {course.name: course for course, _ in column_courses(building)}
+    return by_channel | {course.name: course for course, _ in column_courses(building)}

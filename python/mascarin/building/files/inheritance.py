@@ -75,41 +75,43 @@ def inherited(
     InputError
         A base that is not there, or that extends one of the files before it.
     """
-    plain, found = read(file)
-    named = {line: Line(line, str(file)) for line in set(found.values())}
-    lines: dict[Place, int] = {place: named[line] for place, line in found.items()}
+    plain, line_of = read(file)
+    named = {line: Line(line, str(file)) for line in set(line_of.values())}
+    lines: dict[Place, int] = {position: named[line] for position, line in line_of.items()}
     base = plain.pop(EXTENDS, None)
     if base is None:
         return Inherited(plain, lines, (file,))
     chain = (*chain, file)
     if len(chain) > DEEPEST:
         raise InputError(
-            f"{_at(lines, (EXTENDS,))}: {EXTENDS}\n  found: more than {DEEPEST} files that extend each "
-            f"other, from {chain[0]} on\n  expected: at most {DEEPEST}\n  Put the values of some of them "
-            "into one file."
+            f"{_line_text(lines, (EXTENDS,))}: {EXTENDS}\n  found: more than {DEEPEST} files that extend "
+            f"each other, from {chain[0]} on\n  expected: at most {DEEPEST}\n  Put the values of some of "
+            "them into one file."
         )
     path = _base(base, file, lines, chain)
     above = inherited(path, read, by_path=by_path, file_keys=file_keys, chain=chain)
     moved = _moved(above.plain, path.parent, file.parent, file_keys)
-    given = plain.pop(SET, {}) if by_path else {}
-    if not isinstance(given, Mapping):
-        raise InputError(f"{_at(lines, (SET,))}: {SET}\n  found: {given!r}\n  expected: values by path")
-    kept = {key: value for key, value in above.values.items() if not _given(plain, key.split("."))}
-    values = {key: (value, lines[(SET, key)]) for key, value in given.items()}
+    changes = plain.pop(SET, {}) if by_path else {}
+    if not isinstance(changes, Mapping):
+        raise InputError(
+            f"{_line_text(lines, (SET,))}: {SET}\n  found: {changes!r}\n  expected: values by path"
+        )
+    remaining = {key: value for key, value in above.values.items() if not _is_stated(plain, key.split("."))}
+    values = {key: (value, lines[(SET, key)]) for key, value in changes.items()}
     where = dict(above.lines)
     merged = _merged(moved, plain, (), where, lines, remove=by_path)
     where[()] = lines[()]
-    return Inherited(merged, where, (file, *above.files), kept | values)
+    return Inherited(merged, where, (file, *above.files), remaining | values)
 
 
-def _at(lines: Mapping[Place, int], place: Place) -> str:
-    line = lines.get(place, 0)
+def _line_text(lines: Mapping[Place, int], path: Place) -> str:
+    line = lines.get(path, 0)
     return f"{getattr(line, 'file', '')}:{line}"
 
 
 def _base(base: Any, file: Path, lines: Mapping[Place, int], chain: tuple[Path, ...]) -> Path:
     """The file of a base, counted from the folder of the file that extends it."""
-    where = f"{_at(lines, (EXTENDS,))}: {EXTENDS}"
+    where = f"{_line_text(lines, (EXTENDS,))}: {EXTENDS}"
     if not isinstance(base, str) or not base.strip():
         raise InputError(
             f"{where}\n  found: {base!r}\n  expected: the name of one file, such as base.yaml\n  Write "
@@ -121,9 +123,9 @@ def _base(base: Any, file: Path, lines: Mapping[Place, int], chain: tuple[Path, 
             f"{where}\n  found: no file {path}\n  expected: a file, its path counted from the folder of "
             f"{file.name}\n  Correct the name."
         )
-    before = [one.resolve() for one in chain]
+    before = [link.resolve() for link in chain]
     if path.resolve() in before:
-        circle = " -> ".join(one.name for one in (*chain[before.index(path.resolve()) :], path))
+        circle = " -> ".join(link.name for link in (*chain[before.index(path.resolve()) :], path))
         raise InputError(
             f"{where}\n  found: a circle, {circle}\n  expected: files that do not extend each other in a "
             "circle\n  Let the first one stand alone."
@@ -133,8 +135,8 @@ def _base(base: Any, file: Path, lines: Mapping[Place, int], chain: tuple[Path, 
 
 def _merged(
     base: Mapping[str, Any],
-    own: Mapping[str, Any],
-    place: Place,
+    stated: Mapping[str, Any],
+    path: Place,
     where: dict[Place, int],
     lines: Mapping[Place, int],
     *,
@@ -142,25 +144,25 @@ def _merged(
 ) -> dict[str, Any]:
     """Merge a mapping into that of the base; ``where`` gets the lines of what is taken."""
     merged = dict(base)
-    for key, value in own.items():
-        here = (*place, key)
+    for key, value in stated.items():
+        inner = (*path, key)
         if value is None and remove:
             merged.pop(key, None)
             continue
         under = merged.get(key)
         if isinstance(value, Mapping) and isinstance(under, Mapping) and not _other_kind(under, value):
-            where[here] = lines[here]
-            merged[key] = _merged(under, value, here, where, lines, remove=remove)
+            where[inner] = lines[inner]
+            merged[key] = _merged(under, value, inner, where, lines, remove=remove)
             continue
         merged[key] = _without_removed(value) if remove else value
-        for old in [old for old in where if old[: len(here)] == here]:
+        for old in [old for old in where if old[: len(inner)] == inner]:
             del where[old]
-        where |= {new: line for new, line in lines.items() if new[: len(here)] == here}
+        where |= {new: line for new, line in lines.items() if new[: len(inner)] == inner}
     return merged
 
 
-def _other_kind(base: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
-    return "kind" in own and own["kind"] != base.get("kind")
+def _other_kind(base: Mapping[str, Any], stated: Mapping[str, Any]) -> bool:
+    return "kind" in stated and stated["kind"] != base.get("kind")
 
 
 def _without_removed(value: Any) -> Any:
@@ -170,14 +172,14 @@ def _without_removed(value: Any) -> Any:
     return value
 
 
-def _given(own: Any, path: list[str]) -> bool:
+def _is_stated(value: Any, path: list[str]) -> bool:
     """Whether a description gives what is at a path, or a part that it is in, itself."""
     for step in path:
-        if not isinstance(own, Mapping):
+        if not isinstance(value, Mapping):
             return True
-        if step not in own:
+        if step not in value:
             return False
-        own = own[step]
+        value = value[step]
     return True
 
 

@@ -73,12 +73,12 @@ def read(
         path, with what was found, what was expected and what to do.
     """
     require_type("path", path, (str, Path), "the path of a file; a mapping is read by Building.from_dict")
-    found = merged(Path(path), what, blanks=blanks, file_keys=file_keys)
+    document = merged(Path(path), what, blanks=blanks, file_keys=file_keys)
     try:
-        part = kind.model_validate(found.plain)
+        part = kind.model_validate(document.plain)
     except ValidationError as error:
-        raise explained(error, found.plain, str(path), found.lines) from None
-    return finish(part, found.values) if found.values and finish is not None else part
+        raise explained(error, document.plain, str(path), document.lines) from None
+    return finish(part, document.values) if document.values and finish is not None else part
 
 
 def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = ()) -> Inherited:
@@ -112,12 +112,12 @@ def validated(
     path: Path, kind: type[AnyPart], what: str, *, only: Collection[str], file_keys: Collection[str] = ()
 ) -> AnyPart:
     """Read some keys of a description, whatever else the file has; see `read`."""
-    found = merged(path, what, blanks=True, file_keys=file_keys)
-    plain = {key: value for key, value in found.plain.items() if key in only}
+    document = merged(path, what, blanks=True, file_keys=file_keys)
+    plain = {key: value for key, value in document.plain.items() if key in only}
     try:
         return kind.model_validate(plain)
     except ValidationError as error:
-        raise explained(error, plain, str(path), found.lines) from None
+        raise explained(error, plain, str(path), document.lines) from None
 
 
 def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
@@ -137,8 +137,8 @@ def plain(text: str, name: str) -> Any:
 
 def lines(path: Path) -> tuple[Mapping[Place, int], tuple[Path, ...]]:
     """Line of each key and value of a YAML file and the files that it extends, by place; and these files."""
-    found = merged(path, "a description", blanks=True)
-    return found.lines, found.files
+    document = merged(path, "a description", blanks=True)
+    return document.lines, document.files
 
 
 def files_of(path: Path) -> tuple[Path, ...]:
@@ -196,9 +196,9 @@ class _Document:
             raise InputError("\n".join(text for _, text in sorted(self.faults)))
         return plain
 
-    def _refuse(self, line: int, place: str, found: str, expected: str, help_: str) -> None:
-        where = f"{self.name}:{line + 1}: {place or 'the whole description'}"
-        self.faults.append((line, f"{where}\n  found: {found}\n  expected: {expected}\n  {help_}"))
+    def _refuse(self, line: int, path: str, actual: str, expected: str, help_: str) -> None:
+        where = f"{self.name}:{line + 1}: {path or 'the whole description'}"
+        self.faults.append((line, f"{where}\n  found: {actual}\n  expected: {expected}\n  {help_}"))
 
     def _too_deep(self, line: int) -> NoReturn:
         raise InputError(
@@ -206,7 +206,7 @@ class _Document:
             "a description, whose values are a few levels deep"
         )
 
-    def _value(self, node: Any, place: Place, above: frozenset[int]) -> Any:
+    def _value(self, node: Any, path: Place, above: frozenset[int]) -> Any:
         self.values += 1
         if self.values > self.most_values:
             raise InputError(
@@ -216,7 +216,7 @@ class _Document:
         if id(node) in above:
             self._refuse(
                 node.start_mark.line,
-                _text(place),
+                _text(path),
                 "an alias without end",
                 "a tree of values",
                 "Write it out.",
@@ -224,68 +224,68 @@ class _Document:
             return None
         if len(above) > MOST_LEVELS:
             self._too_deep(node.start_mark.line)
-        self.lines.setdefault(place, node.start_mark.line + 1)
-        if place and place[-1] in _FORMULAS and node.id == "scalar" and node.style not in ("|", ">"):
-            self.lines[*place, COLUMN] = node.start_mark.column + 1 + (node.style is not None)
+        self.lines.setdefault(path, node.start_mark.line + 1)
+        if path and path[-1] in _FORMULAS and node.id == "scalar" and node.style not in ("|", ">"):
+            self.lines[*path, COLUMN] = node.start_mark.column + 1 + (node.style is not None)
         if node.id == "mapping" and node.tag == "tag:yaml.org,2002:map":
-            return dict(self._items(node, place, above | {id(node)}))
+            return dict(self._items(node, path, above | {id(node)}))
         if node.id == "sequence" and node.tag == "tag:yaml.org,2002:seq":
             inside = above | {id(node)}
-            return [self._value(item, (*place, index), inside) for index, item in enumerate(node.value)]
-        return self._scalar(node, place)
+            return [self._value(item, (*path, index), inside) for index, item in enumerate(node.value)]
+        return self._scalar(node, path)
 
-    def _items(self, node: Any, place: Place, inside: frozenset[int]) -> Iterator[tuple[str, Any]]:
-        seen: dict[str, int] = {}
+    def _items(self, node: Any, path: Place, inside: frozenset[int]) -> Iterator[tuple[str, Any]]:
+        line_of_key: dict[str, int] = {}
         for key_node, value_node in node.value:
             line, key = key_node.start_mark.line, key_node.value
             if not isinstance(key, str):
                 self._refuse(
-                    line, _text(place), "a key that is no text", "a plain key", "Quote or simplify it."
+                    line, _text(path), "a key that is no text", "a plain key", "Quote or simplify it."
                 )
                 continue
-            if self._words(key_node, (*place, "?")) is None:
+            if self._words(key_node, (*path, "?")) is None:
                 continue
-            if key in seen:
+            if key in line_of_key:
                 self._refuse(
                     line,
-                    _text((*place, key)),
-                    f"the key '{key}' again (first on line {seen[key]})",
+                    _text((*path, key)),
+                    f"the key '{key}' again (first on line {line_of_key[key]})",
                     "each key once",
                     "Remove or rename one of the two.",
                 )
-            seen.setdefault(key, line + 1)
-            self.lines[(*place, key)] = line + 1
-            yield key, self._value(value_node, (*place, key), inside)
+            line_of_key.setdefault(key, line + 1)
+            self.lines[(*path, key)] = line + 1
+            yield key, self._value(value_node, (*path, key), inside)
 
-    def _scalar(self, node: Any, place: Place) -> Any:
+    def _scalar(self, node: Any, path: Place) -> Any:
         kind = node.tag.removeprefix("tag:yaml.org,2002:")
         match kind:
             case "null" if self.blanks:
                 return None
             case "null":
-                line = self.lines[place] - 1  # the key's: the value that is missing has no line
+                line = self.lines[path] - 1  # the key's: the value that is missing has no line
                 # In braces the comma of 0,4 ends a value, and what follows is a key without one.
-                comma = isinstance(place[-1], str) and place[-1].isdigit()
+                comma = isinstance(path[-1], str) and path[-1].isdigit()
                 help_ = "Write decimals with a point, as in 0.4." if comma else "Write one or remove the key."
-                self._refuse(line, _text(place), "nothing", "a value", help_)
+                self._refuse(line, _text(path), "nothing", "a value", help_)
                 return None
             case "bool" | "int" | "float" if isinstance(node.value, str):
-                return self._number(node, place, kind)
+                return self._number(node, path, kind)
             case "str" | "timestamp" if isinstance(node.value, str):
-                return self._words(node, place)
+                return self._words(node, path)
             case _:
                 self._refuse(
-                    node.start_mark.line, _text(place), f"the tag '{kind}'", "plain values", "Remove the tag."
+                    node.start_mark.line, _text(path), f"the tag '{kind}'", "plain values", "Remove the tag."
                 )
                 return None
 
-    def _number(self, node: Any, place: Place, kind: str) -> Any:
+    def _number(self, node: Any, path: Place, kind: str) -> Any:
         """A number or a truth value; a tag can stand on a text that is neither."""
         line = node.start_mark.line
         if kind == "int" and len(node.value) > MOST_DIGITS:
             self._refuse(
                 line,
-                _text(place),
+                _text(path),
                 f"a whole number of {len(node.value)} digits",
                 f"at most {MOST_DIGITS} digits",
                 "Write it with an exponent, as in 1e21.",
@@ -294,16 +294,16 @@ class _Document:
         try:
             return number_of(self.scalars, kind, node.value)
         except (ValueError, KeyError, IndexError, OverflowError):
-            found = f"the tag '{kind}' on the text '{node.value[:40]}'"
-            self._refuse(line, _text(place), found, "plain values", "Remove the tag.")
+            actual = f"the tag '{kind}' on the text '{node.value[:40]}'"
+            self._refuse(line, _text(path), actual, "plain values", "Remove the tag.")
             return None
 
-    def _words(self, node: Any, place: Place) -> str | None:
+    def _words(self, node: Any, path: Place) -> str | None:
         """A text; half of a surrogate pair, which an escape can write, is no character."""
         text: str = node.value
         if _HALVES.search(text):
-            found = f"the text {text[:40]!r} with half of a surrogate pair"
-            self._refuse(node.start_mark.line, _text(place), found, "text", "Write the letter itself.")
+            actual = f"the text {text[:40]!r} with half of a surrogate pair"
+            self._refuse(node.start_mark.line, _text(path), actual, "text", "Write the letter itself.")
             return None
         return text
 
@@ -314,5 +314,5 @@ def _extends(root: Any) -> bool:
     return any(isinstance(pair, tuple) and pair[0].value == EXTENDS for pair in pairs)
 
 
-def _text(place: Place) -> str:
-    return ".".join(map(str, place))
+def _text(path: Place) -> str:
+    return ".".join(map(str, path))

@@ -26,7 +26,7 @@ _OTHER_ANCHORS = re.compile(_BEFORE + r"[&*][\w-]*[^\w\s,\]}-]", re.ASCII)
 #: Tags, which are written with other letters in YAML 1.1.
 _TAGS = re.compile(_BEFORE + "!")
 #: Words that both libraries know: decimal numbers, and those whose first letter makes them text.
-_WHOLE = re.compile(r"-?[0-9]+")
+_INTEGER = re.compile(r"-?[0-9]+")
 _COUNT = re.compile(r"-?(?:0|[1-9][0-9]*)")
 _DECIMAL = re.compile(r"-?[0-9]+\.[0-9]*")
 _BEGIN_WORDS = frozenset(ascii_letters) - frozenset("tTfFnN")
@@ -114,7 +114,7 @@ def _composer() -> Any:
                 return f"{_PREFIX}{_COLLECTIONS[kind.__name__]}"
             if not implicit[0] or value[:1] in _BEGIN_WORDS:
                 return f"{_PREFIX}str"
-            if _WHOLE.fullmatch(value):
+            if _INTEGER.fullmatch(value):
                 return f"{_PREFIX}int"
             if _DECIMAL.fullmatch(value):
                 return f"{_PREFIX}float"

@@ -89,8 +89,8 @@ def _read(row: Mapping[str, Any]) -> OutputKind:
 
 
 def _names(written: str) -> Iterator[OutputName]:
-    for one in written.split(", "):
-        pattern, _, alias = one.partition(" or ")
+    for word in written.split(", "):
+        pattern, _, alias = word.partition(" or ")
         owner = re.match(r"([A-Z]+)\.", pattern)
         yield OutputName("" if owner is None else owner[1], pattern, alias)
 

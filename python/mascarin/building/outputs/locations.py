@@ -61,22 +61,22 @@ def places(building: Description, owner: str, index: int, name: str, of: str) ->
         The parts that have the output, such as ``heated_zone``.
     """
     if owner == "ZONE":
-        found = [Place({"zone": index}, {})] if _ZONES[of](building, name) else []
+        locations = [Place({"zone": index}, {})] if _ZONES[of](building, name) else []
     elif owner == "SURFACE":
-        found = list(_of_surface(building, index, name, of))
+        locations = list(_of_surface(building, index, name, of))
     elif owner == "WINDOW":
-        found = list(_of_window(building, len(building.surfaces) + index, name, of))
+        locations = list(_of_window(building, len(building.surfaces) + index, name, of))
     else:
-        found = [Place({owner.lower(): index} if owner else {}, {})]
-    for place in found:
-        yield Place(place.positions, {**place.words, owner: name})
+        locations = [Place({owner.lower(): index} if owner else {}, {})]
+    for location in locations:
+        yield Place(location.positions, {**location.words, owner: name})
 
 
 def _has_humidity(building: Description, zone: str, plant: str = "") -> bool:
     if building.humidity is None:
         return False
-    own = building.humidity.zones.get(zone)
-    return not plant or getattr(own, plant, None) is not None
+    settings = building.humidity.zones.get(zone)
+    return not plant or getattr(settings, plant, None) is not None
 
 
 _ZONES: Final[Mapping[str, Callable[[Description, str], bool]]] = {

@@ -119,39 +119,39 @@ def outputs(building: Description) -> list[Output]:
 
     Those of a part stand in the order of the engine's table; those of its sides and layers side by side.
     """
-    return list(worked_out(building, "_outputs", lambda: list(_found(building))))
+    return list(worked_out(building, "_outputs", lambda: list(_all_outputs(building))))
 
 
-def _found(building: Description) -> Iterator[Output]:
+def _all_outputs(building: Description) -> Iterator[Output]:
     for owner, names in owners(building).items():
         rows = [(kind, row, name) for kind, row in KINDS.items() for name in row.names if name.owner == owner]
         # Rows of sides, or of layers, that follow each other: side by side, or layer by layer.
         groups = [list(group) for _, group in groupby(rows, key=lambda row: _WORD.findall(row[2].pattern))]
         for index, part in enumerate(names):
             for group in groups:
-                found = [
-                    (place, kind, row, name)
+                candidates = [
+                    (location, kind, row, name)
                     for kind, row, name in group
-                    for place in places(building, owner, index, part, row.of)
+                    for location in places(building, owner, index, part, row.of)
                 ]
-                found.sort(key=lambda one: tuple(one[0].positions.values()))
-                yield from (_output(*one) for one in found)
+                candidates.sort(key=lambda candidate: tuple(candidate[0].positions.values()))
+                yield from (_output(*candidate) for candidate in candidates)
 
 
-def _output(place: Place, kind: str, row: OutputKind, name: OutputName) -> Output:
+def _output(location: Place, kind: str, row: OutputKind, name: OutputName) -> Output:
     def written(pattern: str) -> str:
-        return _WORD.sub(lambda word: place.words[word[0]], pattern)
+        return _WORD.sub(lambda word: location.words[word[0]], pattern)
 
     aliases = (written(name.alias),) if name.alias else ()
-    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **place.positions)
+    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **location.positions)
 
 
 def named(building: Description, names: Iterable[str]) -> list[Output]:
     """Results by their names or other names of them; see `Building.output`."""
-    known: dict[str, Output] = {}
+    by_name: dict[str, Output] = {}
     for output in reversed(outputs(building)):
-        known.update(dict.fromkeys((*output.aliases, output.name), output))
-    return [_known(known, name, damp=building.humidity is not None) for name in names]
+        by_name.update(dict.fromkeys((*output.aliases, output.name), output))
+    return [_by_name(by_name, name, damp=building.humidity is not None) for name in names]
 
 
 def _humid_names() -> set[str]:
@@ -160,20 +160,22 @@ def _humid_names() -> set[str]:
     return {pattern.partition(".")[2] for pattern in patterns}
 
 
-def _known(known: Mapping[str, Output], name: str, *, damp: bool) -> Output:
-    if name not in known:
+def _by_name(by_name: Mapping[str, Output], name: str, *, damp: bool) -> Output:
+    if name not in by_name:
         if not damp and str(name).partition(".")[2] in _humid_names():
             raise InputError(
                 f"{name}: found a building without 'humidity:', expected one with it. Add 'humidity: {{}}' "
                 "to the building: the air of its zones then has a vapour balance"
             )
         owner, _, what = str(name).partition(".")
-        own = [one for one in known if one.partition(".")[0] == owner]
-        near = [one for one in own if what and what in one.partition(".")[2]]
-        hint = did_you_mean(name, known) or (f"'{owner}' has {', '.join(near or own[:8])}." if own else "")
+        of_owner = [candidate for candidate in by_name if candidate.partition(".")[0] == owner]
+        similar = [candidate for candidate in of_owner if what and what in candidate.partition(".")[2]]
+        hint = did_you_mean(name, by_name) or (
+            f"'{owner}' has {', '.join(similar or of_owner[:8])}." if of_owner else ""
+        )
         raise InputError(
-            f"{name}: found no such output; expected one of the {len(known)} of this building, which "
+            f"{name}: found no such output; expected one of the {len(by_name)} of this building, which "
             "'mascarin "
             f"outputs' lists. {hint}".rstrip()
         )
-    return known[name]
+    return by_name[name]

@@ -103,19 +103,20 @@ class Parameter:
         return self.reason is None and self.low < self.high
 
 
-def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
+def listed(entries: Iterable[Parameter]) -> Listing[Parameter]:
     """The parameters as a list that is shown with values and units."""
-    every = list(found)
-    title = f"{len(every)} parameters, {sum(one.varies for one in every)} of which may vary"
-    return Listing(every, title, ("path", "value", "unit"))
+    all_parameters = list(entries)
+    count = sum(parameter.varies for parameter in all_parameters)
+    title = f"{len(all_parameters)} parameters, {count} of which may vary"
+    return Listing(all_parameters, title, ("path", "value", "unit"))
 
 
 def parameters(building: Description) -> list[Parameter]:
     """All numbers of a building, in the order of the description; the list must not be changed."""
-    return worked_out(building, "_numbers", lambda: _found(building))
+    return worked_out(building, "_numbers", lambda: _all_parameters(building))
 
 
-def _found(building: Description) -> list[Parameter]:
+def _all_parameters(building: Description) -> list[Parameter]:
     inactive, cut = without_effect(building), cut_ranges(building)
     measured = _measured_powers(building)
     inactive = {**dict.fromkeys(measured, _MEASURED), **inactive}
@@ -128,14 +129,14 @@ def _found(building: Description) -> list[Parameter]:
 
 def _measured_powers(building: Description) -> dict[str, tuple[float, float]]:
     """Powers that follow a measured column and have no range of their own: they are as they were measured."""
-    found = {}
+    powers = {}
     for name, zone in building.zones.items():
         for gain, numbers in zone.gains.items():
             power, named = numbers.power, numbers.schedule
             measured = named is not None and building.schedules[named].column is not None
             if measured and power is not None and power.range is None:
-                found[f"zones.{name}.gains.{gain}.power"] = (float(power), float(power))
-    return found
+                powers[f"zones.{name}.gains.{gain}.power"] = (float(power), float(power))
+    return powers
 
 
 def _parameter(
@@ -173,7 +174,7 @@ def _range_reason(usual: str, number: Number, cut: tuple[float, float] | None) -
     return usual if cut is None else f"{usual}; cut between the set points of heating and cooling"
 
 
-def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
+def resolve(building: Description, path: str, by_path: Mapping[str, Any]) -> str:
     """Find the path that a user means: itself, or a short form of it.
 
     Raises
@@ -186,28 +187,28 @@ def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
             f"parameters: found {path!r}, expected a path such as 'zones.room.volume', "
             "as Building.parameters() lists"
         )
-    found = lookup(building, path, known)
-    if found is None:
+    path_found = lookup(building, path, by_path)
+    if path_found is None:
         raise InputError(
             f"{path}: found no such parameter; expected a path as listed by 'mascarin parameters'. "
-            f"{did_you_mean(path, known)}".rstrip()
+            f"{did_you_mean(path, by_path)}".rstrip()
         )
-    return found
+    return path_found
 
 
-def lookup(building: Description, path: str, known: Mapping[str, Any]) -> str | None:
+def lookup(building: Description, path: str, by_path: Mapping[str, Any]) -> str | None:
     """Find the path that a user means; None if there is none."""
-    return next((one for one in (path, *_aliases(building, path)) if one in known), None)
+    return next((candidate for candidate in (path, *_aliases(building, path)) if candidate in by_path), None)
 
 
 def _aliases(building: Description, path: str) -> Iterator[str]:
     match path.split("."):
-        case ["constructions", construction, "layers", layer, *rest] if (
+        case ["constructions", construction, "layers", layer, *tail] if (
             construction in building.constructions
         ):
-            for one in building.constructions[construction].layers:
-                if one.name == layer:
-                    yield ".".join(["materials", one.material, *rest])
+            for entry in building.constructions[construction].layers:
+                if entry.name == layer:
+                    yield ".".join(["materials", entry.material, *tail])
         case ["surfaces", _, _, "convection"]:
             yield f"{path}.coefficient"
         case ["zones", _, "infiltration"]:

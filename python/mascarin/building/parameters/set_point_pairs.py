@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mascarin.building.parts.description import Description
 
 #: A set point: a number, or the name of a schedule; neither for a measured column.
-Given = tuple[float | None, str | None]
+Bound = tuple[float | None, str | None]
 
 
 def tied_set_points(building: Description) -> dict[str, str]:
@@ -35,11 +35,11 @@ def tied_set_points(building: Description) -> dict[str, str]:
     >>> tied_set_points(box())
     {}
     """
-    found: dict[str, str] = {}
+    ties: dict[str, str] = {}
     for heating, cooling, warm, cold in _constant(building):
         if warm == cold:
-            found |= {heating: cooling, cooling: heating}
-    return found
+            ties |= {heating: cooling, cooling: heating}
+    return ties
 
 
 def cut_ranges(building: Description) -> dict[str, tuple[float, float]]:
@@ -57,18 +57,18 @@ def cut_ranges(building: Description) -> dict[str, tuple[float, float]]:
     dict of str to (float, float)
         Path -> range. A range that the description gives is left as it is. [degC]
     """
-    found = {}
+    ranges = {}
     for heating, cooling, warm, cold in _constant(building):
         if warm == cold or warm.plausible[1] <= cold.plausible[0]:
             continue
         middle = 0.5 * (float(warm) + float(cold))
         if warm.range is None:
             top = middle if cold.range is None else max(float(warm), cold.plausible[0])
-            found[heating] = (warm.plausible[0], min(warm.plausible[1], top))
+            ranges[heating] = (warm.plausible[0], min(warm.plausible[1], top))
         if cold.range is None:
             bottom = middle if warm.range is None else min(float(cold), warm.plausible[1])
-            found[cooling] = (max(cold.plausible[0], bottom), cold.plausible[1])
-    return found
+            ranges[cooling] = (max(cold.plausible[0], bottom), cold.plausible[1])
+    return ranges
 
 
 def _constant(building: Description) -> Iterator[tuple[str, str, Number, Number]]:
@@ -86,7 +86,7 @@ def _constant(building: Description) -> Iterator[tuple[str, str, Number, Number]
             )
 
 
-def first_crossing(building: Description, low: Given, high: Given) -> tuple[str, float, float] | None:
+def first_crossing(building: Description, low: Bound, high: Bound) -> tuple[str, float, float] | None:
     """First time of a week at which the lower of two set points is above the other one.
 
     Parameters
@@ -109,9 +109,9 @@ def first_crossing(building: Description, low: Given, high: Given) -> tuple[str,
     ('monday at 00:00', 26.0, 20.0)
     """
     used = [building.schedules[name] for _, name in (low, high) if name is not None]
-    ends = sorted({season.until for one in used for season in one.seasons or ()}) or ["12-31"]
+    ends = sorted({season.until for entry in used for season in entry.seasons or ()}) or ["12-31"]
     for end in ends:
-        weeks = [_week(building, one, date.fromisoformat(f"2000-{end}")) for one in (low, high)]
+        weeks = [_week(building, entry, date.fromisoformat(f"2000-{end}")) for entry in (low, high)]
         season = "" if len(ends) == 1 else f" before {end}"
         for (day, below), (_, above) in zip(*weeks, strict=True):
             for minute, first, second in _crossings(below, above):
@@ -120,9 +120,9 @@ def first_crossing(building: Description, low: Given, high: Given) -> tuple[str,
     return None
 
 
-def _week(building: Description, given: Given, day: date) -> list[tuple[str, list[Piece]]]:
+def _week(building: Description, bound: Bound, day: date) -> list[tuple[str, list[Piece]]]:
     """Pieces of a set point on each day of the week of a season, and on holidays; empty for a column."""
-    number, name = given
+    number, name = bound
     if name is None:
         always = [] if number is None else [(0.0, 1440.0, float(number), float(number))]
         return [(day_name, always) for day_name in (*DAYS, "holidays")]

@@ -182,12 +182,12 @@ def _of_zones(building: Description) -> Iterator[str]:
     if building.zones and building.site.air_density is None:
         yield _ATMOSPHERE
     for name, zone in building.zones.items():
-        seen = building.connections.of(name)
-        if zone.longwave.kind == "none" or len(seen) < 2:
+        surfaces = building.connections.of(name)
+        if zone.longwave.kind == "none" or len(surfaces) < 2:
             continue
         yield _ENCLOSURE
         if zone.view_factors is None:
-            yield _EXACT_VIEW if closed(seen) else _AREA_VIEW
+            yield _EXACT_VIEW if closed(surfaces) else _AREA_VIEW
 
 
 def _of_glazings(building: Description) -> Iterator[str]:
@@ -209,6 +209,6 @@ def _tabulated(building: Description) -> bool:
     used = {layer.material for name in built for layer in building.constructions[name].layers}
     materials = (building.materials[name] for name in used)
     return any(
-        isinstance(one, PhaseChangeMaterial) and isinstance(one.law, TableLaw | FractionsLaw)
-        for one in materials
+        isinstance(material, PhaseChangeMaterial) and isinstance(material.law, TableLaw | FractionsLaw)
+        for material in materials
     )

@@ -79,25 +79,25 @@ def with_ties(building: AnyBuilding, ties: Mapping[str, How]) -> AnyBuilding:
     return changed
 
 
-def with_tied(building: Description, found: Iterable[Parameter]) -> list[Parameter]:
+def with_tied(building: Description, all_parameters: Iterable[Parameter]) -> list[Parameter]:
     """The parameters of a building with its tied ones, after the numbers that follow them."""
     from dataclasses import replace
 
-    listed = list(found)
+    listed = list(all_parameters)
     if not building.ties:
         return listed
     together = tied(building.ties, listed)
-    follows = {path: one.path for one in together for path in one.members}
-    kept = [
+    follows = {path: parameter.path for parameter in together for path in parameter.members}
+    untied = [
         replace(p, reason=p.reason or f"follows {follows[p.path]}") if p.path in follows else p
         for p in listed
     ]
-    return [*kept, *together]
+    return [*untied, *together]
 
 
-def faults(building: Description, found: Iterable[Parameter]) -> list[InitErrorDetails]:
+def faults(building: Description, all_parameters: Iterable[Parameter]) -> list[InitErrorDetails]:
     """What is wrong with the ties of a building."""
-    wrong, listed = [], list(found)
+    wrong, listed = [], list(all_parameters)
     for pattern, how in building.ties.items():
         try:
             tied({pattern: how}, listed)
@@ -121,17 +121,17 @@ def tied(ties: Mapping[str, How], numbers: Iterable[Parameter]) -> list[Paramete
     InputError
         A pattern matches nothing, its numbers cannot be tied, or a number is in two ties.
     """
-    known = {p.path: p for p in numbers if not p.members}
-    made: list[Parameter] = []
-    seen: dict[str, str] = {}
+    by_path = {p.path: p for p in numbers if not p.members}
+    tied_parameters: list[Parameter] = []
+    tie_of: dict[str, str] = {}
     for pattern, how in ties.items():
-        members = [known[path] for path in matching(pattern, known)]
-        made.append(_tied(pattern, how, members))
-        for path in made[-1].members:
-            if path in seen:
-                raise InputError(f"{path}: is in {seen[path]} and in {pattern}; expected each number once")
-            seen[path] = pattern
-    return made
+        members = [by_path[path] for path in matching(pattern, by_path)]
+        tied_parameters.append(_tied(pattern, how, members))
+        for path in tied_parameters[-1].members:
+            if path in tie_of:
+                raise InputError(f"{path}: is in {tie_of[path]} and in {pattern}; expected each number once")
+            tie_of[path] = pattern
+    return tied_parameters
 
 
 def spread(building: Building, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -146,33 +146,33 @@ def spread(building: Building, values: Mapping[str, Any]) -> dict[str, Any]:
     """
     if not any(is_pattern(str(path)) for path in values):
         return dict(values)
-    found: dict[str, Any] = {}
+    values_by_path: dict[str, Any] = {}
     for path, value in values.items():
         if path in building.ties:
             by_factor = building.ties[path] == "factor"
             for member in building.parameter(path).members:
-                found[member] = building.parameter(member).value * value if by_factor else value
+                values_by_path[member] = building.parameter(member).value * value if by_factor else value
         elif is_pattern(str(path)):
-            known = [p.path for p in building.parameters() if not p.members]
-            found |= dict.fromkeys(matching(path, known, parts=True), value)
+            paths = [p.path for p in building.parameters() if not p.members]
+            values_by_path |= dict.fromkeys(matching(path, paths, parts=True), value)
         else:
-            found[path] = value
-    return found
+            values_by_path[path] = value
+    return values_by_path
 
 
 def spread_ranges(
     building: Building, ranges: Mapping[str, tuple[float, float]]
 ) -> dict[str, tuple[float, float]]:
     """Ranges by path with those of tied parameters given to each of their members."""
-    found: dict[str, tuple[float, float]] = {}
+    ranges_by_path: dict[str, tuple[float, float]] = {}
     for path, (low, high) in ranges.items():
         if path not in building.ties:
-            found[path] = (low, high)
+            ranges_by_path[path] = (low, high)
             continue
         for member in building.parameter(path).members:
             value = building.parameter(member).value if building.ties[path] == "factor" else 1.0
-            found[member] = (min(low * value, high * value), max(low * value, high * value))
-    return found
+            ranges_by_path[member] = (min(low * value, high * value), max(low * value, high * value))
+    return ranges_by_path
 
 
 def expanded(building: Building, paths: Iterable[str]) -> list[str]:
@@ -185,21 +185,21 @@ def expanded(building: Building, paths: Iterable[str]) -> list[str]:
     InputError
         A pattern matches nothing, or nothing that varies.
     """
-    found: list[str] = []
+    expanded_paths: list[str] = []
     for path in paths:
         if not is_pattern(str(path)) or path in building.ties:
-            found.append(path)
+            expanded_paths.append(path)
             continue
-        every = matching(path, (p.path for p in building.parameters() if not p.members))
-        active = [one for one in every if building.parameter(one).varies]
+        matches = matching(path, (p.path for p in building.parameters() if not p.members))
+        active = [match_path for match_path in matches if building.parameter(match_path).varies]
         if not active:
-            first = building.parameter(every[0])
+            first = building.parameter(matches[0])
             raise InputError(
-                f"{path}: found {len(every)} numbers, none of which varies ({first.path}: {first.reason}); "
+                f"{path}: found {len(matches)} numbers, none of which varies ({first.path}: {first.reason}); "
                 "expected at least one that has an effect and a range"
             )
-        found += active
-    return list(dict.fromkeys(found))
+        expanded_paths += active
+    return list(dict.fromkeys(expanded_paths))
 
 
 def _numbers(building: Building) -> list[Parameter]:
@@ -231,7 +231,7 @@ def _of_value(pattern: str, members: list[Parameter]) -> Parameter:
             )
     lower, upper = max(p.lower for p in members), min(p.upper for p in members)
     span = max(p.low for p in members), min(p.high for p in members)
-    return _made(pattern, first.value, first.unit, (lower, upper), span, members)
+    return _tied_parameter(pattern, first.value, first.unit, (lower, upper), span, members)
 
 
 def _of_factor(pattern: str, members: list[Parameter]) -> Parameter:
@@ -247,7 +247,7 @@ def _of_factor(pattern: str, members: list[Parameter]) -> Parameter:
     upper = min(_inward(max(p.lower / p.value, p.upper / p.value), p) for p in scaled)
     ranges = [sorted((p.low / p.value, p.high / p.value)) for p in scaled]
     span = (max(lower, *(low for low, _ in ranges)), min(upper, *(high for _, high in ranges)))
-    return _made(pattern, 1.0, "-", (lower, upper), span, members, "factor of ")
+    return _tied_parameter(pattern, 1.0, "-", (lower, upper), span, members, "factor of ")
 
 
 def _inward(factor: float, parameter: Parameter) -> float:
@@ -257,7 +257,7 @@ def _inward(factor: float, parameter: Parameter) -> float:
     return factor
 
 
-def _made(
+def _tied_parameter(
     pattern: str,
     value: float,
     unit: str,

@@ -78,18 +78,18 @@ def has_height(side: Side | WindowOutside | WindowInside) -> bool:
 
 def without_effect(building: Description) -> dict[str, str]:
     """Paths of the numbers that have no effect in this building, each with the reason."""
-    every = sides(building)
-    found = dict(_unused(building))
-    found.update(_in_site(building, every))
+    all_sides = sides(building)
+    reasons = dict(_unused(building))
+    reasons.update(_in_site(building, all_sides))
     parts = obstructed_paths(building)
-    for item in every:
-        found.update(_on_side(item, parts))
-    found.update(_behind_walls(building))
+    for item in all_sides:
+        reasons.update(_on_side(item, parts))
+    reasons.update(_behind_walls(building))
     for name, surface in building.surfaces.items():
-        found.update(_in_direction(building, name, surface))
-    found.update(_between_faces(building))
-    found.update(_in_air(building))
-    return found
+        reasons.update(_in_direction(building, name, surface))
+    reasons.update(_between_faces(building))
+    reasons.update(_in_air(building))
+    return reasons
 
 
 def sides(building: Description) -> list[SurfaceSide]:
@@ -110,16 +110,16 @@ def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
 def _behind_walls(building: Description) -> Reasons:
     """Absorptances that no sun reaches, and heights of gaps where no gap is filled."""
     for zone in building.zones:
-        seen = building.connections.of(zone)
-        lit = any(item.window is not None for item in seen)
-        given = isinstance(building.zones[zone].sun, GivenSun)
-        for item in seen:
+        surfaces = building.connections.of(zone)
+        has_glass = any(item.window is not None for item in surfaces)
+        is_stated_sun = isinstance(building.zones[zone].sun, GivenSun)
+        for item in surfaces:
             path = f"surfaces.{item.name}.{item.side}.absorptance"
-            if item.surface is not None and (not lit or given):
+            if item.surface is not None and (not has_glass or is_stated_sun):
                 yield (
                     path,
                     "no sun enters the zone"
-                    if not lit
+                    if not has_glass
                     else "the distribution of the sun in the zone is given",
                 )
     for name, glazing in building.glazings.items():
@@ -173,22 +173,25 @@ def _unused(building: Description) -> Reasons:
 
 def _in_glazing(path: str, glazing: PaneGlazing) -> Reasons:
     """Emissivities next to gaps of a given conductance only."""
-    given = [isinstance(gap, GivenGap) for gap in glazing.gaps]
+    is_stated_gap = [isinstance(gap, GivenGap) for gap in glazing.gaps]
     for index, pane in enumerate(glazing.panes):
-        seen = {"outside": index > 0 and given[index - 1], "inside": index < len(given) and given[index]}
+        by_side = {
+            "outside": index > 0 and is_stated_gap[index - 1],
+            "inside": index < len(is_stated_gap) and is_stated_gap[index],
+        }
         if isinstance(pane.emissivity, PaneEmissivities):
-            inactive = [f".{side}" for side, still in seen.items() if still]
+            inactive = [f".{side}" for side, still in by_side.items() if still]
         else:
-            inactive = [""] if all(seen.values()) else []
+            inactive = [""] if all(by_side.values()) else []
         for which in inactive:
             yield f"{path}.panes.{index}.emissivity{which}", "the conductance of the gap is given"
 
 
-def _in_site(building: Description, every: list[SurfaceSide]) -> Reasons:
+def _in_site(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
     site = building.site
-    seeing = [item for item in every if item.sees_sky]
+    seeing = [item for item in all_sides if item.sees_sky]
     parts = obstructed_paths(building)
-    if not any((item.sunlit or item.path in parts) and item.tilt > 0.0 for item in every):
+    if not any((item.sunlit or item.path in parts) and item.tilt > 0.0 for item in all_sides):
         yield (
             "site.ground_reflectance",
             "no tilted surface takes its irradiance from the climate",
@@ -197,7 +200,7 @@ def _in_site(building: Description, every: list[SurfaceSide]) -> Reasons:
         yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
     if not seeing or site.sky.kind in ("measured", "offset"):
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
-    if not any(item.windy and has_height(item.side) for item in every):
+    if not any(item.windy and has_height(item.side) for item in all_sides):
         reason = "no surface with a height depends on wind: the wind at the mast is used"
         yield from _all_of("site.wind", site.wind, reason)
     if not building.zones:
@@ -299,12 +302,12 @@ def _by_direction(building: Description, zone: str) -> bool:
 
 def _between_faces(building: Description) -> Reasons:
     for name, zone in building.zones.items():
-        seen = building.connections.sides(name)
+        zone_sides = building.connections.sides(name)
         lone = len(building.connections.of(name)) == 1
         reason = "the zone has no long-wave exchange" if isinstance(zone.longwave, NoLongwave) else ""
         reason = reason or ("no other surface exchanges with it" if lone else "")
         if reason:
-            yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in seen)
+            yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in zone_sides)
             yield f"zones.{name}.longwave.reference", reason
 
 

@@ -43,49 +43,49 @@ def outlines(surfaces: Mapping[str, Surface]) -> dict[str, Polygon]:
     return _outlines("surfaces", {name: surface.vertices for name, surface in surfaces.items()})
 
 
-def _outlines(section: str, given: Mapping[str, Vertices | None]) -> dict[str, Polygon]:
-    drawn = {name: vertices for name, vertices in given.items() if vertices is not None}
-    if not drawn:
+def _outlines(section: str, by_name: Mapping[str, Vertices | None]) -> dict[str, Polygon]:
+    with_vertices = {name: vertices for name, vertices in by_name.items() if vertices is not None}
+    if not with_vertices:
         return {}
     from mascarin.building.geometry import Polygon
 
-    found, faults = {}, []
-    for name, vertices in drawn.items():
+    polygons, faults = {}, []
+    for name, vertices in with_vertices.items():
         try:
-            found[name] = Polygon.of(name, vertices)
+            polygons[name] = Polygon.of(name, vertices)
         except InputError as error:
             faults.append(fault((section, name, "vertices"), *_sentence(error)))
     insist(*faults)
-    return found
+    return polygons
 
 
 def sides_by_zone(surfaces: Mapping[str, Surface]) -> dict[str, list[tuple[str, str]]]:
     """Surfaces of each zone as (surface, side), in the order of the description, outside before inside."""
-    found: dict[str, list[tuple[str, str]]] = {}
+    by_zone: dict[str, list[tuple[str, str]]] = {}
     for name, surface in surfaces.items():
         for side, facing in (("outside", surface.outside), ("inside", surface.inside)):
             if facing.zone is not None:
-                found.setdefault(facing.zone, []).append((name, side))
-    return found
+                by_zone.setdefault(facing.zone, []).append((name, side))
+    return by_zone
 
 
 def enclosure(sides: Sequence[tuple[str, str]], surfaces: Mapping[str, Surface]) -> list[Polygon] | None:
     """Surfaces of a zone as polygons that point into it; None unless all have vertices."""
     if not sides or any(surfaces[name].vertices is None for name, _ in sides):
         return None
-    drawn = outlines({name: surfaces[name] for name, _ in sides})
-    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in sides]
+    polygons = outlines({name: surfaces[name] for name, _ in sides})
+    return [polygons[name] if side == "outside" else polygons[name].reversed() for name, side in sides]
 
 
 def derive_surfaces(surfaces: Mapping[str, Surface], latitude: float) -> dict[str, Surface]:
     """Derive area and direction of every surface, lengths and heights of its sides, and the coldest day."""
-    drawn, areas = outlines(surfaces), drawn_areas(surfaces)
+    polygons, areas = outlines(surfaces), drawn_areas(surfaces)
 
-    def derived(name: str, one: Surface) -> Surface:
+    def derived(name: str, surface: Surface) -> Surface:
         with _located(("surfaces", name)):
-            return _derived_surface(one, drawn.get(name), areas.get(name), latitude)
+            return _derived_surface(surface, polygons.get(name), areas.get(name), latitude)
 
-    return {name: derived(name, one) for name, one in surfaces.items()}
+    return {name: derived(name, surface) for name, surface in surfaces.items()}
 
 
 @contextmanager
@@ -98,31 +98,31 @@ def _located_below(key: str) -> Iterator[None]:
 
 
 @contextmanager
-def _located(at: Location) -> Iterator[None]:
+def _located(location: Location) -> Iterator[None]:
     """Say where a value stands that cannot be derived."""
     try:
         yield
     except NotDerivableError as error:
-        refuse(error.at(at))
+        refuse(error.at(location))
 
 
 def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
     """Areas of the surfaces that have vertices, without the surfaces that lie in them [m2]."""
-    drawn = outlines(surfaces)
-    if not drawn:
+    polygons = outlines(surfaces)
+    if not polygons:
         return {}
     try:
-        return dict(zip(drawn, _net_areas(tuple(drawn.values())), strict=True))
+        return dict(zip(polygons, _net_areas(tuple(polygons.values())), strict=True))
     except InputError as error:
         refuse(fault(("surfaces",), *_sentence(error)))
 
 
 @lru_cache(maxsize=4)
-def _net_areas(drawn: tuple[Polygon, ...]) -> tuple[float, ...]:
+def _net_areas(polygons: tuple[Polygon, ...]) -> tuple[float, ...]:
     """The areas of the same polygons are needed by several rules [m2]."""
     from mascarin.building.geometry import net_areas
 
-    return tuple(map(float, net_areas(drawn)))
+    return tuple(map(float, net_areas(polygons)))
 
 
 def _derived_surface(
@@ -197,14 +197,14 @@ def _derived_convection(
 
 def _of_shape(law: FormulaLaw, area: float, tilt: float, polygon: Polygon | None) -> dict[str, Number]:
     """Length and perimeter of a surface, where a formula uses them and has no values of its own."""
-    found = {}
+    derived_values = {}
     if law.uses(LENGTH) and LENGTH not in law.numbers:
         length, source = _length(area, tilt, polygon)
-        found[LENGTH] = derived_number(AlamdariHammond, LENGTH, length, source)
+        derived_values[LENGTH] = derived_number(AlamdariHammond, LENGTH, length, source)
     if law.uses(PERIMETER) and PERIMETER not in law.numbers:
         edge, source = _perimeter(area, polygon)
-        found[PERIMETER] = derived_number(Tarp, PERIMETER, edge, source)
-    return found
+        derived_values[PERIMETER] = derived_number(Tarp, PERIMETER, edge, source)
+    return derived_values
 
 
 def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
@@ -257,11 +257,11 @@ def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
 
 def derive_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
     """Derive area of every window, and lengths and heights of its sides and gaps."""
-    drawn = window_outlines(windows)
+    polygons = window_outlines(windows)
 
     def derived(name: str, window: Window) -> Window:
         with _located(("windows", name)):
-            return _derived_window(window, surfaces[window.surface], drawn.get(name))
+            return _derived_window(window, surfaces[window.surface], polygons.get(name))
 
     return {name: derived(name, window) for name, window in windows.items()}
 
@@ -333,28 +333,31 @@ def _derived_ground(ground: Ground | None, latitude: float) -> Ground | None:
     return ground.model_copy(update={"coldest_day": _coldest_day(latitude)})
 
 
-def _volume(zone: str, seen: list[Polygon] | None) -> Number:
-    at: Location = ("zones", zone, "volume")
-    if seen is None:
+def _volume(zone: str, polygons: list[Polygon] | None) -> Number:
+    location: Location = ("zones", zone, "volume")
+    if polygons is None:
         refuse(
             fault(
-                at, "nothing", "Volume of air, above 0 [m3]", "Add 'volume:' (or vertices to every surface)."
+                location,
+                "nothing",
+                "Volume of air, above 0 [m3]",
+                "Add 'volume:' (or vertices to every surface).",
             )
         )
     from mascarin.building.geometry import volume
 
     try:
-        with _located(at[:-1]):
-            return derived_number(Zone, "volume", volume(seen), _FROM_VERTICES)
+        with _located(location[:-1]):
+            return derived_number(Zone, "volume", volume(polygons), _FROM_VERTICES)
     except InputError as error:
-        refuse(fault(at, *_sentence(error)))
+        refuse(fault(location, *_sentence(error)))
 
 
 def _sentence(error: InputError) -> tuple[str, str, str]:
     """Split 'found; expected ...; do ...' into its three parts."""
-    found, _, rest = str(error).partition("; expected ")
-    expected, _, advice = rest.partition("; ")
-    return found, expected or "a valid geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""
+    actual, _, expected_text = str(error).partition("; expected ")
+    expected, _, advice = expected_text.partition("; ")
+    return actual, expected or "a valid geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""
 
 
 #: Sections that are completed when a building is made, in this order.

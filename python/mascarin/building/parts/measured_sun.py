@@ -47,19 +47,21 @@ def obstructed(building: Description) -> dict[SideName, list[str]]:
 
 
 def _obstructed(building: Description) -> dict[SideName, list[str]]:
-    free = [(at, side) for at, side in _measured(building) if takes_part(side)]
+    free = [(side_name, side) for side_name, side in _measured(building) if takes_part(side)]
     if not free:
         return {}
     horizon = ["horizon"] if building.site.horizon else []
     walls, shades = obstructions(building), _shades(building)
-    obstacles = {at: [*walls.get(at, []), *shades.get(at, []), *horizon] for at, _ in free}
-    return {at: names for at, names in obstacles.items() if names}
+    obstacles = {
+        side_name: [*walls.get(side_name, []), *shades.get(side_name, []), *horizon] for side_name, _ in free
+    }
+    return {side_name: names for side_name, names in obstacles.items() if names}
 
 
 def paths(building: Description) -> set[str]:
     """Paths of the sides of `obstructed`."""
-    every = {at: path for path, at, _ in _sides(building)}
-    return {every[at] for at in obstructed(building)}
+    path_of = {side_name: path for path, side_name, _ in _sides(building)}
+    return {path_of[side_name] for side_name in obstructed(building)}
 
 
 def measured_lines(building: Description) -> Iterator[str]:
@@ -76,14 +78,15 @@ def measured_lines(building: Description) -> Iterator[str]:
         A line for each surface or window outdoors with a measured irradiance.
     """
     taken = obstructed(building)
-    for at, side in _measured(building):
-        where = f"measured irradiance: {at[0]}, {at[1]}, by column {side.irradiance}"
+    for side_name, side in _measured(building):
+        where = f"measured irradiance: {side_name[0]}, {side_name[1]}, by column {side.irradiance}"
         if side.behind_obstacles:
             yield f"{where}, behind its obstacles: used as it is"
-        elif at in taken:
+        elif side_name in taken:
             yield (
-                f"{where}, of the free plane: {listed(taken[at])} take{_s(taken[at])} a part of beam and "
-                "diffuse radiation, which are split as in the climate"
+                f"{where}, of the free plane: {listed(taken[side_name])} "
+                f"take{_s(taken[side_name])} a part of beam and diffuse radiation, which are split as in "
+                "the climate"
             )
         else:
             yield f"{where}: nothing stands in front of it"
@@ -111,9 +114,9 @@ def _s(names: list[str]) -> str:
 
 
 def _measured(building: Description) -> Iterator[tuple[SideName, Side | WindowOutside]]:
-    for _, at, side in _sides(building):
+    for _, side_name, side in _sides(building):
         if side.outdoors and side.irradiance is not None:
-            yield at, side
+            yield side_name, side
 
 
 def _sides(building: Description) -> Iterator[tuple[str, SideName, Side | WindowOutside]]:
@@ -133,7 +136,7 @@ def _shades(building: Description) -> dict[SideName, list[str]]:
 
     standing, names = InFront(list(shade_outlines(building.shades).values())), list(building.shades)
     walls, panes = outlines(building.surfaces), window_outlines(building.windows)
-    drawn: dict[SideName, Polygon] = {(name, "outside"): outline for name, outline in walls.items()}
-    drawn |= {(name, "inside"): outline.reversed() for name, outline in walls.items()}
-    drawn |= {(name, "outside"): outline for name, outline in panes.items()}
-    return {at: [names[k] for k in standing.of(polygon)] for at, polygon in drawn.items()}
+    polygons: dict[SideName, Polygon] = {(name, "outside"): outline for name, outline in walls.items()}
+    polygons |= {(name, "inside"): outline.reversed() for name, outline in walls.items()}
+    polygons |= {(name, "outside"): outline for name, outline in panes.items()}
+    return {side_name: [names[k] for k in standing.of(polygon)] for side_name, polygon in polygons.items()}

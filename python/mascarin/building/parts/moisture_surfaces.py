@@ -56,7 +56,7 @@ def vapour_sides(building: Description) -> Iterator[VapourSide]:
             material = building.materials[layer.material]
             exception = humidity.surfaces.get(name)
             sealed = exception is not None and exception.sealed
-            known = layer.material in humidity.materials and not isinstance(material, Resistance)
+            is_sorbing = layer.material in humidity.materials and not isinstance(material, Resistance)
             yield VapourSide(
                 surface=name,
                 side=number,
@@ -64,7 +64,7 @@ def vapour_sides(building: Description) -> Iterator[VapourSide]:
                 layer=layer.name,
                 material=layer.material,
                 density=_density(material),
-                takes_up=known and not sealed,
+                takes_up=is_sorbing and not sealed,
                 sealed=sealed,
             )
 

@@ -50,13 +50,15 @@ def obstructions(building: Description) -> dict[SideName, list[str]]:
 def _obstructions(building: Description) -> dict[SideName, list[str]]:
     if not building.site.self_shading:
         return {}
-    drawn = outlines(building.surfaces)
-    walls = [name for name in drawn if _can_obstruct(building.surfaces[name])]
-    standing = InFront([drawn[name] for name in walls])
-    found = {side: [walls[k] for k in standing.of(polygon)] for side, polygon in _outdoors(building, drawn)}
+    polygons = outlines(building.surfaces)
+    walls = [name for name in polygons if _can_obstruct(building.surfaces[name])]
+    standing = InFront([polygons[name] for name in walls])
+    in_front_of = {
+        side: [walls[k] for k in standing.of(polygon)] for side, polygon in _outdoors(building, polygons)
+    }
     for name in window_outlines(building.windows):
-        found[name, "outside"] = found.get((building.windows[name].surface, "outside"), [])
-    return {side: names for side, names in found.items() if names}
+        in_front_of[name, "outside"] = in_front_of.get((building.windows[name].surface, "outside"), [])
+    return {side: names for side, names in in_front_of.items() if names}
 
 
 class ShadePairs(NamedTuple):
@@ -94,12 +96,12 @@ def pairs_with_shades(building: Description) -> ShadePairs:
     shades = list(shade_outlines(building.shades).values())
     standing = InFront(shades)
     sides = [polygon for _, polygon in _outdoors(building, outlines(building.surfaces))]
-    near = [
+    candidates = [
         _apart(polygon, shades[k]) < math.sqrt(polygon.area)
         for polygon in (*sides, *window_outlines(building.windows).values())
         for k in standing.of(polygon)
     ]
-    return ShadePairs(sum(map(int, near)), len(near) - sum(map(int, near)))
+    return ShadePairs(sum(map(int, candidates)), len(candidates) - sum(map(int, candidates)))
 
 
 def _apart(polygon: Polygon, other: Polygon) -> float:
@@ -109,13 +111,13 @@ def _apart(polygon: Polygon, other: Polygon) -> float:
 
 
 def expected_seconds(
-    found: Mapping[SideName, list[str]], stages: int = _YEAR, *, shades: ShadePairs | None = None
+    obstructed: Mapping[SideName, list[str]], stages: int = _YEAR, *, shades: ShadePairs | None = None
 ) -> float:
     """Processor time of the shadows of a run on a usual machine of 2025 [s].
 
     Parameters
     ----------
-    found : mapping of (name, side) to list of str
+    obstructed : mapping of (name, side) to list of str
         Surfaces in front of each side, from `obstructions`.
     stages : int
         Stages of all steps; those of a year of 15 min by SDIRK2 if not given.
@@ -135,9 +137,9 @@ def expected_seconds(
     0.0125
     """
     shades = shades or ShadePairs()
-    pairs = sum(map(len, found.values()))
+    pairs = sum(map(len, obstructed.values()))
     each = 3.5e-8 * pairs + 1.4e-6 * shades.near + 1.5e-8 * shades.far
-    return 1e-2 * len(found) + 0.5 * each * stages
+    return 1e-2 * len(obstructed) + 0.5 * each * stages
 
 
 def in_words(building: Description) -> str:
@@ -171,12 +173,12 @@ def in_words(building: Description) -> str:
     if all(surface.vertices is None for surface in building.surfaces.values()):
         return "nothing shades: no surface outdoors has vertices"
     missing = f"; without vertices, unshaded: {listed(bare)}" if bare else ""
-    found = obstructions(building)
-    cost = f", about {expected_seconds(found, shades=shades):.1g} s in a year"
-    if not found:
+    obstructed = obstructions(building)
+    cost = f", about {expected_seconds(obstructed, shades=shades):.1g} s in a year"
+    if not obstructed:
         return f"no surface stands in front of another{thin}{cost if any(shades) else ''}{missing}"
-    pairs = sum(map(len, found.values()))
-    who = listed([f"{name} by {listed(others)}" for (name, _), others in found.items()], "; ")
+    pairs = sum(map(len, obstructed.values()))
+    who = listed([f"{name} by {listed(obstacles)}" for (name, _), obstacles in obstructed.items()], "; ")
     return f"{pairs} pairs of surfaces ({who}){thin}{cost}{missing}"
 
 
@@ -205,9 +207,9 @@ def _can_obstruct(surface: Surface) -> bool:
     return not between_zones and all(side.ground is None for side in surface.sides)
 
 
-def _outdoors(building: Description, drawn: dict[str, Polygon]) -> Iterator[tuple[SideName, Polygon]]:
+def _outdoors(building: Description, polygons: dict[str, Polygon]) -> Iterator[tuple[SideName, Polygon]]:
     """Sides that see sun or sky, with their outline as seen from outdoors."""
-    for name, polygon in drawn.items():
+    for name, polygon in polygons.items():
         surface = building.surfaces[name]
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             if side.exposed.sun or side.exposed.sky:

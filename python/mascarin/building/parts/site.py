@@ -287,14 +287,14 @@ class Site(Part):
         """Take the effect of clouds that belongs to the model of the clear sky, where none is given."""
         if not isinstance(raw, Mapping):
             return handler(raw)
-        given = raw.get("cloud")
-        if given is None:
+        cloud = raw.get("cloud")
+        if cloud is None:
             site = handler({**raw, "cloud": {"kind": _cloud_kind(raw.get("sky"))}})
             site.model_fields_set.discard("cloud")
             return site
-        if isinstance(given, Mapping) and "kind" not in given:
-            kind = "layer" if {"emissivity", "base"} & set(given) else "factor"
-            raw = {**raw, "cloud": {"kind": kind, **given}}
+        if isinstance(cloud, Mapping) and "kind" not in cloud:
+            kind = "layer" if {"emissivity", "base"} & set(cloud) else "factor"
+            raw = {**raw, "cloud": {"kind": kind, **cloud}}
         return handler(raw)
 
 

@@ -83,27 +83,27 @@ class Connections:
     def _find(self, zone: str) -> Iterator[ZoneSurface]:
         sides, surfaces = self.sides(zone), self._surfaces
         which = dict(sides)
-        every = {name: window for wall in which for name, window in self.windows_in(wall).items()}
-        seen = {name: every[name] for name in sorted(every, key=self._order.__getitem__)}
-        drawn = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(seen)
+        by_name = {name: window for wall in which for name, window in self.windows_in(wall).items()}
+        windows = {name: by_name[name] for name in sorted(by_name, key=self._order.__getitem__)}
+        polygons = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(windows)
 
         def polygon(name: str, side: str) -> Polygon | None:
-            found = drawn.get(name)
-            return found if found is None or side == "outside" else found.reversed()
+            outline = polygons.get(name)
+            return outline if outline is None or side == "outside" else outline.reversed()
 
         for name, side in sides:
             area = float(surfaces[name].area or 0.0)
             area -= sum(float(window.area or 0.0) for window in self.windows_in(name).values())
             yield ZoneSurface(name, side, area, 1.0, polygon(name, side), surfaces[name], None)
-        parts = [(name, window, 1.0 - frame_fraction(window)) for name, window in seen.items()]
-        framed = [(name, window) for name, window in seen.items() if window.frame is not None]
+        parts = [(name, window, 1.0 - frame_fraction(window)) for name, window in windows.items()]
+        framed = [(name, window) for name, window in windows.items() if window.frame is not None]
         parts += [(name, window, frame_fraction(window)) for name, window in framed]
         for name, window, share in parts:
             area, side = share * float(window.area or 0.0), which[window.surface]
             yield ZoneSurface(name, side, area, share, polygon(name, side), None, window)
 
 
-def floors(seen: Sequence[ZoneSurface]) -> list[bool]:
+def floors(surfaces: Sequence[ZoneSurface]) -> list[bool]:
     """Which surfaces of a zone are its floor: those that face up within 30 deg, without internal mass."""
 
     def floor(item: ZoneSurface) -> bool:
@@ -114,7 +114,7 @@ def floors(seen: Sequence[ZoneSurface]) -> list[bool]:
         tilt = float(item.surface.tilt or 0.0)
         return (tilt if item.side == "outside" else 180.0 - tilt) <= _FLOOR
 
-    return [floor(item) for item in seen]
+    return [floor(item) for item in surfaces]
 
 
 def frame_fraction(window: Window) -> float:
@@ -122,9 +122,9 @@ def frame_fraction(window: Window) -> float:
     return 0.0 if window.frame is None else float(window.frame.fraction)
 
 
-def closed(seen: Sequence[ZoneSurface]) -> bool:
+def closed(surfaces: Sequence[ZoneSurface]) -> bool:
     """Whether all surfaces of a zone have an outline."""
-    return bool(seen) and all(item.polygon is not None for item in seen)
+    return bool(surfaces) and all(item.polygon is not None for item in surfaces)
 
 
 def surface_names(surfaces: Sequence[ZoneSurface]) -> list[str]:

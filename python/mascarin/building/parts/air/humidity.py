@@ -86,11 +86,11 @@ class HumiditySetPoint(Part):
     column: str | None = Field(None, description="Measured column with its values")
 
     @model_validator(mode="after")
-    def _one(self) -> HumiditySetPoint:
-        given = [key for key in ("constant", "schedule", "column") if getattr(self, key) is not None]
-        if len(given) != 1:
+    def _one_source(self) -> HumiditySetPoint:
+        stated = [key for key in ("constant", "schedule", "column") if getattr(self, key) is not None]
+        if len(stated) != 1:
             raise problem(
-                " and ".join(given) or "neither",
+                " and ".join(stated) or "neither",
                 "a number, {schedule: name} or {column: name}",
                 "Write for instance 'relative_humidity: 0.6'.",
             )
@@ -176,11 +176,11 @@ class Humidistat(Part):
     )
 
     @model_validator(mode="after")
-    def _one(self) -> Humidistat:
-        given = [key for key in ("relative_humidity", "humidity_ratio") if getattr(self, key) is not None]
-        if len(given) != 1:
+    def _one_source(self) -> Humidistat:
+        stated = [key for key in ("relative_humidity", "humidity_ratio") if getattr(self, key) is not None]
+        if len(stated) != 1:
             raise problem(
-                " and ".join(given) or "no set point",
+                " and ".join(stated) or "no set point",
                 "one of relative_humidity [-] and humidity_ratio [kg/kg]",
                 "Write for instance 'drying: {relative_humidity: 0.6}'.",
             )
@@ -309,5 +309,5 @@ def with_all_zones(humidity: Humidity | None, zones: Iterable[str]) -> Humidity 
     """The same section with every zone of the building, in its order."""
     if humidity is None:
         return None
-    every = {name: humidity.zones.get(name) or ZoneHumidity() for name in zones}
-    return humidity.model_copy(update={"zones": every})
+    by_zone = {name: humidity.zones.get(name) or ZoneHumidity() for name in zones}
+    return humidity.model_copy(update={"zones": by_zone})

@@ -24,10 +24,10 @@ class Driven(Part):
 
     @model_validator(mode="after")
     def _one_source(self) -> Driven:
-        given = [key for key in (self.NUMBER, "column") if getattr(self, key) is not None]
-        if len(given) != 1 and not (not given and self._needs_none()):
+        stated = [key for key in (self.NUMBER, "column") if getattr(self, key) is not None]
+        if len(stated) != 1 and not (not stated and self._needs_none()):
             raise problem(
-                " and ".join(given) or f"no {self.NUMBER}",
+                " and ".join(stated) or f"no {self.NUMBER}",
                 f"exactly one of {self.NUMBER} and column",
                 "Keep one source of this quantity.",
             )

@@ -123,8 +123,8 @@ class _Days(Part):
         """Points of a day of the week (0: Monday), or of a holiday."""
         group = "weekends" if weekday >= 5 else "weekdays"
         keys = (*(("holidays",) if holiday else ()), DAYS[weekday], group, "all")
-        found = (getattr(self, key) for key in keys)
-        return next((points for points in found if points is not None), None)
+        candidates = (getattr(self, key) for key in keys)
+        return next((points for points in candidates if points is not None), None)
 
 
 class FractionDays(_Days):
@@ -260,10 +260,10 @@ class _Schedule(Part):
 
     @model_validator(mode="after")
     def _sound(self) -> _Schedule:
-        given = [way for way in self.WAYS if getattr(self, way) is not None]
-        if len(given) != 1:
+        stated = [way for way in self.WAYS if getattr(self, way) is not None]
+        if len(stated) != 1:
             raise problem(
-                " and ".join(given) or "a schedule without values",
+                " and ".join(stated) or "a schedule without values",
                 f"exactly one of {', '.join(self.WAYS)}",
                 "A schedule is one value, profiles of days, those of seasons, or a measured column.",
             )
@@ -271,10 +271,10 @@ class _Schedule(Part):
         return self
 
     def _seasons_in_order(self) -> Iterator[InitErrorDetails]:
-        given = getattr(self, "seasons", None)
-        if given is None:
+        seasons = getattr(self, "seasons", None)
+        if seasons is None:
             return
-        ends = [season.until for season in given]
+        ends = [season.until for season in seasons]
         if not ends or ends[-1] != "12-31" or sorted(set(ends)) != ends:
             yield fault(
                 ("seasons",),
@@ -284,15 +284,15 @@ class _Schedule(Part):
             )
 
     def _inactive_holidays(self) -> Iterator[InitErrorDetails]:
-        own = any(one.profile(0, holiday=True) is not one.profile(0) for one in self.profiles)
-        if self.holidays and not own:
+        has_holidays = any(days.profile(0, holiday=True) is not days.profile(0) for days in self.profiles)
+        if self.holidays and not has_holidays:
             yield fault(
                 ("holidays",),
                 "dates, but no profile for them",
                 "days.holidays as well",
                 "Add it or remove them.",
             )
-        if own and not self.holidays:
+        if has_holidays and not self.holidays:
             yield fault(
                 ("days", "holidays"), "a profile, but no dates", "the dates under 'holidays:'", "List them."
             )
@@ -316,7 +316,7 @@ class _Schedule(Part):
     def season(self, day: date) -> int:
         """Index of the season of a date; 0 without seasons."""
         seasons = getattr(self, "seasons", None) or ()
-        return next((k for k, one in enumerate(seasons) if f"{day:%m-%d}" <= one.until), 0)
+        return next((k for k, entry in enumerate(seasons) if f"{day:%m-%d}" <= entry.until), 0)
 
     def pieces(self, weekday: int, *, holiday: bool = False, season: int = 0) -> list[Piece]:
         """One day as linear pieces; none for a measured column.
@@ -412,8 +412,8 @@ Schedule = Annotated[
 ]
 
 
-def _minutes(at: str) -> float:
-    hours, minutes = at.split(":")
+def _minutes(clock: str) -> float:
+    hours, minutes = clock.split(":")
     return 60.0 * int(hours) + int(minutes)
 
 

@@ -33,11 +33,11 @@ class SetPoint(Part):
     column: str | None = Field(None, description="Measured column of temperature [degC]")
 
     @model_validator(mode="after")
-    def _one(self) -> SetPoint:
-        given = [key for key in ("temperature", "schedule", "column") if getattr(self, key) is not None]
-        if len(given) != 1:
+    def _one_source(self) -> SetPoint:
+        stated = [key for key in ("temperature", "schedule", "column") if getattr(self, key) is not None]
+        if len(stated) != 1:
             raise problem(
-                " and ".join(given) or "neither",
+                " and ".join(stated) or "neither",
                 "a temperature [degC], {schedule: name} or {column: name}",
                 "Write for instance 'setpoint: 20'.",
             )

@@ -129,11 +129,11 @@ class Vent(Part):
 
     @model_validator(mode="after")
     def _wind(self) -> Vent:
-        given = [key for key in ("surface", "azimuth", "pressure") if getattr(self, key) is not None]
+        stated = [key for key in ("surface", "azimuth", "pressure") if getattr(self, key) is not None]
         if self.between is not None:
-            if given:
+            if stated:
                 raise problem(
-                    f"{' and '.join(given)} of an opening between zones",
+                    f"{' and '.join(stated)} of an opening between zones",
                     "none of them: no wind reaches it",
                     "Remove them.",
                 )
@@ -147,7 +147,7 @@ class Vent(Part):
             )
         if self.surface is not None and self.azimuth is not None:
             raise problem("surface and azimuth", "one of them", "Remove one: each gives the direction.")
-        if self.directed and len(given) == 1:
+        if self.directed and len(stated) == 1:
             raise problem(
                 "no direction of an opening that the wind reaches",
                 "'surface: NAME' of the wall it is in, or 'azimuth:'",

@@ -309,8 +309,8 @@ class Zone(Part):
                 "one of them",
                 "A zone that is held has both at one set point.",
             )
-        rest = {key: value for key, value in raw.items() if key != "held"}
-        return rest | {key: _plant_of(raw["held"]) for key in ("heating", "cooling")}
+        other_keys = {key: value for key, value in raw.items() if key != "held"}
+        return other_keys | {key: _plant_of(raw["held"]) for key in ("heating", "cooling")}
 
     @property
     def loads(self) -> dict[str, IdealLoads]:
@@ -370,11 +370,11 @@ class AirPath(Driven):
     def _two(self) -> AirPath:
         if self.between[0] == self.between[1]:
             raise problem(f"'{self.between[0]}' twice", "two different zones", "Name the other zone.")
-        given = "flow" if self.flow is not None else "column" if self.column is not None else ""
-        given = given or ("one_way" if self.one_way else "")
-        if self.door is not None and given:
+        stated = "flow" if self.flow is not None else "column" if self.column is not None else ""
+        stated = stated or ("one_way" if self.one_way else "")
+        if self.door is not None and stated:
             raise problem(
-                f"door and {given}",
+                f"door and {stated}",
                 "one of them: the flow through a door follows from temperatures",
                 "Describe the other flow as an air path of its own.",
             )

@@ -61,8 +61,8 @@ class ThermalBridge(Part):
             )
         stray = "number" if self.psi is not None else "length"
         if getattr(self, stray) is not None:
-            own = "psi" if self.psi is not None else "chi"
-            raise problem(f"'{stray}' beside {own}", "none", f"Remove '{stray}:'.")
+            coefficient = "psi" if self.psi is not None else "chi"
+            raise problem(f"'{stray}' beside {coefficient}", "none", f"Remove '{stray}:'.")
         if self.chi is not None and self.number is None:
             quantity = quantity_of(type(self).model_fields["number"])
             self._fill(number=Number(1.0, source=Remark("not given: one"), derived=True, quantity=quantity))

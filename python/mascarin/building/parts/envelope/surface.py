@@ -281,10 +281,10 @@ class Side(Part):
 
     @model_validator(mode="after")
     def _sound(self) -> Side:
-        given = [name for name in FACINGS if getattr(self, name) is not None]
-        if len(given) != 1:
-            found = " and ".join(given) or "a side that faces nothing"
-            raise problem(found, f"exactly one of {', '.join(FACINGS)}", "A side faces one thing only.")
+        stated = [name for name in FACINGS if getattr(self, name) is not None]
+        if len(stated) != 1:
+            actual = " and ".join(stated) or "a side that faces nothing"
+            raise problem(actual, f"exactly one of {', '.join(FACINGS)}", "A side faces one thing only.")
         insist(*self._missing(), *self._inactive())
         return self
 
@@ -403,8 +403,8 @@ class Surface(Part):
         """Whether solar radiation, wind or the view factors of a zone depend on the azimuth."""
         windy = by_wind_direction(self.outside.convection) and self.outside.exposed.wind
         sun = windy or any(side.sunlit for side in self.sides)
-        seen = any(side.zone is not None for side in self.sides)
-        return (sun or seen) and self.tilt is not None and 0.0 < self.tilt < 180.0
+        faces_a_zone = any(side.zone is not None for side in self.sides)
+        return (sun or faces_a_zone) and self.tilt is not None and 0.0 < self.tilt < 180.0
 
     def _zones(self) -> list[InitErrorDetails]:
         same = self.outside.zone is not None and self.outside.zone == self.inside.zone

@@ -82,17 +82,17 @@ class Pane(Part):
     @model_validator(mode="after")
     def _sound(self) -> Pane:
         pairs = (("transmittance", "reflectance"), ("density", "specific_heat"))
-        insist(*(one for pair in pairs for one in self._together(*pair)), *self._optics())
+        insist(*(error for pair in pairs for error in self._together(*pair)), *self._optics())
         return self
 
     def _together(self, first: str, second: str) -> Iterator[InitErrorDetails]:
-        given = [key for key in (first, second) if getattr(self, key) is not None]
-        if len(given) == 1:
-            missing = second if given == [first] else first
+        stated = [key for key in (first, second) if getattr(self, key) is not None]
+        if len(stated) == 1:
+            missing = second if stated == [first] else first
             yield fault(
                 (missing,),
                 "nothing",
-                f"{missing} beside {given[0]}",
+                f"{missing} beside {stated[0]}",
                 f"Add '{missing}:' or remove the other.",
             )
 
@@ -144,8 +144,8 @@ class GivenGap(Part):
 
 
 def _gap_kind(raw: Any) -> str:
-    given = "conductance" in raw if isinstance(raw, Mapping) else isinstance(raw, GivenGap)
-    return "given" if given else "filled"
+    is_stated = "conductance" in raw if isinstance(raw, Mapping) else isinstance(raw, GivenGap)
+    return "given" if is_stated else "filled"
 
 
 Gap = Annotated[
@@ -280,7 +280,7 @@ class PaneGlazing(Part):
             )
         table = self.angular
         both_ways = () if table is None else (table.diffuse, table.back)
-        diffuse = (one.absorptance if one is not None else None for one in both_ways)
+        diffuse = (optics.absorptance if optics is not None else None for optics in both_ways)
         for absorbed in (table.absorptance if table is not None else None, *diffuse):
             if absorbed is not None and len(absorbed) != len(self.panes):
                 yield fault(
