@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -271,45 +270,6 @@ def _single_precision(
     outputs = simulation.outputs
     names, units = [output.name for output in outputs], [output.unit for output in outputs]
     return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
-
-
-def screen(
-    building: Building,
-    climate: Climate,
-    *,
-    parameters: Sequence[str] | None = None,
-    ranges: Mapping[str, tuple[float, float]] | None = None,
-    **options: Any,
-) -> Sensitivity:
-    """Call `sensitivity_analysis` under its former name and with its former options.
-
-    Parameters
-    ----------
-    building, climate
-        As in `sensitivity_analysis`.
-    parameters : sequence of str, optional
-        Paths that vary; now `vary`.
-    ranges : mapping of str to (float, float), optional
-        Ranges; now values of `vary`. [unit of each]
-    **options
-        Other options of `sensitivity_analysis`.
-
-    Returns
-    -------
-    Sensitivity
-        Indices with intervals, and signed effects.
-    """
-    warnings.warn(
-        "screen() is now sensitivity_analysis(); its options parameters= and ranges= are now vary=",
-        DeprecationWarning,
-        stacklevel=2,
-    )
-    spans = {building.parameter(path).path: span for path, span in (ranges or {}).items()}
-    paths = [building.parameter(path).path for path in parameters] if parameters is not None else None
-    if paths is None and spans:
-        paths = [factor.path for factor in factors_of(building, ranges=spans)]
-    vary = None if paths is None else {path: spans.get(path) for path in paths}
-    return sensitivity_analysis(building, climate, vary=vary, **options)
 
 
 def run_samples(
