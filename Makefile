@@ -35,7 +35,7 @@ export PIP_NO_INPUT := 1
 export PYO3_PYTHON := $(CURDIR)/$(PY)
 
 FUZZ_CALLS ?= 20000
-THREE := python/mascarin/view/vendor
+THREE := python/mascarin/pages/view/vendor
 
 .PHONY: help demo test coverage test-lowest bench fuzz docs docs-links lock vendor-three build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:

@@ -27,11 +27,11 @@ import numpy.typing as npt
 import pandas as pd
 
 from mascarin.building import Building
-from mascarin.building.derived import enclosure, outlines
 from mascarin.building.geometry import Polygon, parents, view_factors
-from mascarin.building.material import PhaseChangeMaterial, Resistance
-from mascarin.building.phases import phase
-from mascarin.building.surface import Side, Surface
+from mascarin.building.parts.defaults import enclosure, outlines
+from mascarin.building.parts.envelope.surface import Side, Surface
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
+from mascarin.building.parts.materials.phases import phase
 from mascarin.physics import humidity_of_dew_point
 from mascarin.weather import CHANNELS, Climate
 

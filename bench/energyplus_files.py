@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 
 import mascarin as mc
-from mascarin.convert import Conversion, convert
+from mascarin.energyplus import Conversion, convert
 
 ROOT = Path(__file__).resolve().parent.parent
 DATA = Path(os.environ.get("MASCARIN_DATA") or ROOT.parent / "shared" / "data")

@@ -33,9 +33,9 @@ import pandas as pd
 
 import mascarin as mc
 from mascarin.building import Building
-from mascarin.building.derived import outlines
 from mascarin.building.geometry import parents
-from mascarin.building.vapour_sides import vapour_sides
+from mascarin.building.parts.defaults import outlines
+from mascarin.building.parts.moisture_surfaces import vapour_sides
 from mascarin.physics import relative_humidity, saturation_pressure, vapour_pressure
 
 SETTLING = 28  # days left out of the comparison

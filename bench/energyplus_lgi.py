@@ -41,7 +41,7 @@ import page
 import pandas as pd
 
 from mascarin.building import Building
-from mascarin.building.mesh import choose
+from mascarin.building.engine_input.mesh import choose
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 

@@ -28,8 +28,8 @@ import page
 import pandas as pd
 
 from mascarin.building import Building
-from mascarin.building.material import PhaseChangeMaterial
-from mascarin.building.mesh import choose
+from mascarin.building.engine_input.mesh import choose
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate

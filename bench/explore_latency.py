@@ -20,8 +20,8 @@ from playwright.sync_api import sync_playwright
 import mascarin as mc
 from mascarin import examples
 from mascarin.commands.tables import run_inputs
-from mascarin.explore import Server, Session
-from mascarin.explore.page import render
+from mascarin.pages.explore import Server, Session
+from mascarin.pages.explore.page import render
 
 MOVES = 60
 MOVE = "(e, v) => { e.value = v; e.dispatchEvent(new Event('input')); }"

@@ -27,7 +27,7 @@ from many_zones import WEATHER, Grid, description
 import mascarin as mc
 from mascarin.building import Building
 from mascarin.examples import FOLDER
-from mascarin.simulation.options import Scheme
+from mascarin.simulation.preparation.options import Scheme
 from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.verification.bestest.catalogue import CASES

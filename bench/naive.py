@@ -19,11 +19,11 @@ from scipy.integrate import solve_ivp
 from scipy.sparse import lil_matrix
 
 from mascarin.building import Building
-from mascarin.building.air import density
-from mascarin.building.derived import enclosure
 from mascarin.building.geometry import view_factors
-from mascarin.building.material import PhaseChangeMaterial, Resistance
-from mascarin.building.phases import phase
+from mascarin.building.parts.defaults import enclosure
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance
+from mascarin.building.parts.materials.phases import phase
+from mascarin.building.parts.site_air import density
 from mascarin.physics import AIR_SPECIFIC_HEAT
 
 Array = npt.NDArray[np.float64]

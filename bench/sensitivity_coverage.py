@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.sensitivity.factors import unit_factors
+from mascarin.sensitivity.base.factors import unit_factors
 from mascarin.sensitivity.spectral import analyze, design
 
 Floats = NDArray[np.float64]

@@ -23,7 +23,7 @@ import page
 from linearly_implicit import AIRS, SETTLING, Case, cases, simulation
 
 from mascarin.ensemble import latin_hypercube
-from mascarin.simulation.options import Precision, Scheme
+from mascarin.simulation.preparation.options import Precision, Scheme
 from mascarin.simulation.simulation import Simulation
 
 MEMBERS = 32

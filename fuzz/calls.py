@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 import fuzz_buildings
 from mascarin.building import Building
 from mascarin.errors import InputError
-from mascarin.simulation.options import SCHEMES
+from mascarin.simulation.preparation.options import SCHEMES
 from mascarin.simulation.simulation import Simulation
 
 folder = Path(sys.argv[1])

@@ -21,11 +21,11 @@ import pytest
 from crossing_features import END, START, VARIED, ZONE, measured
 from mascarin import cli
 from mascarin.building import Building
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import MascarinError
 from mascarin.genopt.program import Program
 from mascarin.simulation.linear_model import state_space
-from mascarin.simulation.options import Scheme
+from mascarin.simulation.preparation.options import Scheme
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate, Measurements
 
@@ -230,8 +230,8 @@ def _view(bench: Bench) -> Told:
 
 def _explore(bench: Bench) -> Told:
     """The page of ``mascarin explore`` and a run with other values, without its server."""
-    from mascarin.explore import Session
-    from mascarin.explore.page import render
+    from mascarin.pages.explore import Session
+    from mascarin.pages.explore.page import render
 
     options = {"start": START, "end": END, "step": bench.step, "measurements": bench.measurements}
     options |= {"scheme": bench.scheme}

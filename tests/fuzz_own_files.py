@@ -23,7 +23,7 @@ import pandas as pd
 import fuzz_mutation
 from mascarin._io import own_files, own_records
 from mascarin._io.cache import _read
-from mascarin.building.outputs import Output
+from mascarin.building.outputs.output import Output
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, evaluations
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.store import Store
@@ -32,12 +32,12 @@ from mascarin.genopt import records as genopt_records
 from mascarin.genopt.export.case import open_case
 from mascarin.genopt.export.exchange import read_settings
 from mascarin.genopt.records import Log, Record
-from mascarin.report import write_folder
-from mascarin.simulation.energy import FLOWS, EnergyLedger
-from mascarin.simulation.provenance import Provenance
+from mascarin.pages.study import write_folder
+from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
+from mascarin.simulation.records.provenance import Provenance
+from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.single_precision import Difference
-from mascarin.simulation.times import Times
 from mascarin.study import kept
 from mascarin.study.findings import PredictionIntervals
 from mascarin.study.storage import Workspace

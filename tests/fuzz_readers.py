@@ -24,8 +24,8 @@ from fuzz_own_files import OwnReader
 from genopt_support import SWARM, write_project
 from idf_samples import IDF
 from mascarin.building import check, load
-from mascarin.convert import convert
-from mascarin.design.inputs import read_design
+from mascarin.design.variants.inputs import read_design
+from mascarin.energyplus import convert
 from mascarin.errors import MascarinError, SolverError
 from mascarin.genopt import Options
 from mascarin.genopt.run import check as check_project

@@ -14,11 +14,11 @@ import fmpy
 import numpy as np
 
 import mascarin as mc
-from mascarin.building.air import heat_capacity
+from mascarin.building.parts.site_air import heat_capacity
 from mascarin.ensemble.objectives import Statistic
 from mascarin.examples import box, box_climate
 from mascarin.fmu import export
-from mascarin.report import run_page
+from mascarin.pages.run import page as run_page
 from mascarin.simulation import Mean
 from sitepages import outputs
 

@@ -15,7 +15,7 @@ import random_air
 import random_materials
 import random_shells
 from mascarin.building import Building
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
 from random_draw import Draw, four
 from random_schedules import Schedules
 from random_weather import Weather

@@ -173,7 +173,7 @@ def _members(drawn: Case, simulation: Simulation, line: dict[str, Any]) -> list[
 
 def shown(drawn: Case) -> str:
     """A case as YAML, with the options of its run and its weather as comments."""
-    from mascarin.building.yaml_text import text_of
+    from mascarin.building.files.yaml_text import text_of
 
     head = [f"weather: {drawn.weather.kind}, {len(drawn.weather.frame)} rows"]
     head += [f"{key}: {value!r}" for key, value in drawn.options.items()]

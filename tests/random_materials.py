@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Any, get_args
 
-from mascarin.building.sorption import Kind as Sorbing
+from mascarin.building.parts.materials.sorption import Kind as Sorbing
 from mascarin.materials.library import PROPERTIES, products
 from random_draw import Draw, four
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.building.schedule import DAYS
+from mascarin.building.parts.air.schedule import DAYS
 from random_draw import Draw, four
 
 Json = dict[str, Any]

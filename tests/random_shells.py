@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from mascarin.building.part import Part
-from mascarin.building.surface import Side
-from mascarin.building.window import WindowOutside
+from mascarin.building.base.part import Part
+from mascarin.building.parts.envelope.surface import Side
+from mascarin.building.parts.openings.window import WindowOutside
 from random_draw import Draw, four
 from random_schedules import Schedules
 

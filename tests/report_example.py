@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mascarin.building import load
-from mascarin.report.series import Column, Series
+from mascarin.pages.study.data.series import Column, Series
 
 if TYPE_CHECKING:
     from mascarin.building import Building

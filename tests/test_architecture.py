@@ -20,15 +20,17 @@ ORDER = [
     {"building"},
     {"weather"},
     {"comfort"},
-    {"simulation", "convert"},
+    {"simulation", "energyplus"},
     {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},
     {"verification"},
     {"examples"},
-    {"report"},
-    {"view", "explore"},
+    {"pages", "pages.frame", "pages.study", "pages.run", "pages.suites"},
+    {"pages.view", "pages.explore"},
     {"study"},
+    {"design.evaluation", "design.variants"},
+    {"pages.design"},
     {"design"},
     {"genopt"},
     {"commands", "cli", "__main__"},
@@ -47,11 +49,19 @@ def dotted(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-NAMES = {dotted(path) for path in MODULES}
+MODULE_FILES = {dotted(path): path for path in MODULES}
+NAMES = set(MODULE_FILES)
 
 
 def package_of(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def level_of(name: str) -> int:
+    """Level of a module without ``mascarin.``: that of the longest entry of ORDER that holds it."""
+    parts = name.split(".")
+    entries = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
+    return next(LEVEL[entry] for entry in entries if entry in LEVEL)
 
 
 @cache
@@ -101,13 +111,58 @@ def circles(graph: dict[str, frozenset[str]]) -> list[list[str]]:
 def test_a_package_imports_only_from_packages_before_it(path: Path) -> None:
     package = package_of(path)
     assert package in LEVEL, f"'{package}' has no place in ORDER and in docs/architecture.md"
-    others = {name.split(".")[1] for name in imported(path)}
-    later = {other for other in others if LEVEL[other] > LEVEL[package]}
+    level = level_of(dotted(path).removeprefix("mascarin."))
+    others = {name.removeprefix("mascarin.") for name in imported(path)}
+    later = {other for other in others if level_of(other) > level}
     assert not later, f"'{package}' imports {sorted(later)}, which come after it"
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     assert circles({dotted(path): imported(path) for path in MODULES}) == []
+
+
+#: Folders that import each other in a circle, until they are taken apart. Only to be shortened.
+ROOMS_IN_CIRCLES = [
+    ["study", "study.document"],
+    ["tables", "tables.quality", "tables.reading"],
+]
+MOST_FILES_OF_A_FOLDER = 15
+#: Folders with more files, until they are taken apart. Only to be shortened.
+FULL_FOLDERS = {
+    "_io": 18, "calibration": 24, "commands": 22, "genopt": 21,
+    "study": 42, "weather": 26,
+}  # fmt: skip
+
+
+def room_of(name: str) -> str:
+    """The folder of a module below the package; modules beside the packages are rooms of their own."""
+    parts = name.split(".")[1:]
+    is_package = MODULE_FILES[name].name == "__init__.py"
+    return ".".join(parts if is_package or len(parts) == 1 else parts[:-1])
+
+
+def rooms() -> dict[str, frozenset[str]]:
+    """For each folder, the folders that its modules import."""
+    graph: dict[str, set[str]] = {}
+    for name, path in MODULE_FILES.items():
+        room = room_of(name)
+        others = {room_of(other) for other in imported(path) if other in MODULE_FILES}
+        graph.setdefault(room, set()).update(others - {room})
+    return {room: frozenset(others) for room, others in graph.items()}
+
+
+def test_no_folders_import_each_other_in_a_circle() -> None:
+    assert sorted(circles(rooms())) == ROOMS_IN_CIRCLES
+
+
+def test_a_folder_has_few_files() -> None:
+    counts: dict[str, int] = {}
+    for name, path in MODULE_FILES.items():
+        counts[room_of(name)] = counts.get(room_of(name), 0) + (path.name != "__init__.py")
+    full = {room: count for room, count in counts.items() if count > MOST_FILES_OF_A_FOLDER}
+    assert sorted(full) == sorted(FULL_FOLDERS), "split the folder; one that was split leaves FULL_FOLDERS"
+    grown = {room: count for room, count in full.items() if count > FULL_FOLDERS[room]}
+    assert not grown, f"more files than before in {grown}: put the new one elsewhere, or split the folder"
 
 
 def test_circles_are_found() -> None:

@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from mascarin.building import Blind, Building
-from mascarin.building.checks import check
-from mascarin.building.references import sources
+from mascarin.building.checks.overview import check
+from mascarin.building.parameters.sources import sources
 from mascarin.errors import InputError
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation

@@ -6,10 +6,10 @@ import pytest
 
 from building_samples import EVERYTHING, ROOM, everything, room
 from mascarin.building import Building, check
-from mascarin.building.air import density
-from mascarin.building.mesh import choose
+from mascarin.building.checks.u_values import time_constant, u_value
+from mascarin.building.engine_input.mesh import choose
+from mascarin.building.parts.site_air import density
 from mascarin.building.reading import parse
-from mascarin.building.u_values import time_constant, u_value
 from mascarin.errors import InputError
 from mascarin.simulation.linear_model import state_space
 

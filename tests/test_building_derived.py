@@ -8,7 +8,7 @@ import pytest
 
 from building_samples import EVERYTHING, ROOM, everything, room
 from mascarin.building import Building
-from mascarin.building.parameters import Parameter
+from mascarin.building.parameters.parameter import Parameter
 from mascarin.building.reading import parse
 
 

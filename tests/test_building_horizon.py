@@ -11,7 +11,7 @@ import pytest
 
 from mascarin.building import Building
 from mascarin.errors import InputError
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate

@@ -10,10 +10,10 @@ import pytest
 
 from mascarin import cli
 from mascarin.building import Building, Gain, load
-from mascarin.building.air import heat_capacity
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import measured_columns
-from mascarin.building.references import sources
+from mascarin.building.parameters.sources import sources
+from mascarin.building.parts.site_air import heat_capacity
 from mascarin.errors import InputError
 
 HOUSE = """\

@@ -6,7 +6,13 @@ import pytest
 
 from building_samples import ROOM, everything, room
 from mascarin.building import Building
-from mascarin.building.mesh import LEAST_IN_PCM, MOST_FOR_MELTING, MOST_IN_LAYER, choose, diffusion_count
+from mascarin.building.engine_input.mesh import (
+    LEAST_IN_PCM,
+    MOST_FOR_MELTING,
+    MOST_IN_LAYER,
+    choose,
+    diffusion_count,
+)
 from mascarin.building.reading import parse
 
 # Layers of the test cell of Guichard et al., and node counts that were found to be enough for 0.002 K.

@@ -9,7 +9,7 @@ import pytest
 from pydantic_core import PydanticCustomError
 
 from mascarin.building import quantities
-from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.base.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 
 LENGTH = Quantity("m", "A length", Percent(10, "a ruler"), Limits(above=0, at_most=5))
 

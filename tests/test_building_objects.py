@@ -11,7 +11,7 @@ from hypothesis import given, settings
 
 import mascarin as mc
 from building_samples import EVERYTHING, everything, room
-from mascarin.building.phase_change import TableLaw
+from mascarin.building.parts.materials.phase_change import TableLaw
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from strategies_building import descriptions

@@ -7,8 +7,8 @@ import pytest
 
 from building_samples import ROOM
 from mascarin.building import Building, check, json_schema
-from mascarin.building.material import PhaseChangeMaterial
-from mascarin.building.phase_change import FractionsLaw, TableLaw, TanhLaw
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
+from mascarin.building.parts.materials.phase_change import FractionsLaw, TableLaw, TanhLaw
 from mascarin.building.reading import parse, plain
 from mascarin.errors import InputError
 from mascarin.materials import Product, library, product

@@ -8,8 +8,8 @@ import pytest
 
 from building_samples import EVERYTHING, ROOM
 from mascarin.building import load
+from mascarin.building.files.yaml_document import plain
 from mascarin.building.reading import parse
-from mascarin.building.yaml_document import plain
 from mascarin.errors import InputError
 
 # (what to replace, by what); the faulty line is the one that then holds the mark.

@@ -15,9 +15,9 @@ import pytest
 
 from mascarin import Simulation, simulate
 from mascarin.building import Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.geometry import Polygon, in_front
-from mascarin.building.self_shading import expected_seconds, obstructions, pairs_with_shades
+from mascarin.building.parts.self_shading import expected_seconds, obstructions, pairs_with_shades
 from mascarin.cli import main
 from mascarin.weather import CHANNELS, Climate
 

@@ -12,7 +12,7 @@ import mascarin as mc
 from mascarin.ensemble.draw import latin_hypercube
 from mascarin.examples import box_climate
 from mascarin.sensitivity import factors_of
-from mascarin.simulation.inactive import inactive_parameters
+from mascarin.simulation.unused_parameters import inactive_parameters
 
 HEATING, COOLING = (f"zones.room.{which}.setpoint.temperature" for which in ("heating", "cooling"))
 

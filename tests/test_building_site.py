@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from building_samples import everything, room
-from mascarin.building.site import Site, utc_offset_minutes
+from mascarin.building.parts.site import Site, utc_offset_minutes
 from mascarin.errors import InputError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mascarin.building import unmelted
+from mascarin.simulation.checks import unmelted
 from mascarin.simulation.results import Results
 from mascarin.verification.analytical import melting, setup
 from mascarin.verification.analytical.phase import slab

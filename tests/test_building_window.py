@@ -10,7 +10,7 @@ import pytest
 
 from mascarin import simulate
 from mascarin.building import Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.weather import Climate

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from mascarin.building import yaml_nodes
-from mascarin.building.yaml_nodes import compose
+from mascarin.building.files import yaml_nodes
+from mascarin.building.files.yaml_nodes import compose
 
 #: Pieces of which texts are made, among them those that YAML 1.1 and 1.2 read in different ways.
 PIECES = [

@@ -11,9 +11,9 @@ import pytest
 
 from mascarin import Simulation, simulate
 from mascarin.building import Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.errors import InputError
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.weather import Climate
 
 #: Diffuse transmittance, and absorptances of the panes, from outside and from inside.

@@ -26,7 +26,7 @@ from mascarin.calibration.building_problem import problem_of
 from mascarin.calibration.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
-from mascarin.simulation import compiling
+from mascarin.simulation.preparation import prepare
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.validation.observation import observe
@@ -218,7 +218,7 @@ def seven() -> CalibrationProblem:
     periodic within 1e-9 K, so that differences of runs do not show its tolerance.
     """
     monkeypatch = pytest.MonkeyPatch()
-    monkeypatch.setattr(compiling, "REPEATED_WITHIN", 1e-9)
+    monkeypatch.setattr(prepare, "REPEATED_WITHIN", 1e-9)
     study = Study(FOLDER / "lgi" / "study.yaml")
     variant = "the paper's seven, 25 outside"
     building = study.building_of(variant)

@@ -19,7 +19,7 @@ from conftest import SEED
 from mascarin import cli
 from mascarin._io.durations import seconds_of
 from mascarin.building import Building, check
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import InputError, SolverError
 
 #: Refusals that depend on the period or the weather: check knows neither.

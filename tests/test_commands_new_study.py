@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 from ruamel.yaml import YAML
 
-from mascarin.building.yaml_document import plain
+from mascarin.building.files.yaml_document import plain
 from mascarin.cli import main
 from mascarin.examples import STUDIES
 

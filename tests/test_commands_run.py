@@ -11,7 +11,7 @@ import xarray as xr
 
 from mascarin import __version__, cli
 from mascarin.progress import Report
-from mascarin.simulation.compiled import CompiledRun
+from mascarin.simulation.preparation.engine_run import CompiledRun
 
 BOX = """\
 name: Box
@@ -77,12 +77,12 @@ def test_a_long_run_shows_its_steps_and_the_time_left(
     monkeypatch.setattr("mascarin.progress._LINE_EVERY", 0.0)
     whole = CompiledRun.run_into
 
-    def reporting(compiled: CompiledRun, *given: Any, kept: bool, progress: Report) -> dict[str, Any]:
+    def reporting(compiled: CompiledRun, *given: Any, keeps_rows: bool, progress: Report) -> dict[str, Any]:
         steps = len(compiled.forcing)
         progress(0, steps)
         progress(steps // 4, steps)
         progress(steps // 2, steps)
-        return whole(compiled, *given, kept=kept)
+        return whole(compiled, *given, keeps_rows=keeps_rows)
 
     monkeypatch.setattr(CompiledRun, "run_into", reporting)
     assert cli.main(call) == 0
@@ -172,7 +172,7 @@ def test_a_failure_while_writing_leaves_the_older_file(
         raise OSError(28, "No space left on device", "box.nc")
 
     Path("box.nc").write_text("older", encoding="utf-8")
-    monkeypatch.setattr("mascarin.simulation.netcdf.NetcdfDraft.take", fail)
+    monkeypatch.setattr("mascarin.simulation.records.netcdf.NetcdfDraft.take", fail)
     assert cli.main([*call, "-o", "box.nc"]) == 2
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"

@@ -41,7 +41,7 @@ def test_members_whose_balance_does_not_close_give_exit_code_1(
     call: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # No building is known that this scheme does not close for: the limit is lowered below rounding.
-    monkeypatch.setattr("mascarin.simulation.energy.CLOSED", 0.0)
+    monkeypatch.setattr("mascarin.simulation.checks.energy.CLOSED", 0.0)
     words = ["--draw", "3", "--vary", FILM, "--objective", "max:room.air_temperature"]
     assert cli.main([*call, *words, "--json"]) == 1
     printed = capsys.readouterr()

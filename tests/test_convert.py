@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 import mascarin as mc
-from mascarin.convert import Conversion, convert
-from mascarin.convert import geometry as g
-from mascarin.convert.constructions import inner_part
-from mascarin.convert.convection import combined as combined_film
-from mascarin.convert.gains import sensible
-from mascarin.convert.year import combined, constant, plain, year_of
+from mascarin.energyplus import Conversion, convert
+from mascarin.energyplus.envelope.constructions import inner_part
+from mascarin.energyplus.envelope.convection import combined as combined_film
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.year import combined, constant, plain, year_of
+from mascarin.energyplus.zones.gains import sensible
 from mascarin.errors import InputError
 
 BOX = """\

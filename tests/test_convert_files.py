@@ -10,7 +10,9 @@ import pytest
 
 from conftest import DATA, unavailable
 from mascarin.building.reading import parse
-from mascarin.convert import convert, yaml_text
+from mascarin.energyplus import convert, yaml_text
+from mascarin.energyplus.model.handlers import HANDLERS
+from mascarin.energyplus.model.idf import IdfModel, read
 
 BENCH = Path(__file__).resolve().parent.parent / "bench"
 #: What is left out of each file: beginnings of the classes.
@@ -52,8 +54,18 @@ def bench(files: Path) -> Any:
 
 
 @pytest.mark.parametrize("name", sorted(LEFT_OUT))
-def test_every_file_converts_and_names_what_it_leaves_out(files: Path, name: str) -> None:
+def test_every_file_converts_and_names_what_it_leaves_out(
+    files: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    models: list[IdfModel] = []
+
+    def remembered(path: Path) -> IdfModel:
+        models.append(read(path))
+        return models[-1]
+
+    monkeypatch.setattr("mascarin.energyplus.conversion.read", remembered)
     found = convert(files / f"{name}.idf")
+    assert models[0].looked_up <= set(HANDLERS), "a handler declares the classes that it reads"
     kinds = {one.kind.partition(":")[0] for one in found.findings if one.level == "left out"}
     assert kinds == LEFT_OUT[name]
     assert found.building.check()

@@ -24,8 +24,8 @@ from crossing_entrances import (
     run,
 )
 from crossing_features import FEATURES, building, description
-from mascarin.building.description import Description
-from mascarin.building.output_kinds import KINDS
+from mascarin.building.outputs.kinds import KINDS
+from mascarin.building.parts.description import Description
 from mascarin.cli import GROUPS
 
 #: Pairs that physics forbids: by feature and entrance, words of the reason that is said.

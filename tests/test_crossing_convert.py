@@ -12,7 +12,7 @@ from crossing_features import FEATURES
 from idf_samples import IDF
 from mascarin.building import Building
 from mascarin.building.reading import parse
-from mascarin.convert import convert, yaml_text
+from mascarin.energyplus import convert, yaml_text
 
 
 class Objects(NamedTuple):

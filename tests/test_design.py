@@ -16,10 +16,10 @@ import mascarin as mc
 from design_support import written
 from mascarin import cli
 from mascarin.design import DesignResults, read_design, run_design
-from mascarin.design.description import Search
-from mascarin.design.ranking import pareto, ranked
-from mascarin.design.reductions import Beyond, CycleDays, DaysInBin, Melted, PeakLoad
-from mascarin.design.search import searched
+from mascarin.design.evaluation.reductions import Beyond, CycleDays, DaysInBin, Melted, PeakLoad
+from mascarin.design.variants.description import Search
+from mascarin.design.variants.ranking import pareto, ranked
+from mascarin.design.variants.search import searched
 from mascarin.errors import InputError
 from mascarin.examples import DESIGNS
 
@@ -163,7 +163,7 @@ def test_killed_and_continued_gives_the_same_bytes(results: tuple[DesignResults,
 
 def test_searches_find_the_best_of_the_grid() -> None:
     """Known costs: a bowl over a range and the best of five options."""
-    from mascarin.design.variables import Choice, Choices, Option
+    from mascarin.design.variants.variables import Choice, Choices, Option
 
     choices = Choices(
         (

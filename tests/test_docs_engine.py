@@ -130,7 +130,7 @@ def test_the_output_is_in_runs_derivatives_units_and_pages(package: Path, tmp_pa
 def test_the_law_is_known_to_the_description_language(copy: Path) -> None:
     code = (
         "from pydantic import TypeAdapter\n"
-        "from mascarin.building.convection import SOURCES, Convection, Khalifa\n"
+        "from mascarin.building.parts.envelope.convection import SOURCES, Convection, Khalifa\n"
         "law = TypeAdapter(Convection).validate_python({'kind': 'khalifa'})\n"
         "assert isinstance(law, Khalifa) and 'khalifa' in SOURCES\n"
     )

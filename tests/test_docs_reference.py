@@ -11,9 +11,9 @@ from ruamel.yaml import YAML
 
 import mascarin as mc
 from mascarin import examples
-from mascarin.building.number import Number, Quantity, quantity_of
-from mascarin.building.output_kinds import KINDS
-from mascarin.building.part import Part
+from mascarin.building.base.number import Number, Quantity, quantity_of
+from mascarin.building.base.part import Part
+from mascarin.building.outputs.kinds import KINDS
 from sitepages import api, assemble, commands, keys, outputs
 from sitepages.snippets import Snippets, classes
 
@@ -151,7 +151,7 @@ def test_public_names_of_python_are_listed() -> None:
         "mascarin.study.StudyResults",
         "mascarin.design.run_design",
         "mascarin.comfort.assess",
-        "mascarin.convert.convert",
+        "mascarin.energyplus.convert",
         "mascarin.fmu.export",
         "mascarin.calibration.calibrate",
     ):

@@ -14,7 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from mascarin.building.initial_state import GivenStart
+from mascarin.simulation.preparation.initial_state import GivenStart
 from mascarin.study import data_sources, description
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"

@@ -16,7 +16,7 @@ import pytest
 from numpydoc.validate import validate
 
 import mascarin
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
 
 PACKAGES = [
     "building", "calibration", "comfort", "ensemble", "materials", "optimization", "physics", "sensitivity",

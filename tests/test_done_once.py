@@ -16,9 +16,9 @@ import pytest
 import mascarin as mc
 from mascarin._io.memory import uncollected
 from mascarin.building import Building
+from mascarin.building.checks.consistency import MOST_SURFACES
 from mascarin.building.engine_input import description as engine_input
 from mascarin.building.geometry import BoxIndex, Polygon
-from mascarin.building.rules import MOST_SURFACES
 from mascarin.ensemble import members
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER, box, box_climate

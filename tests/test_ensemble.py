@@ -22,7 +22,7 @@ from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
 from mascarin.examples import box, box_climate
 from mascarin.examples.small import BOX
-from mascarin.simulation.compiled import Failure
+from mascarin.simulation.preparation.engine_run import Failure
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate, Measurements
@@ -431,7 +431,7 @@ def test_the_weather_that_all_members_share_counts_as_memory(
     simulation = Simulation(building, climate, step="1h", outputs=[JOINT], measurements=measured)
     asked: list[float] = []
     monkeypatch.setattr(
-        "mascarin.simulation.compiled.memory.require", lambda size, *words: asked.append(size)
+        "mascarin.simulation.preparation.engine_run.memory.require", lambda size, *words: asked.append(size)
     )
     simulation.ensemble(simulation.vector({})[None, :])
     steps, stages, _ = simulation.compiled.forcing.shape

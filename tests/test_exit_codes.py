@@ -15,7 +15,7 @@ import pytest
 
 from crossing_entrances import COMMANDS, WITHOUT_BUILDING, Bench, enter
 from crossing_features import VARIED, description
-from mascarin.simulation.compiled import CompiledRun, EnsembleRun, Failure
+from mascarin.simulation.preparation.engine_run import CompiledRun, EnsembleRun, Failure
 
 #: Commands that end with 1 where a run is unsound.
 JUDGED: Final = (

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from mascarin.figures import colors
-from mascarin.report.template import palette
+from mascarin.pages.frame.template import palette
 
 Array = npt.NDArray[np.float64]
 #: Paper of the page, light and dark.

@@ -25,7 +25,7 @@ from mascarin.building import Building, check
 from mascarin.building.reading import parse
 from mascarin.ensemble import sweep
 from mascarin.simulation.linear_model import state_space
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.simulation import Simulation
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer of processor time")

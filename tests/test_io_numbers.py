@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mascarin._io.numbers import beside_limit, decimals_for, fixed, with_interval
-from mascarin.report import text
-from mascarin.report.sections import criteria, parameters
+from mascarin.figures import text
+from mascarin.pages.study.sections import criteria, parameters
 
 
 @pytest.mark.parametrize(

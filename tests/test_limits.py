@@ -15,7 +15,7 @@ from mascarin.building.reading import parse
 from mascarin.comfort import INDICES, ComfortSettings, Conditions
 from mascarin.comfort.assessment import assess
 from mascarin.comfort.evaluation import Evaluation, discomfort
-from mascarin.design.reductions import Beyond, CycleDays, DaysInBin
+from mascarin.design.evaluation.reductions import Beyond, CycleDays, DaysInBin
 from mascarin.ensemble.objectives import Statistic
 from mascarin.examples import box_climate
 from mascarin.physics import humidity_ratio, relative_humidity

@@ -25,18 +25,18 @@ from mascarin import cli, examples
 from mascarin.building.geometry import Polygon
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
-from mascarin.explore import Server, Session, choice
-from mascarin.explore.page import render as explore_page
-from mascarin.explore.server import TOKEN
-from mascarin.report.run_page import Notes
-from mascarin.report.run_page import render as run_page
-from mascarin.report.template import asset
+from mascarin.pages.explore import Server, Session, choice
+from mascarin.pages.explore.page import render as explore_page
+from mascarin.pages.explore.server import TOKEN
+from mascarin.pages.frame.template import asset
+from mascarin.pages.run.page import Notes
+from mascarin.pages.run.page import render as run_page
+from mascarin.pages.view import render, write
+from mascarin.pages.view.layers import constructions
+from mascarin.pages.view.panels import panels, window_panels
+from mascarin.pages.view.scene import scene
+from mascarin.pages.view.sun import positions
 from mascarin.verification.bestest.catalogue import CASES
-from mascarin.view import render, write
-from mascarin.view.layers import constructions
-from mascarin.view.panels import panels, window_panels
-from mascarin.view.scene import scene
-from mascarin.view.sun import positions
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -163,12 +163,12 @@ def test_a_building_without_vertices_is_called_schematic() -> None:
 
 def test_the_vendored_library_is_the_pinned_one(repository: Path) -> None:
     pinned, name = (repository / "packaging" / "three" / "three.sha256").read_text().split()
-    vendored = repository / "python" / "mascarin" / "view" / "vendor" / name
+    vendored = repository / "python" / "mascarin" / "pages" / "view" / "vendor" / name
     assert hashlib.sha256(vendored.read_bytes()).hexdigest() == pinned
 
 
 def test_every_name_of_the_library_that_the_page_uses_is_in_it(repository: Path) -> None:
-    used = set(re.findall(r"\bTHREE\.(\w+)", asset("view/view.js")))
+    used = set(re.findall(r"\bTHREE\.(\w+)", asset("pages/view/view.js")))
     listed = (repository / "packaging" / "three" / "entry.js").read_text(encoding="utf-8")
     assert used == set(re.findall(r"\w+", " ".join(re.findall(r"{(.*?)}", listed, re.DOTALL))))
 

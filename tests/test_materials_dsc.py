@@ -12,8 +12,8 @@ import pytest
 
 from building_samples import ROOM
 from dsc_samples import CENTRE, LATENT, LIQUID, RATE, SOLID, WIDTH, enthalpy, heat, temperatures, write
-from mascarin.building.material import PhaseChangeMaterial
-from mascarin.building.phase_change import TableLaw
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
+from mascarin.building.parts.materials.phase_change import TableLaw
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.materials.dsc import DscMaterial, from_dsc

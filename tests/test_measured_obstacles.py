@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 
 from mascarin.building import Building
-from mascarin.building.checks import check
-from mascarin.building.inactive import without_effect
+from mascarin.building.checks.overview import check
+from mascarin.building.parameters.unused_parameters import without_effect
 from mascarin.errors import InputError
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import CHANNELS, Climate
 

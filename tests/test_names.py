@@ -17,11 +17,17 @@ EMPTY_WORDS = frozenset([
     "rest", "lit",
 ])  # fmt: skip
 
-#: Packages without such names; add a package when it is free of them.
+#: Packages and rooms without such names; add one when it is free of them.
 PACKAGES = (
-    "calibration", "convert", "design", "explore", "figures", "genopt", "optimization", "report",
-    "sensitivity", "validation", "verification", "view",
+    "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
+    "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
+    "_io", "building/checks", "building/files", "building/geometry", "building/outputs",
+    "building/parameters", "building/parts/air", "building/parts/openings", "building/quantities",
 )  # fmt: skip
+
+
+#: Names that users or files have: a key of a record, a key of YAML.
+PUBLIC = {("simulation/checks/judgement.py", "place"), ("building/parts/air/schedule.py", "at")}
 
 
 def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -50,6 +56,7 @@ def test_names_say_what_they_hold(package: str) -> None:
         f"{path.relative_to(PACKAGE)}:{line}: {name}"
         for path in modules
         for line, name in empty_names(ast.parse(path.read_text(encoding="utf-8")))
+        if (path.relative_to(PACKAGE).as_posix(), name) not in PUBLIC
     ]
     assert not lines, "name what these hold, such as errors, parameter, index:\n" + "\n".join(lines)
 

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from mascarin.building import Building
-from mascarin.building.checks import check
+from mascarin.building.checks.overview import check
 from mascarin.errors import InputError
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate

@@ -27,8 +27,8 @@ from idf_samples import IDF
 from mascarin import cli
 from mascarin._io.terminal import printable
 from mascarin.examples import box, box_climate
-from mascarin.explore import Server, Session
-from mascarin.explore.server import HOST, TOKEN
+from mascarin.pages.explore import Server, Session
+from mascarin.pages.explore.server import HOST, TOKEN
 from study_support import STUDY
 
 posix = pytest.mark.skipif(os.name != "posix", reason="streams and limits of POSIX systems")

@@ -11,7 +11,7 @@ import pytest
 import mascarin as mc
 from mascarin import examples
 from mascarin.building import Building
-from mascarin.building.air import density
+from mascarin.building.parts.site_air import density
 from mascarin.ensemble import sweep
 from mascarin.errors import InputError
 from mascarin.simulation.simulation import Simulation

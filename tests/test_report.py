@@ -16,8 +16,8 @@ import pytest
 
 import report_example
 from mascarin.errors import InputError
-from mascarin.report import render, write
-from mascarin.report.series import Series
+from mascarin.pages.study import render, write
+from mascarin.pages.study.data.series import Series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

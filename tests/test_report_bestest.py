@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from bestest_support import years
-from mascarin.report.bestest import render, write
+from mascarin.pages.suites.bestest import render, write
 from mascarin.verification.bestest.catalogue import CASES
 from mascarin.verification.bestest.quantities import quantities
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.report import write_folder
-from mascarin.report.folder import read_folder
+from mascarin.pages.study import write_folder
+from mascarin.pages.study.data.folder import read_folder
 
 SERIES = """time,room.measured,room.fitted,room.nominal,weather.wind_speed,state.ceiling.pcm_liquid_fraction
 2024-01-01T00:00:00+01:00,20.0,20.5,21,3,0.1

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import report_example
-from mascarin.report import write
+from mascarin.pages.study import write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -11,10 +11,10 @@ import pytest
 import report_example
 from mascarin.figures import colors
 from mascarin.figures.comparison import Compared
-from mascarin.report import render
-from mascarin.report.comparison_data import compared_sensors
-from mascarin.report.page import context, coverage_facts
-from mascarin.report.series import Column, Series
+from mascarin.pages.study import render
+from mascarin.pages.study.data.series import Column, Series
+from mascarin.pages.study.figures.comparison_data import compared_sensors
+from mascarin.pages.study.page import context, coverage_facts
 from test_report import Outline
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from mascarin import load
 from mascarin.examples import FOLDER
-from mascarin.report import rooms
+from mascarin.pages.study.figures import rooms
 from mascarin.study.document.building import building_entry
 
 

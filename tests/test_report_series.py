@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.report.series import Column, Series, moment
+from mascarin.pages.study.data.series import Column, Series, moment
 
 
 def series(n: int = 1000) -> Series:

@@ -5,7 +5,7 @@ from datetime import datetime
 import pytest
 
 from mascarin._io import units
-from mascarin.report import text
+from mascarin.figures import text
 
 
 @pytest.mark.parametrize(

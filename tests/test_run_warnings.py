@@ -16,11 +16,11 @@ from mascarin.building import Building
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.objectives import Statistic
 from mascarin.examples import box, box_climate
-from mascarin.explore import Session
+from mascarin.pages.explore import Session
 from mascarin.simulation import Mean, state_space
-from mascarin.simulation.coarse import LARGE, SHARES
+from mascarin.simulation.checks.step_check import LARGE, SHARES
 from mascarin.simulation.nominal import of_nominal, of_short_run
-from mascarin.simulation.options import SCHEMES
+from mascarin.simulation.preparation.options import SCHEMES
 from mascarin.simulation.run_warnings import of_members
 from study_support import BUILDING, STUDY, logger_table
 

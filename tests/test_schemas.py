@@ -13,7 +13,7 @@ import pytest
 
 from mascarin import cli, examples
 from mascarin.building import json_schema
-from mascarin.building.yaml_document import plain
+from mascarin.building.files.yaml_document import plain
 from mascarin.design.schema import design_schema
 from mascarin.study.schema import study_schema
 

@@ -10,7 +10,7 @@ import pytest
 import mascarin as mc
 from mascarin.building import Building, load
 from mascarin.errors import InputError
-from mascarin.sensitivity import METHODS, building_analysis, factors_of
+from mascarin.sensitivity import METHODS, factors_of
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, drivers, open_climate
 
@@ -139,15 +139,6 @@ def test_values_in_place_of_the_buildings_are_kept_fixed(
         mc.sensitivity_analysis(building, climate, vary=PATHS, parameters=given, **options)
     with pytest.raises(InputError, match="expected a list"):
         mc.sensitivity_analysis(building, climate, vary=PATHS[0], **options)
-
-
-def test_the_former_name_warns(building: Building, climate: Climate, options: dict[str, Any]) -> None:
-    assert "screen" not in dir(mc)
-    screen = vars(building_analysis)["screen"]
-    with pytest.warns(DeprecationWarning, match="sensitivity_analysis"):
-        old = screen(building, climate, parameters=PATHS[:2], ranges={PATHS[0]: (0.03, 0.05)}, **options)
-    vary = {PATHS[0]: (0.03, 0.05), PATHS[1]: None}
-    assert np.array_equal(old.index, mc.sensitivity_analysis(building, climate, vary=vary, **options).index)
 
 
 def test_times_are_local_and_go_into_arrays(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.sensitivity.jackknife import Ratio, above_zero, interval
+from mascarin.sensitivity.base.jackknife import Ratio, above_zero, interval
 
 Floats = NDArray[np.float64]
 

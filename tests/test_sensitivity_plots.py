@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from mascarin.errors import InputError
 from mascarin.figures.files import save
 from mascarin.sensitivity import files
-from mascarin.sensitivity.factors import Factor
+from mascarin.sensitivity.base.factors import Factor
 from mascarin.sensitivity.spectral import SpectralSensitivity, analyze, design
 
 HOURS = np.arange(48) / 2.0  # one day in half hours

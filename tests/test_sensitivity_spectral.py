@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity.factors import Factor
+from mascarin.sensitivity.base.factors import Factor
+from mascarin.sensitivity.base.runs import batches
 from mascarin.sensitivity.methods import run
-from mascarin.sensitivity.runs import batches
 from mascarin.sensitivity.spectral import SpectralCollector, analyze, design
 
 Floats = NDArray[np.float64]

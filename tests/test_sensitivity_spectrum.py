@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from mascarin.errors import InputError
-from mascarin.sensitivity.factors import Factor
+from mascarin.sensitivity.base.factors import Factor
 from mascarin.sensitivity.spectral import SpectralSensitivity, analyze, design
 from mascarin.sensitivity.spectral.spectrum import line_threshold, power_threshold
 

@@ -15,10 +15,10 @@ from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
 from mascarin.examples import FOLDER
 from mascarin.physics import globe_temperature
-from mascarin.simulation.inactive import inactive_parameters
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
+from mascarin.simulation.unused_parameters import inactive_parameters
 from mascarin.verification.analytical import setup, zones
 from mascarin.weather import Climate, Measurements
 from simulation_samples import LINEAR, hours, measured, read, weather

@@ -10,7 +10,7 @@ import pytest
 
 import mascarin as mc
 from mascarin import cli
-from mascarin.simulation.energy import FLOWS, EnergyLedger
+from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
 
 #: Nine bends within 6 K: flat and steep in turn.
 BENDS = {

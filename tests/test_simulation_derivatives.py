@@ -13,8 +13,8 @@ import pytest
 from mascarin.building import load
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
-from mascarin.simulation.compiled import MEMORY
 from mascarin.simulation.derivatives import Mean, SquaredResiduals, gradient, jacobian
+from mascarin.simulation.preparation.engine_run import MEMORY
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
@@ -102,7 +102,7 @@ def test_every_path_of_the_cell_agrees_with_central_differences(days: Simulation
 
 def test_the_repeated_start_is_differentiated(cell: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     # The slopes are those of the periodic state: differences show them where both states are found as well.
-    monkeypatch.setattr("mascarin.simulation.compiling.REPEATED_WITHIN", 1e-8)
+    monkeypatch.setattr("mascarin.simulation.preparation.prepare.REPEATED_WITHIN", 1e-8)
     simulation = Simulation(
         cell.building, cell.climate, start="2010-09-20", end="2010-09-21", outputs=["room.air_temperature"],
         measurements=cell.measurements,

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mascarin.building import Building
-from mascarin.building.air import density
+from mascarin.building.parts.site_air import density
 from mascarin.errors import InputError
 from mascarin.physics import AIR_SPECIFIC_HEAT
-from mascarin.simulation.objectives import Mean
+from mascarin.simulation.preparation.objectives import Mean
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation

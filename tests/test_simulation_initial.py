@@ -15,10 +15,18 @@ import pytest
 import mascarin as mc
 from mascarin import cli
 from mascarin.building import Building
-from mascarin.building.initial_state import Ambient, GivenStart, Known, Profile, given, profile, walls
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
-from mascarin.simulation.initial import MeasuredStart
+from mascarin.simulation.preparation.initial import MeasuredStart
+from mascarin.simulation.preparation.initial_state import (
+    Ambient,
+    GivenStart,
+    Known,
+    Profile,
+    given,
+    profile,
+    walls,
+)
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study

@@ -13,8 +13,8 @@ import mascarin as mc
 from mascarin import cli
 from mascarin.ensemble import sweep_into
 from mascarin.examples import box, box_climate
-from mascarin.simulation.compiled import CompiledRun, EnsembleRun
-from mascarin.simulation.judgement import Judgement, ensemble_warnings
+from mascarin.simulation.checks.judgement import Judgement, ensemble_warnings
+from mascarin.simulation.preparation.engine_run import CompiledRun, EnsembleRun
 
 #: What the engine says of a run: step, place, temperature and bound.
 OUTLIER = (5, "surface roof (inside)", -41.3, -2.0)

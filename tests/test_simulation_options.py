@@ -16,7 +16,7 @@ from mascarin.ensemble import latin_hypercube, sweep_into
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.simulation import CompiledRun, Mean, RunOptions
-from mascarin.simulation.options import TABLE
+from mascarin.simulation.preparation.options import TABLE
 
 PATH = "surfaces.facade.outside.absorptance"
 AIR = "room.air_temperature"

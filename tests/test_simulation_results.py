@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from mascarin import __version__
 from mascarin.errors import InputError
-from mascarin.simulation.energy import FLOWS, EnergyLedger
+from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.weather import Climate

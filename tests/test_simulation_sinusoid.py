@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 from mascarin.building import Building
-from mascarin.simulation.options import Scheme
+from mascarin.simulation.preparation.options import Scheme
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mascarin as mc
-from mascarin.simulation.sky import with_sky_of
+from mascarin.simulation.preparation.sky import with_sky_of
 
 BUILDING = """\
 site: {latitude: 39.83, longitude: -104.65, altitude: 1650, timezone: UTC-7%s}

@@ -20,12 +20,12 @@ import xarray as xr
 
 from mascarin.errors import SolverError
 from mascarin.examples import box, box_climate
-from mascarin.simulation import blocks, files
-from mascarin.simulation.coarse import Bends
-from mascarin.simulation.netcdf import NetcdfDraft
+from mascarin.simulation.checks.step_check import Bends
+from mascarin.simulation.records import blocks, files
+from mascarin.simulation.records.netcdf import NetcdfDraft
+from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.times import Times
 from mascarin.tables.timezones import parse_timezone
 
 OUTPUTS = ["room.air_temperature", "room.operative_temperature", "facade.outside_flux", "room.air_changes"]
@@ -174,7 +174,7 @@ def test_an_interrupted_run_leaves_the_older_file(
         raise error
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mascarin.simulation.blocks.Watch.add", fail)
+        patch.setattr("mascarin.simulation.records.blocks.Watch.add", fail)
         with pytest.raises(error):
             simulation.run_into(file)
     with pytest.raises(error):

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.building import Building
-from mascarin.building.air import density
+from mascarin.building.parts.site_air import density
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.physics import AIR_SPECIFIC_HEAT

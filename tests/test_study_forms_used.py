@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from mascarin import report
 from mascarin.examples import STUDIES
-from mascarin.report.folder import read_folder
+from mascarin.pages import study as report
+from mascarin.pages.study.data.folder import read_folder
 from mascarin.study import Study, findings
 from mascarin.study.document.coefficients import coefficients
 from mascarin.study.document.phase_change import phase_change

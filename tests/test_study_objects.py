@@ -14,7 +14,7 @@ import pytest
 from mascarin.building import Building
 from mascarin.errors import InputError
 from mascarin.examples import SyntheticWall, synthetic_wall
-from mascarin.simulation.energy import FLOWS
+from mascarin.simulation.checks.energy import FLOWS
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Sensor, Study, StudyResults
 from mascarin.study.document.comparison import FLOW_LABELS

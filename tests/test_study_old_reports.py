@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mascarin.errors import SolverError
-from mascarin.report import Series, write
+from mascarin.pages.study import Series, write
 from mascarin.study.storage import Workspace
 
 INPUTS = {"study": "a", "building": "b"}

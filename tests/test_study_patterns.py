@@ -10,7 +10,7 @@ import pytest
 
 import mascarin as mc
 from mascarin.building import Building, load
-from mascarin.building.ties import with_ties
+from mascarin.building.parameters.ties import with_ties
 from mascarin.ensemble import latin_hypercube
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER, box, box_climate

@@ -12,7 +12,7 @@ import pytest
 
 import mascarin as mc
 from mascarin import _engine
-from mascarin.simulation.vapour import VapourLedger
+from mascarin.simulation.checks.vapour import VapourLedger
 
 PRESSURE = 98_000.0
 #: Rounding of a bound [-].

@@ -12,8 +12,8 @@ from pydantic import TypeAdapter
 
 from building_samples import ROOM
 from mascarin.building import Building
+from mascarin.building.parts.air.schedule import Schedule
 from mascarin.building.reading import parse
-from mascarin.building.schedule import Schedule
 from mascarin.errors import InputError
 from mascarin.examples import box
 from mascarin.simulation import simulate

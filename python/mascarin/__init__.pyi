@@ -22,8 +22,8 @@ from .sensitivity import Sensitivity as Sensitivity
 from .sensitivity import sensitivity_analysis as sensitivity_analysis
 from .simulation.derivatives import gradient as gradient
 from .simulation.derivatives import jacobian as jacobian
-from .simulation.initial import MeasuredStart as MeasuredStart
 from .simulation.linear_model import state_space as state_space
+from .simulation.preparation.initial import MeasuredStart as MeasuredStart
 from .simulation.results import Results as Results
 from .simulation.run import simulate as simulate
 from .simulation.simulation import Simulation as Simulation

@@ -2,7 +2,7 @@
 A model of EnergyPlus
 =====================
 
-:func:`mascarin.convert.convert` makes a building from an IDF or epJSON file, and lists what it does not
+:func:`mascarin.energyplus.convert` makes a building from an IDF or epJSON file, and lists what it does not
 carry over. Needs ``pip install 'mascarin[energyplus]'``; EnergyPlus itself is not needed.
 """
 
@@ -13,7 +13,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 import mascarin as mc
-from mascarin.convert import convert
+from mascarin.energyplus import convert
 from mascarin.examples import clear_days
 
 # %%

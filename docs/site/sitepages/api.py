@@ -11,7 +11,7 @@ import mascarin
 
 PACKAGES: Final = (
     "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization", "validation",
-    "calibration", "study", "design", "comfort", "convert", "fmu", "view", "physics",
+    "calibration", "study", "design", "comfort", "energyplus", "fmu", "pages.view", "physics",
 )  # fmt: skip
 
 

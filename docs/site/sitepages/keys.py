@@ -11,10 +11,8 @@ from typing import Annotated, Any, Final, Literal, NamedTuple, Union, get_args, 
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from mascarin.building.description import Description
-from mascarin.building.documenting import summary_of
-from mascarin.building.json_schemas import json_schema
-from mascarin.building.number import (
+from mascarin.building.base.docstrings import summary_of
+from mascarin.building.base.number import (
     Fixed,
     Number,
     OnlyGiven,
@@ -25,7 +23,9 @@ from mascarin.building.number import (
     Within,
     quantity_of,
 )
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
+from mascarin.building.json_schemas import json_schema
+from mascarin.building.parts.description import Description
 from sitepages.snippets import Snippets
 
 #: Steps of a path that the user names.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mascarin.building.output_kinds import KINDS
+from mascarin.building.outputs.kinds import KINDS
 
 
 def page() -> str:

@@ -13,8 +13,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from mascarin import examples
-from mascarin.building.description import Description
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
+from mascarin.building.parts.description import Description
 
 _YAML_FENCE = re.compile(
     r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```yaml\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL

@@ -52,10 +52,10 @@ def names_of(name: str, value: Any, *, such_as: str = "'materials.concrete.condu
         raise InputError(f"{name}: found the text '{value}', expected a list: ['{value}']")
     if not isinstance(value, Iterable):
         raise InputError(f"{name}: found {kind_of(value)}, expected a list of names, such as [{such_as}]")
-    found = list(value)
-    for one in found:
-        require_type(name, one, str, f"names as texts, such as {such_as}")
-    return found
+    names = list(value)
+    for entry in names:
+        require_type(name, entry, str, f"names as texts, such as {such_as}")
+    return names
 
 
 def mapping_of(name: str, value: Any, expected: str) -> dict[str, Any]:
@@ -83,7 +83,7 @@ def bounds_of(name: str, value: Any) -> tuple[float, float]:
         Something else than two numbers.
     """
     pair = list(value) if isinstance(value, Iterable) and not isinstance(value, str | Mapping) else [value]
-    if len(pair) != 2 or any(isinstance(one, bool) or not isinstance(one, Real) for one in pair):
+    if len(pair) != 2 or any(isinstance(bound, bool) or not isinstance(bound, Real) for bound in pair):
         raise InputError(f"{name}: found {value!r}, expected two numbers (low, high)")
     return pair[0], pair[1]
 

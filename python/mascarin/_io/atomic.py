@@ -88,9 +88,9 @@ def replacing(path: Path, kind: str = "") -> Iterator[BinaryIO]:
 def _require_possible(path: Path, kind: str) -> None:
     """Name the folder that is missing, not the temporary file in it; keep inputs, pipes and devices."""
     identity.require_no_input(path, kind)
-    found = special(path)
-    if found is not None:
-        raise InputError(f"{path}: found {found}, expected a file to write; choose another name")
+    what = special(path)
+    if what is not None:
+        raise InputError(f"{path}: found {what}, expected a file to write; choose another name")
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"cannot write {path.name}: no such folder", str(path.parent))
     if path.is_dir() and not path.is_symlink():

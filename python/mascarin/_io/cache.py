@@ -80,19 +80,19 @@ def cached(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[],
         return make()
     with contextlib.suppress(OSError):
         file = _file(key, code)
-        found = _read(file)
-        if found is not None:
-            return found
-    made = make()
+        stored = _read(file)
+        if stored is not None:
+            return stored
+    result = make()
     # A folder that cannot be written, or a full disk, costs time and nothing else.
-    if sum(len(column) for column in made.columns.values()) > LARGEST:
-        return made
+    if sum(len(column) for column in result.columns.values()) > LARGEST:
+        return result
     with contextlib.suppress(OSError, InputError):
         file = _file(key, code)
         file.parent.mkdir(parents=True, exist_ok=True)
-        own_files.write(file, _KIND, own_files.packed(made.notes, made.columns))
+        own_files.write(file, _KIND, own_files.packed(result.notes, result.columns))
         _remove_oldest(file.parent)
-    return made
+    return result
 
 
 def _file(key: Sequence[object], code: Sequence[ModuleType]) -> Path:
@@ -113,6 +113,6 @@ def _read(file: Path) -> Cached | None:
 
 
 def _remove_oldest(folder: Path) -> None:
-    files = sorted(folder.glob("*.bin"), key=lambda one: one.stat().st_mtime)
+    files = sorted(folder.glob("*.bin"), key=lambda entry: entry.stat().st_mtime)
     for old in files[:-MOST]:
         own_files.remove(old)

@@ -42,7 +42,7 @@ class _Register:
     ----------
     inputs : dict
         Path and kind of each input, by its identity.
-    own : dict
+    own_files : dict
         Path of each file that was written here, by its identity.
     outputs : list of Path
         Files that will be written.
@@ -53,7 +53,7 @@ class _Register:
     """
 
     inputs: dict[Identity, tuple[Path, str]] = field(default_factory=dict)
-    own: dict[Identity, Path] = field(default_factory=dict)
+    own_files: dict[Identity, Path] = field(default_factory=dict)
     outputs: list[Path] = field(default_factory=list)
     words: tuple[str, ...] = ()
     command: bool = False
@@ -72,12 +72,12 @@ def of_command(words: Sequence[str]) -> Iterator[None]:
     words : sequence of str
         Its arguments, for the options in messages.
     """
-    own = _Register(words=tuple(words), command=True)
-    _registers.append(own)
+    register = _Register(words=tuple(words), command=True)
+    _registers.append(register)
     try:
         yield
     finally:
-        _registers.remove(own)
+        _registers.remove(register)
 
 
 def remember(path: Path, kind: str = "") -> None:
@@ -96,7 +96,7 @@ def remember(path: Path, kind: str = "") -> None:
         It is an output of this command.
     """
     file_id, register = _identity(path), _registers[-1]
-    if file_id is None or _path_of(register.own, file_id) is not None:
+    if file_id is None or _path_of(register.own_files, file_id) is not None:
         return
     register.inputs[file_id] = (path.absolute(), kind)
     for output in register.outputs:
@@ -162,9 +162,9 @@ def require_no_inputs_in(folder: Path) -> None:
         A file that this command has read is inside.
     """
     register = _registers[-1]
-    place = folder.resolve()
+    resolved = folder.resolve()
     for file_id, (source, _) in list(register.inputs.items()):
-        if source.resolve().is_relative_to(place) and _identity(source) == file_id:
+        if source.resolve().is_relative_to(resolved) and _identity(source) == file_id:
             where = _option_of_output(folder, register.words) or str(folder)
             raise InputError(
                 f"{where}: found the input {source} in {folder}, where files are replaced; expected a folder "
@@ -201,7 +201,7 @@ def written(path: Path) -> None:
     """Remember a file that was written here: it is an own file from now on."""
     file_id, register = _identity(path), _registers[-1]
     if file_id is not None:
-        register.own[file_id] = path.absolute()
+        register.own_files[file_id] = path.absolute()
         register.inputs.pop(file_id, None)
 
 
@@ -214,10 +214,10 @@ def _identity(path: Path) -> Identity | None:
     return (facts.st_dev, facts.st_ino) if stat.S_ISREG(facts.st_mode) else None
 
 
-def _path_of(known: dict[Identity, Path], found: Identity) -> Path | None:
+def _path_of(paths: dict[Identity, Path], identity: Identity) -> Path | None:
     """The path of an identity that still leads to it."""
-    path = known.get(found)
-    return path if path is not None and _identity(path) == found else None
+    path = paths.get(identity)
+    return path if path is not None and _identity(path) == identity else None
 
 
 def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -236,18 +236,18 @@ def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
 
 def _option_of_output(path: Path, words: Sequence[str]) -> str:
     """The option with an output, or with its folder; nothing where it was not given."""
-    place = path.absolute()
+    absolute = path.absolute()
     for name, value in _options(words):
         if name in OPTIONS and "\0" not in value:
             output = Path(value).absolute()
-            if output == place or output in place.parents:
+            if output == absolute or output in absolute.parents:
                 return name
     return ""
 
 
-def _option_of_input(found: Identity, words: Sequence[str]) -> str:
+def _option_of_input(identity: Identity, words: Sequence[str]) -> str:
     """The first option with an input; for an argument without an option, its word."""
     for name, value in _options(words):
-        if name not in OPTIONS and _identity(Path(value)) == found:
+        if name not in OPTIONS and _identity(Path(value)) == identity:
             return name or value
     return ""

@@ -61,8 +61,8 @@ class Listing(list[Item]):
         return display.page(self._title, [], tables={"Table": self.to_dataframe()})
 
     def _row(self, item: Item) -> tuple[str, str]:
-        name, *rest = (getattr(item, field) for field in self._shown)
-        return str(name), " ".join(_text(value) for value in rest)
+        name, *cells = (getattr(item, field) for field in self._shown)
+        return str(name), " ".join(_text(value) for value in cells)
 
 
 def _text(value: Any) -> str:

@@ -127,13 +127,13 @@ def writing(*files: Path | None) -> Iterator[None]:
                 _require_possible(file)
                 _require_writable(file)
                 # The name of the output may be as long as the system allows.
-                place = file.resolve()
+                resolved = file.resolve()
                 name = (
-                    place.name
-                    if len(os.fsencode(place.name)) < 200
-                    else hashlib.sha256(os.fsencode(place.name)).hexdigest()
+                    resolved.name
+                    if len(os.fsencode(resolved.name)) < 200
+                    else hashlib.sha256(os.fsencode(resolved.name)).hexdigest()
                 )
-                guard = place.with_name(f".{name}{NAME}")
+                guard = resolved.with_name(f".{name}{NAME}")
                 taken = f"{file}: another process is writing to this file"
                 held.callback(_release, _acquired(guard, taken, "another file"), guard)
                 atomic.remove_drafts_of(file)
@@ -142,9 +142,9 @@ def writing(*files: Path | None) -> Iterator[None]:
 
 def _require_writable(file: Path) -> None:
     """Refuse a file that cannot be written; nothing is changed by trying."""
-    found = "a folder" if file.is_dir() else special(file)
-    if found is not None:
-        raise InputError(f"{file}: found {found}, expected a file to write; choose another name")
+    kind = "a folder" if file.is_dir() else special(file)
+    if kind is not None:
+        raise InputError(f"{file}: found {kind}, expected a file to write; choose another name")
     if not file.parent.is_dir():
         raise InputError(f"{file}: expected an existing folder; make '{file.parent}' first")
     try:

@@ -30,10 +30,12 @@ def available() -> int | None:
         The least of the free memory of the machine, of what is left of the limit of a group of processes
         (containers), and of what is left of the limit of the process (``ulimit -v``). [B]
     """
-    found = [
-        one for one in (_machine(), *(_group(*files) for files in _GROUPS), _process()) if one is not None
+    limits = [
+        limit
+        for limit in (_machine(), *(_group(*files) for files in _GROUPS), _process())
+        if limit is not None
     ]
-    return min(found, default=None)
+    return min(limits, default=None)
 
 
 def require(size: float, what: str, advice: str) -> None:

@@ -60,14 +60,14 @@ def sealed(kind: str, content: bytes) -> bytes:
     return _MAGIC + head + _digest(head, content) + content
 
 
-def opened(kind: str, whole: bytes) -> bytes:
+def opened(kind: str, sealed: bytes) -> bytes:
     """The content of a sealed file.
 
     Parameters
     ----------
     kind : str
         What is expected.
-    whole : bytes
+    sealed : bytes
         The file.
 
     Raises
@@ -83,16 +83,16 @@ def opened(kind: str, whole: bytes) -> bytes:
     Traceback (most recent call last):
     mascarin._io.own_files.DamagedError: its content is not that which was written
     """
-    if not whole.startswith(_MAGIC):
+    if not sealed.startswith(_MAGIC):
         raise DamagedError("it has no header of Mascarin")
     first = len(_MAGIC)
-    lines = whole[first : first + _LONGEST].split(b"\n", 2)
+    lines = sealed[first : first + _LONGEST].split(b"\n", 2)
     if len(lines) < 3:
         raise DamagedError("its header is cut")
     head = b"\n".join(lines[:2]) + b"\n"
     start = first + len(head)
-    content = whole[start + _HASH :]
-    if _digest(head, content) != whole[start : start + _HASH]:
+    content = sealed[start + _HASH :]
+    if _digest(head, content) != sealed[start : start + _HASH]:
         raise DamagedError("its content is not that which was written")
     expected = f"{kind}\n{__version__}\n".encode()
     if head != expected:
@@ -198,9 +198,9 @@ def _finite(text: str) -> float:
     return value
 
 
-def _depth(found: Any) -> int:
+def _depth(part: Any) -> int:
     """Levels of lists and mappings."""
-    depth, level = 0, [found]
+    depth, level = 0, [part]
     while level:
         level = [
             value
@@ -245,14 +245,14 @@ def packed(notes: Any, arrays: Mapping[str, Array]) -> bytes:
     """
     import numpy as np
 
-    places, parts = [], []
+    offsets, parts = [], []
     for name, array in arrays.items():
         values = np.ascontiguousarray(array)
         if values.dtype.char not in _NUMBERS:
             raise TypeError(f"{name}: cannot keep an array of {values.dtype}")
-        places.append([name, values.dtype.newbyteorder("<").str, list(np.shape(array))])
+        offsets.append([name, values.dtype.newbyteorder("<").str, list(np.shape(array))])
         parts.append(values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes())
-    head = json.dumps({"notes": notes, "arrays": places}).encode()
+    head = json.dumps({"notes": notes, "arrays": offsets}).encode()
     return len(head).to_bytes(_WORD, "little") + head + b"".join(parts)
 
 
@@ -335,10 +335,10 @@ def inside(folder: Path, name: object) -> Path | None:
         return None
     path = folder / name
     try:
-        place, top = path.parent.resolve(), folder.resolve()
+        parent, top = path.parent.resolve(), folder.resolve()
     except (OSError, RuntimeError):  # a circle of links
         return None
-    return path if place.is_relative_to(top) else None
+    return path if parent.is_relative_to(top) else None
 
 
 def require_folder(folder: Path, name: str) -> Path:
@@ -356,22 +356,22 @@ def require_folder(folder: Path, name: str) -> Path:
     InputError
         It is a link out of the folder.
     """
-    place = folder / name
+    file = folder / name
     if inside(folder, f"{name}/x") is None:
         raise InputError(
-            f"{place}: found a link that leads out of {folder}, expected a folder; remove the link"
+            f"{file}: found a link that leads out of {folder}, expected a folder; remove the link"
         )
-    return place
+    return file
 
 
 def require(
-    found: Mapping[str, Any], keys: Mapping[str, type | tuple[type, ...]], further: Iterable[str] = ()
+    entries: Mapping[str, Any], keys: Mapping[str, type | tuple[type, ...]], further: Iterable[str] = ()
 ) -> None:
     """Refuse a mapping whose values have other types.
 
     Parameters
     ----------
-    found : mapping
+    entries : mapping
         What was read.
     keys : mapping of str to type
         Type of each value.
@@ -385,11 +385,11 @@ def require(
     """
     optional = set(further)
     for key, kind in keys.items():
-        if key not in found:
+        if key not in entries:
             if key in optional:
                 continue
             raise DamagedError(f"{key}: found nothing")
-        value = found[key]
+        value = entries[key]
         kinds = kind if isinstance(kind, tuple) else (kind,)
         # True is a whole number for Python.
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):

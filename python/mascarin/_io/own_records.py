@@ -116,9 +116,9 @@ def further(path: Path, damaged: Callable[[int, str], object]) -> Iterator[tuple
     tuple of int, bytes and dict
         Number from 2 on, the line with its end, and what it holds, without its seal.
     """
-    first, _, rest = own_files.whole(path).partition(b"\n")
+    first, _, records = own_files.whole(path).partition(b"\n")
     head = seal_of(first.decode("ascii", "replace"))
-    for number, line in enumerate(rest.split(b"\n")[:-1], start=2):
+    for number, line in enumerate(records.split(b"\n")[:-1], start=2):
         try:
             entry = opened(head, line)
         except own_files.DamagedError as error:

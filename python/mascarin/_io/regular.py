@@ -132,9 +132,9 @@ def require_regular(path: Path, expected: str = "a file", kind: str = "") -> Pat
     further = _REQUIRED.get()
     if further is not None:
         further(path)
-    found = special(path)
-    if found is not None:
-        raise InputError(f"{path}: found {found}, expected {expected}; copy its content to a file first")
+    what = special(path)
+    if what is not None:
+        raise InputError(f"{path}: found {what}, expected {expected}; copy its content to a file first")
     identity.remember(path, kind)
     try:
         size = path.stat().st_size

@@ -49,8 +49,8 @@ def read_csv(path: Path | TextIO, **options: Any) -> pd.DataFrame:
     version = tuple(int(part) for part in pd.__version__.split(".")[:2])
     if version < _EXACT:
         options["float_precision"] = "round_trip"
-    found: pd.DataFrame = pd.read_csv(path, **options)
-    return found
+    table: pd.DataFrame = pd.read_csv(path, **options)
+    return table
 
 
 @contextlib.contextmanager

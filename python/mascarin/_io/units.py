@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-_WHOLE: Final = {"degC": "°C", "deg": "°", "-": ""}
+_SYMBOLS: Final = {"degC": "°C", "deg": "°", "-": ""}
 _POWERS: Final = str.maketrans("23", "²³")
 _POWER: Final = re.compile(r"(?<=m)[23](?![0-9])")
 
@@ -31,9 +31,9 @@ def shown(raw: str) -> str:
     >>> shown("W/(m2 K)"), shown("degC"), shown("-")
     ('W/(m² K)', '°C', '')
     """
-    if raw in _WHOLE:
-        return _WHOLE[raw]
-    return _POWER.sub(lambda found: found[0].translate(_POWERS), raw)
+    if raw in _SYMBOLS:
+        return _SYMBOLS[raw]
+    return _POWER.sub(lambda match: match[0].translate(_POWERS), raw)
 
 
 def difference(raw: str) -> str:

@@ -6,37 +6,16 @@ other by name.
 
 from __future__ import annotations
 
-from mascarin.building.blind import Blind
-from mascarin.building.bridge import ThermalBridge
+from mascarin.building.base.number import Number
 from mascarin.building.building import Building
-from mascarin.building.checks import check
-from mascarin.building.convection import (
-    AlamdariHammond,
-    Constant,
-    Doe2,
-    Iso15099,
-    LinearWind,
-    Measured,
-    Mowitt,
-    PaperEq5,
-    Power,
-    PowerLaw,
-    Tarp,
-)
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription
-from mascarin.building.formula_curve import FormulaCurve
-from mascarin.building.formula_law import FormulaLaw
-from mascarin.building.glazing import (
-    Angular,
-    DiffuseOptics,
-    FilledGap,
-    GivenGap,
-    Pane,
-    PaneGlazing,
-    SimpleGlazing,
-)
+from mascarin.building.engine_input.ratings import WindowRating, window_ratings
 from mascarin.building.ground_floor import on_ground
-from mascarin.building.humidity import (
+from mascarin.building.json_schemas import json_schema
+from mascarin.building.outputs.output import Output
+from mascarin.building.parameters.parameter import Parameter
+from mascarin.building.parts.air.humidity import (
     CoolingCoil,
     Humidistat,
     Humidity,
@@ -44,27 +23,8 @@ from mascarin.building.humidity import (
     VapourGain,
     ZoneHumidity,
 )
-from mascarin.building.json_schemas import json_schema
-from mascarin.building.leakage import LeakageFactor, LeakageStackWind
-from mascarin.building.material import PhaseChangeMaterial, Resistance, Solid
-from mascarin.building.number import Number
-from mascarin.building.outputs import Output
-from mascarin.building.parameters import Parameter
-from mascarin.building.phase_change import (
-    CapacityLaw,
-    FractionsLaw,
-    GaussianLaw,
-    GumbelLaw,
-    Hysteresis,
-    LinearLaw,
-    SmoothStepLaw,
-    TableLaw,
-    TanhLaw,
-    TriangleLaw,
-)
-from mascarin.building.ratings import WindowRating, window_ratings
-from mascarin.building.reading import load
-from mascarin.building.schedule import (
+from mascarin.building.parts.air.leakage import LeakageFactor, LeakageStackWind
+from mascarin.building.parts.air.schedule import (
     FractionDays,
     FractionPoint,
     FractionSchedule,
@@ -75,22 +35,8 @@ from mascarin.building.schedule import (
     TemperaturePoint,
     TemperatureSchedule,
 )
-from mascarin.building.set_point import SetPoint
-from mascarin.building.site import (
-    BruntSky,
-    ClarkAllenSky,
-    CloudFactor,
-    CloudLayer,
-    MartinBerdahlSky,
-    MeasuredSky,
-    OffsetSky,
-    Site,
-    Wind,
-)
-from mascarin.building.sorption import LinearSorption, Published, TabulatedSorption
-from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
-from mascarin.building.tables import parameter_table
-from mascarin.building.vent import (
+from mascarin.building.parts.air.set_point import SetPoint
+from mascarin.building.parts.air.vent import (
     DifferenceBand,
     LowRise,
     NoWind,
@@ -101,9 +47,8 @@ from mascarin.building.vent import (
     VentControl,
     WindBand,
 )
-from mascarin.building.ventilation import UnitFlow, VentilationUnit
-from mascarin.building.window import Frame, Shade, Window, WindowInside, WindowOutside
-from mascarin.building.zone import (
+from mascarin.building.parts.air.ventilation import UnitFlow, VentilationUnit
+from mascarin.building.parts.air.zone import (
     AirPath,
     Door,
     EvenSun,
@@ -118,6 +63,69 @@ from mascarin.building.zone import (
     Ventilation,
     Zone,
 )
+from mascarin.building.parts.envelope.bridge import ThermalBridge
+from mascarin.building.parts.envelope.convection import (
+    AlamdariHammond,
+    Constant,
+    Doe2,
+    Iso15099,
+    LinearWind,
+    Measured,
+    Mowitt,
+    PaperEq5,
+    Power,
+    PowerLaw,
+    Tarp,
+)
+from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.envelope.surface import (
+    Construction,
+    Exposure,
+    Ground,
+    Layer,
+    Sensor,
+    Side,
+    Surface,
+)
+from mascarin.building.parts.materials.formula_curve import FormulaCurve
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance, Solid
+from mascarin.building.parts.materials.phase_change import (
+    CapacityLaw,
+    FractionsLaw,
+    GaussianLaw,
+    GumbelLaw,
+    Hysteresis,
+    LinearLaw,
+    SmoothStepLaw,
+    TableLaw,
+    TanhLaw,
+    TriangleLaw,
+)
+from mascarin.building.parts.materials.sorption import LinearSorption, Published, TabulatedSorption
+from mascarin.building.parts.openings.blind import Blind
+from mascarin.building.parts.openings.glazing import (
+    Angular,
+    DiffuseOptics,
+    FilledGap,
+    GivenGap,
+    Pane,
+    PaneGlazing,
+    SimpleGlazing,
+)
+from mascarin.building.parts.openings.window import Frame, Shade, Window, WindowInside, WindowOutside
+from mascarin.building.parts.site import (
+    BruntSky,
+    ClarkAllenSky,
+    CloudFactor,
+    CloudLayer,
+    MartinBerdahlSky,
+    MeasuredSky,
+    OffsetSky,
+    Site,
+    Wind,
+)
+from mascarin.building.reading import load
+from mascarin.building.tables import parameter_table
 from mascarin.physics import moist_air
 
 __all__ = [

@@ -13,25 +13,25 @@ from mascarin._io import atomic, display, identity
 from mascarin._io.arguments import mapping_of
 from mascarin._io.durations import seconds_of
 from mascarin._io.listing import Listing
-from mascarin.building import outputs as results
-from mascarin.building import summary
-from mascarin.building.checks import check
-from mascarin.building.derived import DERIVED
-from mascarin.building.description import Description
+from mascarin.building.base.error_texts import explained
+from mascarin.building.base.leaves import leaves
+from mascarin.building.base.names import known_names
+from mascarin.building.base.number import Interval, Number
+from mascarin.building.base.part import Part, insist, is_number, plain_value
+from mascarin.building.base.replacement import piece_at, put, replaced_at, without_parts
+from mascarin.building.checks import summary
+from mascarin.building.checks.consistency import faults, faults_of_values
+from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription, describe
-from mascarin.building.explaining import explained
-from mascarin.building.leaves import leaves
-from mascarin.building.names import known_names
-from mascarin.building.number import Interval, Number
-from mascarin.building.outputs import Output
-from mascarin.building.parameters import Parameter, listed, lookup, parameters, resolve
-from mascarin.building.part import Part, insist, is_number, plain_value
-from mascarin.building.references import sources
-from mascarin.building.replacing import piece_at, put, replaced_at, without_parts
-from mascarin.building.rules import faults, faults_of_values
-from mascarin.building.ties import spread, spread_ranges, with_tied
-from mascarin.building.yaml_document import read
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_document import read
+from mascarin.building.files.yaml_text import text_of
+from mascarin.building.outputs import output as results
+from mascarin.building.outputs.output import Output
+from mascarin.building.parameters.parameter import Parameter, listed, lookup, parameters, resolve
+from mascarin.building.parameters.sources import sources
+from mascarin.building.parameters.ties import spread, spread_ranges, with_tied
+from mascarin.building.parts.defaults import DERIVED
+from mascarin.building.parts.description import Description
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from mascarin.building.u_values import layer_resistance
+from mascarin.building.checks.u_values import layer_resistance
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from typing import Any, Final
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from mascarin.building.base.docstrings import summary_of
+from mascarin.building.base.number import Number
+from mascarin.building.base.part import Part
 from mascarin.building.building import Building
-from mascarin.building.documenting import summary_of
-from mascarin.building.inheriting import EXTENDS, SET
-from mascarin.building.number import Number
-from mascarin.building.part import Part
+from mascarin.building.files.inheritance import EXTENDS, SET
 
 USUAL_KINDS: Final = ("solid", "factor")
 """Kinds that a file may leave out: of a material, and of the effect of clouds given by coefficients."""
@@ -109,7 +109,7 @@ def _describe(properties: dict[str, Any], parts: dict[str, Any]) -> None:
     for entry in properties.values():
         if isinstance(entry, dict) and "description" not in entry:
             held = (entry, *entry.get("anyOf", ()), entry.get("items", {}))
-            if text := next(filter(None, (_text(one, parts) for one in held)), None):
+            if text := next(filter(None, (_text(option, parts) for option in held)), None):
                 entry["description"] = text
 
 

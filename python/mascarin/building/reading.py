@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mascarin.building.base.error_texts import explained
 from mascarin.building.building import Building
-from mascarin.building.explaining import explained
-from mascarin.building.yaml_document import files_of, lines, parse_as, plain, read
+from mascarin.building.files.yaml_document import files_of, lines, parse_as, plain, read
 
 __all__ = ["explained", "files_of", "lines", "load", "parse", "parse_as", "plain", "read"]
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin._io.arguments import kind_of, mapping_of, require_type
 from mascarin._io.durations import seconds_of
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.ties import expanded
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
@@ -23,7 +23,7 @@ from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.progress import ProgressOption
 from mascarin.simulation.nominal import of_nominal
-from mascarin.simulation.options import Scheme, TimeLike
+from mascarin.simulation.preparation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.simulation.initial import Initial
+    from mascarin.simulation.preparation.initial import Initial
     from mascarin.weather import Climate
 
 CONSTANT: Final = ("stuck", "forward_filled")
@@ -153,7 +153,7 @@ def calibrate(
     >>> found.building.parameter(path).value == found.values[path]
     True
     """
-    from mascarin.simulation.compiling import in_climate  # needs pydantic
+    from mascarin.simulation.preparation.prepare import in_climate  # needs pydantic
 
     _require_types(measurements, sensors, vary, record)
     vary = _written_out(building, vary)

@@ -174,7 +174,7 @@ class Calibration:
         if self.nominal_building is None:
             raise InputError("building: this calibration was made by solve() on arrays and has no building")
         # The package imports pydantic, which an evaluation for GenOpt does without.
-        from mascarin.building.set_points import tied_set_points
+        from mascarin.building.parameters.set_point_pairs import tied_set_points
 
         tied = tied_set_points(self.nominal_building)
         following = {tied[path]: value for path, value in self.values.items() if path in tied}

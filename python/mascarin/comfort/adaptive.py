@@ -36,30 +36,30 @@ _ASHRAE_RANGE: Final = (10.0, 33.5)  # degC
 _ASHRAE_MET: Final = (1.0, 1.5)  # met
 
 
-def adaptive_en(here: Conditions, category: str) -> Evaluation:
+def adaptive_en(conditions: Conditions, category: str) -> Evaluation:
     """Operative temperature between the limits of EN 16798-1 around ``0.33 t_rm + 18.8``."""
-    mean = _known(here.running_mean)
+    mean = _valid_mean(conditions.running_mean)
     outside = {
         "no running mean: fewer than seven days of weather before": np.isnan(mean),
         f"running mean below {_EN_RANGE[0]:g} degC": below(mean, _EN_RANGE[0]),
         f"running mean above {_EN_RANGE[1]:g} degC": above(mean, _EN_RANGE[1]),
     }
-    return _around(here, 0.33 * mean + 18.8, EN_CATEGORIES[category], outside)
+    return _around(conditions, 0.33 * mean + 18.8, EN_CATEGORIES[category], outside)
 
 
-def adaptive_ashrae(here: Conditions, category: str) -> Evaluation:
+def adaptive_ashrae(conditions: Conditions, category: str) -> Evaluation:
     """Operative temperature between the limits of ASHRAE 55 around ``0.31 t_pma + 17.8``."""
-    mean = _known(here.prevailing_mean)
+    mean = _valid_mean(conditions.prevailing_mean)
     low, high = _ASHRAE_MET
     outside = {
         "no prevailing mean: fewer than seven days of weather before": np.isnan(mean),
         f"prevailing mean below {_ASHRAE_RANGE[0]:g} degC": below(mean, _ASHRAE_RANGE[0]),
         f"prevailing mean above {_ASHRAE_RANGE[1]:g} degC": above(mean, _ASHRAE_RANGE[1]),
         f"metabolic rate outside {low:g} to {high:g} met": np.asarray(
-            below(here.metabolic_rate, low) or above(here.metabolic_rate, high)
+            below(conditions.metabolic_rate, low) or above(conditions.metabolic_rate, high)
         ),
     }
-    return _around(here, 0.31 * mean + 17.8, ASHRAE_CATEGORIES[category], outside)
+    return _around(conditions, 0.31 * mean + 17.8, ASHRAE_CATEGORIES[category], outside)
 
 
 def weighted_mean(daily: npt.ArrayLike, weights: tuple[float, ...], *, periodic: bool = False) -> Floats:
@@ -84,10 +84,10 @@ def weighted_mean(daily: npt.ArrayLike, weights: tuple[float, ...], *, periodic:
     >>> weighted_mean([10.0] * 7 + [20.0, 20.0], EN_WEIGHTS)[-2:].round(3)
     array([10.   , 12.632])
     """
-    known = np.asarray(daily, dtype=np.float64)
+    temperatures = np.asarray(daily, dtype=np.float64)
     count = len(weights)
-    before = known[-count:] if periodic and len(known) >= count else np.full(count, np.nan)
-    padded = np.concatenate([before, known])
+    before = temperatures[-count:] if periodic and len(temperatures) >= count else np.full(count, np.nan)
+    padded = np.concatenate([before, temperatures])
     shifted = [padded[count - lag : len(padded) - lag] for lag in range(1, count + 1)]
     return np.asarray(np.average(shifted, axis=0, weights=weights), dtype=np.float64)
 
@@ -119,16 +119,16 @@ def rise_of_limit(air_speed: npt.ArrayLike, operative: npt.ArrayLike) -> Floats:
     return np.where(above(warm, _RISES_ABOVE), rise, 0.0)
 
 
-def _known(mean: Floats | float | None) -> Floats:
+def _valid_mean(mean: Floats | float | None) -> Floats:
     if mean is None:
         raise ValueError("no outdoor temperature")
     return np.asarray(mean, dtype=np.float64)
 
 
 def _around(
-    here: Conditions, centre: Floats, distances: tuple[float, float], outside: dict[str, Flags]
+    conditions: Conditions, centre: Floats, distances: tuple[float, float], outside: dict[str, Flags]
 ) -> Evaluation:
-    values = here.operative_temperature
+    values = conditions.operative_temperature
     invalid = np.any(np.stack(np.broadcast_arrays(*outside.values())), axis=0)
-    high = centre + distances[1] + rise_of_limit(here.air_speed, values)
+    high = centre + distances[1] + rise_of_limit(conditions.air_speed, values)
     return Evaluation(np.where(invalid, np.nan, values), centre + distances[0], high, outside)

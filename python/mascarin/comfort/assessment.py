@@ -63,14 +63,14 @@ class Comfort:
     evaluation: Evaluation
     weights: Floats
     notes: tuple[str, ...] = ()
-    _found: list[Discomfort] = field(default_factory=list)
+    _summary: list[Discomfort] = field(default_factory=list)
 
     @property
     def discomfort(self) -> Discomfort:
         """Hours and degree-hours outside the limits of comfort."""
-        if not self._found:
-            self._found.append(discomfort(self.evaluation, self.weights))
-        return self._found[0]
+        if not self._summary:
+            self._summary.append(discomfort(self.evaluation, self.weights))
+        return self._summary[0]
 
     @property
     def hours(self) -> float:
@@ -94,18 +94,22 @@ class Comfort:
         """
         import pandas as pd
 
-        here, found = self.conditions, self.evaluation
+        conditions, evaluation = self.conditions, self.evaluation
         columns: dict[str, Any] = {
-            "air_temperature": here.air_temperature,
-            "mean_radiant_temperature": here.radiant_temperature,
-            "operative_temperature": here.operative_temperature,
+            "air_temperature": conditions.air_temperature,
+            "mean_radiant_temperature": conditions.radiant_temperature,
+            "operative_temperature": conditions.operative_temperature,
         }
-        if here.relative_humidity is not None:
-            columns["relative_humidity"] = here.relative_humidity
-        columns[self.settings.index.replace("-", "_")] = found.values  # noqa: PD011
+        if conditions.relative_humidity is not None:
+            columns["relative_humidity"] = conditions.relative_humidity
+        columns[self.settings.index.replace("-", "_")] = evaluation.values  # noqa: PD011
         if self.settings.index == "pmv":
-            columns["ppd"] = dissatisfied(found.values)
-        columns |= {"lower_limit": found.low, "upper_limit": found.high, "occupied_hours": self.weights}
+            columns["ppd"] = dissatisfied(evaluation.values)
+        columns |= {
+            "lower_limit": evaluation.low,
+            "upper_limit": evaluation.high,
+            "occupied_hours": self.weights,
+        }
         return pd.DataFrame(columns, index=self.times.rename("time"))
 
     def by_month(self) -> pd.DataFrame:
@@ -143,24 +147,24 @@ class Comfort:
 
     def to_dict(self) -> dict[str, Any]:
         """Settings, hours and notes as values that JSON can hold."""
-        found = self.discomfort
+        discomfort = self.discomfort
         index = self.settings.index_used
         return {
             "zone": self.zone,
             "index": index.name,
             "limits": self.settings.limits,
             "settings": self.settings.to_dict(),
-            "occupied_hours": float(found.assessed_hours),
-            "hours_of_discomfort": float(found.hours),
-            "hot_hours": float(found.hot_hours),
-            "cold_hours": float(found.cold_hours),
-            "humid_hours": float(found.humid_hours),
-            "degree_hours": float(found.degree_hours),
-            "hot_degree_hours": float(found.hot_degree_hours),
-            "cold_degree_hours": float(found.cold_degree_hours),
+            "occupied_hours": float(discomfort.assessed_hours),
+            "hours_of_discomfort": float(discomfort.hours),
+            "hot_hours": float(discomfort.hot_hours),
+            "cold_hours": float(discomfort.cold_hours),
+            "humid_hours": float(discomfort.humid_hours),
+            "degree_hours": float(discomfort.degree_hours),
+            "hot_degree_hours": float(discomfort.hot_degree_hours),
+            "cold_degree_hours": float(discomfort.cold_degree_hours),
             "unit_of_degree_hours": index.excess_unit,
-            "undefined_hours": float(found.undefined_hours),
-            "not_valid": {why: float(time) for why, time in found.reasons.items() if float(time) > 0.0},
+            "undefined_hours": float(discomfort.undefined_hours),
+            "not_valid": {why: float(time) for why, time in discomfort.reasons.items() if float(time) > 0.0},
             "validity": index.validity,
             "source": index.source,
             "notes": list(self.notes),
@@ -188,11 +192,13 @@ class Comfort:
         InputError
             There is no such kind, or the chart needs a humidity that is not known.
         """
-        here = self.conditions
+        conditions = self.conditions
         room = {
-            "air_temperature": here.air_temperature,
-            "relative_humidity": None if here.relative_humidity is None else np.asarray(here.humidity),
-            "pressure": here.pressure,
+            "air_temperature": conditions.air_temperature,
+            "relative_humidity": None
+            if conditions.relative_humidity is None
+            else np.asarray(conditions.humidity),
+            "pressure": conditions.pressure,
         }
         return plots.draw(kind, self.settings.index_used, self.times, self.evaluation, room, ax)
 
@@ -208,22 +214,22 @@ class Comfort:
         )
 
     def _rows(self) -> list[tuple[str, str]]:
-        index, found = self.settings.index_used, self.discomfort
+        index, discomfort = self.settings.index_used, self.discomfort
         limits = self.settings.limits
         chosen = f"category {limits}" if isinstance(limits, str) else f"band {limits}"
         unit = index.excess_unit
         rows = [
             ("index", f"{index.title} ({index.name}), {chosen}"),
-            ("occupied", f"{float(found.assessed_hours):g} h"),
-            ("discomfort", f"{self.hours:.4g} h: {float(found.hot_hours):.4g} h too hot, "
-                           f"{float(found.cold_hours):.4g} h too cold"),
-            ("degree-hours", f"{self.degree_hours:.4g} {unit}: {float(found.hot_degree_hours):.4g} hot, "
-                             f"{float(found.cold_degree_hours):.4g} cold"),
+            ("occupied", f"{float(discomfort.assessed_hours):g} h"),
+            ("discomfort", f"{self.hours:.4g} h: {float(discomfort.hot_hours):.4g} h too hot, "
+                           f"{float(discomfort.cold_hours):.4g} h too cold"),
+            ("degree-hours", f"{self.degree_hours:.4g} {unit}: {float(discomfort.hot_degree_hours):.4g} hot, "
+                             f"{float(discomfort.cold_degree_hours):.4g} cold"),
         ]  # fmt: skip
-        if float(found.humid_hours):
-            rows.append(("too humid", f"{float(found.humid_hours):.4g} h"))
-        rows.append(("not valid", f"{float(found.undefined_hours):.4g} h, counted as neither"))
-        rows += [("", f"{float(h):.4g} h: {why}") for why, h in found.reasons.items() if float(h) > 0.0]
+        if float(discomfort.humid_hours):
+            rows.append(("too humid", f"{float(discomfort.humid_hours):.4g} h"))
+        rows.append(("not valid", f"{float(discomfort.undefined_hours):.4g} h, counted as neither"))
+        rows += [("", f"{float(h):.4g} h: {why}") for why, h in discomfort.reasons.items() if float(h) > 0.0]
         rows.append(("validity", index.validity))
         return [*rows, *(("note", note) for note in self.notes)]
 
@@ -270,8 +276,8 @@ def assess(
     >>> assess("room", settings, times, [27.0, 27.0, 25.0], [27.0, 27.0, 25.0]).degree_hours
     1.5
     """
-    here = settings.conditions(air, radiant, around, humidity)
-    found = settings.index_used.evaluate(here, settings.limits)
+    conditions = settings.conditions(air, radiant, around, humidity)
+    evaluation = settings.index_used.evaluate(conditions, settings.limits)
     said = list(notes)
     if settings.humidity == "outdoor":
         said.append(
@@ -280,4 +286,4 @@ def assess(
         )
     elif isinstance(settings.humidity, float):
         said.append(f"the relative humidity is assumed to be {settings.humidity:g} % at all times")
-    return Comfort(zone, settings, times, here, found, settings.occupied(times), tuple(said))
+    return Comfort(zone, settings, times, conditions, evaluation, settings.occupied(times), tuple(said))

@@ -94,12 +94,12 @@ class Discomfort:
     reasons: Mapping[str, Floats]
 
 
-def discomfort(found: Evaluation, hours: npt.ArrayLike) -> Discomfort:
+def discomfort(evaluation: Evaluation, hours: npt.ArrayLike) -> Discomfort:
     """Hours and degree-hours outside the limits of comfort.
 
     Parameters
     ----------
-    found : Evaluation
+    evaluation : Evaluation
         Values and limits of an index.
     hours : array_like, shape (times,)
         Time that each value stands for; 0 where the room is empty. [h]
@@ -117,13 +117,13 @@ def discomfort(found: Evaluation, hours: npt.ArrayLike) -> Discomfort:
     (array([1., 0.]), array([0., 2.]), array([0., 2.]))
     """
     weights = np.asarray(hours, dtype=np.float64)
-    known = ~np.isnan(found.values)
-    beyond = np.where(known, found.excess, 0.0)
-    humid = np.zeros_like(known) if found.too_humid is None else known & found.too_humid
+    valid = ~np.isnan(evaluation.values)
+    beyond = np.where(valid, evaluation.excess, 0.0)
+    humid = np.zeros_like(valid) if evaluation.too_humid is None else valid & evaluation.too_humid
     hot, cold = beyond > 0.0, beyond < 0.0
     hot_degrees = np.maximum(beyond, 0.0) @ weights
     cold_degrees = -np.minimum(beyond, 0.0) @ weights
-    shape = found.values.shape
+    shape = evaluation.values.shape
     return Discomfort(
         hours=(hot | cold | humid) @ weights,
         hot_hours=hot @ weights,
@@ -132,10 +132,10 @@ def discomfort(found: Evaluation, hours: npt.ArrayLike) -> Discomfort:
         degree_hours=hot_degrees + cold_degrees,
         hot_degree_hours=hot_degrees,
         cold_degree_hours=cold_degrees,
-        undefined_hours=~known @ weights,
+        undefined_hours=~valid @ weights,
         assessed_hours=np.broadcast_to(weights.sum(), shape[:-1]).copy(),
         reasons={
             reason: np.asarray(np.broadcast_to(where, shape) @ weights)
-            for reason, where in found.outside.items()
+            for reason, where in evaluation.outside.items()
         },
     )

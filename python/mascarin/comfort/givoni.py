@@ -69,18 +69,18 @@ def zone(air_speed: float) -> Floats:
     return np.array(points, dtype=np.float64)
 
 
-def givoni(here: Conditions, _category: str) -> Evaluation:
+def givoni(conditions: Conditions, _category: str) -> Evaluation:
     """Operative temperature between the sides of the zone at the humidity of the room."""
-    rise = _rise(here.air_speed)
-    values = here.operative_temperature
-    ratio = humidity_ratio(here.air_temperature, here.humidity, here.pressure)
+    rise = _rise(conditions.air_speed)
+    values = conditions.operative_temperature
+    ratio = humidity_ratio(conditions.air_temperature, conditions.humidity, conditions.pressure)
     dry_t, humid_t = _DRY_CORNER[0] + rise, _HUMID_CORNER[0] + rise
     dry_w = humidity_ratio(dry_t, _DRY_CORNER[1])
     humid_w = humidity_ratio(humid_t, _HUMID_CORNER[1])
     share = np.clip((ratio - dry_w) / (humid_w - dry_w), 0.0, 1.0)
     high = dry_t + share * (humid_t - dry_t)
     # At a given humidity ratio cool air is the more humid one: above 80 % it is outside the zone.
-    too_humid = above(relative_humidity(values, ratio, here.pressure), _HUMID_CORNER[1]) | above(
+    too_humid = above(relative_humidity(values, ratio, conditions.pressure), _HUMID_CORNER[1]) | above(
         1000.0 * ratio, 1000.0 * humid_w
     )
     dry = below(1000.0 * ratio, 1000.0 * DRIEST)  # g/kg, the unit of the limit

@@ -59,16 +59,16 @@ _UTCI: Final = {
 }
 
 
-def pmv(here: Conditions, category: str) -> Evaluation:
+def pmv(conditions: Conditions, category: str) -> Evaluation:
     """Predicted mean vote between the limits of a category of ISO 7730."""
     low, high = PMV_CATEGORIES[category]
-    inputs = _inputs(here)
-    met = here.metabolic_rate
+    inputs = _inputs(conditions)
+    met = conditions.metabolic_rate
     # Moving arms and legs adds to the air speed: ISO 7730 takes the speed relative to the person.
     speed = inputs["speed"] + 0.3 * max(met - 1.0, 0.0)
     vote = _called(
         "pmv_ppd_iso", "pmv", tdb=inputs["air"], tr=inputs["radiant"], vr=speed, rh=inputs["humidity"],
-        met=met, clo=here.clothing,
+        met=met, clo=conditions.clothing,
     )  # fmt: skip
     return _limited(vote, _PMV, {**inputs, "speed": speed, "value": vote}, (low, high))
 
@@ -95,45 +95,45 @@ def dissatisfied(vote: npt.ArrayLike) -> Floats:
     return np.asarray(100.0 - 95.0 * np.exp(-0.03353 * square**2 - 0.2179 * square), dtype=np.float64)
 
 
-def standard_effective_temperature(here: Conditions, limits: Limits) -> Evaluation:
+def standard_effective_temperature(conditions: Conditions, limits: Limits) -> Evaluation:
     """Standard effective temperature between two temperatures."""
-    inputs = _inputs(here)
+    inputs = _inputs(conditions)
     # The two-node model counts the motion of the body by itself: the air speed is that in the room.
-    found = _called(
+    result = _called(
         "set_tmp", "set", tdb=inputs["air"], tr=inputs["radiant"], v=inputs["speed"], rh=inputs["humidity"],
-        met=here.metabolic_rate, clo=here.clothing,
+        met=conditions.metabolic_rate, clo=conditions.clothing,
     )  # fmt: skip
-    return _limited(found, _SET, inputs, limits)
+    return _limited(result, _SET, inputs, limits)
 
 
-def heat_index(here: Conditions, limits: Limits) -> Evaluation:
+def heat_index(conditions: Conditions, limits: Limits) -> Evaluation:
     """Heat index of Rothfusz below a temperature."""
-    inputs = _inputs(here)
-    found = _called("heat_index_rothfusz", "hi", tdb=inputs["air"], rh=inputs["humidity"])
-    return _limited(found, _HEAT_INDEX, inputs, limits)
+    inputs = _inputs(conditions)
+    result = _called("heat_index_rothfusz", "hi", tdb=inputs["air"], rh=inputs["humidity"])
+    return _limited(result, _HEAT_INDEX, inputs, limits)
 
 
-def utci(here: Conditions, limits: Limits) -> Evaluation:
+def utci(conditions: Conditions, limits: Limits) -> Evaluation:
     """Universal thermal climate index between two temperatures; the air speed is the wind at 10 m."""
-    inputs = _inputs(here)
+    inputs = _inputs(conditions)
     inputs["difference"] = inputs["radiant"] - inputs["air"]
-    found = _called(
+    result = _called(
         "utci", "utci", tdb=inputs["air"], tr=inputs["radiant"], v=inputs["speed"], rh=inputs["humidity"]
     )
-    return _limited(found, _UTCI, inputs, limits)
+    return _limited(result, _UTCI, inputs, limits)
 
 
-def _inputs(here: Conditions) -> dict[str, Floats]:
+def _inputs(conditions: Conditions) -> dict[str, Floats]:
     """What the equations take, all of one shape."""
     names = ("air", "radiant", "humidity", "speed", "met", "clo")
-    given = (
-        here.air_temperature, here.radiant_temperature, here.humidity, here.air_speed, here.metabolic_rate,
-        here.clothing,
+    quantities = (
+        conditions.air_temperature, conditions.radiant_temperature, conditions.humidity,
+        conditions.air_speed, conditions.metabolic_rate, conditions.clothing,
     )  # fmt: skip
-    arrays = (np.asarray(one, dtype=np.float64) for one in given)
-    found = dict(zip(names, np.broadcast_arrays(*arrays), strict=True))
-    vapour = saturation_pressure(found["air"]) * found["humidity"] / 100.0
-    return {**found, "vapour": vapour}
+    arrays = (np.asarray(quantity, dtype=np.float64) for quantity in quantities)
+    by_name = dict(zip(names, np.broadcast_arrays(*arrays), strict=True))
+    vapour = saturation_pressure(by_name["air"]) * by_name["humidity"] / 100.0
+    return {**by_name, "vapour": vapour}
 
 
 def _called(function: str, field: str, **inputs: Any) -> Floats:

@@ -59,12 +59,12 @@ class Index:
     rate: Callable[[Conditions, str], Evaluation] | None = field(default=None, repr=False)
     rate_band: Callable[[Conditions, Band], Evaluation] | None = field(default=None, repr=False)
 
-    def evaluate(self, here: Conditions, limits: str | Band | None = None) -> Evaluation:
+    def evaluate(self, conditions: Conditions, limits: str | Band | None = None) -> Evaluation:
         """Values of the index, NaN where it is not valid, with the limits of comfort.
 
         Parameters
         ----------
-        here : Conditions
+        conditions : Conditions
             Air, radiation, humidity and the person.
         limits : str or (float, float), optional
             Category, or lowest and highest value of comfort. Default: `usual`.
@@ -82,16 +82,20 @@ class Index:
         """
         chosen = self.usual if limits is None else limits
         require_limits(self, chosen)
-        if "humidity" in self.needs and here.relative_humidity is None:
+        if "humidity" in self.needs and conditions.relative_humidity is None:
             raise InputError(f"{self.name}: the relative humidity is not known, and {self.title} needs it")
-        if "outdoor temperature" in self.needs and here.running_mean is None and here.prevailing_mean is None:
+        if (
+            "outdoor temperature" in self.needs
+            and conditions.running_mean is None
+            and conditions.prevailing_mean is None
+        ):
             raise InputError(f"{self.name}: the outdoor temperature is not known, and {self.title} needs it")
         if isinstance(chosen, str):
             assert self.rate is not None  # noqa: S101 (require_limits)
-            return self.rate(here, chosen)
+            return self.rate(conditions, chosen)
         assert self.rate_band is not None  # noqa: S101
         assert chosen is not None  # noqa: S101
-        return self.rate_band(here, chosen)
+        return self.rate_band(conditions, chosen)
 
 
 def require_limits(index: Index, limits: str | Band | None, where: str = "") -> None:
@@ -117,19 +121,21 @@ def require_limits(index: Index, limits: str | Band | None, where: str = "") -> 
     """
     if index.categories:
         if limits not in index.categories:
-            known = ", ".join(index.categories)
-            raise InputError(f"{where}category: found {limits!r}; expected one of {index.title}: {known}")
+            categories = ", ".join(index.categories)
+            raise InputError(
+                f"{where}category: found {limits!r}; expected one of {index.title}: {categories}"
+            )
         return
     if isinstance(limits, str) or limits is None or not limits[0] < limits[1]:
-        found = "none" if limits is None else repr(limits)
+        stated = "none" if limits is None else repr(limits)
         raise InputError(
-            f"{where}band: found {found}; expected the lowest and the highest comfortable value of "
+            f"{where}band: found {stated}; expected the lowest and the highest comfortable value of "
             f"{index.title} [{index.unit}], such as [20, 26]"
         )
 
 
-def _operative(here: Conditions, band: Band) -> Evaluation:
-    return Evaluation(here.operative_temperature, *band)
+def _operative(conditions: Conditions, band: Band) -> Evaluation:
+    return Evaluation(conditions.operative_temperature, *band)
 
 
 _ALL: Final = (
@@ -182,7 +188,7 @@ _ALL: Final = (
     ),
 )  # fmt: skip
 
-INDICES: Final[Mapping[str, Index]] = {one.name: one for one in _ALL}
+INDICES: Final[Mapping[str, Index]] = {entry.name: entry for entry in _ALL}
 """The indices by name."""
 
 

@@ -43,15 +43,15 @@ def hours_in_givoni_zones(climate: Climate) -> dict[str, dict[str, float]]:
     humid = humidity_of_dew_point(air, data["dew_point"].to_numpy(dtype=np.float64))
     pressure = data["pressure"].to_numpy(dtype=np.float64) if "pressure" in data else STANDARD_PRESSURE
     weights = np.full(len(air), climate.grid.interval / 3600.0)
-    found = {}
+    hours = {}
     for speed in SPEEDS:
-        here = Conditions(air, air, humid, pressure=pressure, air_speed=speed)
-        totals = discomfort(givoni(here, "hot climate"), weights)
-        found[f"{speed:g} m/s"] = {
+        conditions = Conditions(air, air, humid, pressure=pressure, air_speed=speed)
+        totals = discomfort(givoni(conditions, "hot climate"), weights)
+        hours[f"{speed:g} m/s"] = {
             "comfortable": float(totals.assessed_hours - totals.hours - totals.undefined_hours),
             "hot": float(totals.hot_hours),
             "cold": float(totals.cold_hours),
             "humid": float(totals.humid_hours),
             "dry": float(totals.undefined_hours),
         }
-    return found
+    return hours

@@ -72,7 +72,7 @@ def draw(
     kind: str,
     index: Index,
     times: pd.DatetimeIndex,
-    found: Evaluation,
+    evaluation: Evaluation,
     room: Mapping[str, Floats | float | None],
     ax: Axes | None = None,
 ) -> Figure:
@@ -86,7 +86,7 @@ def draw(
         What was evaluated.
     times : pandas.DatetimeIndex, shape (times,)
         Local times.
-    found : Evaluation
+    evaluation : Evaluation
         Values and limits.
     room : mapping
         air_temperature [degC], relative_humidity [%] or None, and pressure [Pa] of the room.
@@ -117,14 +117,14 @@ def draw(
     name = "PMV" if index.name == "pmv" else index.title.removeprefix("the ")
     if index.unit == "degC" and index.name in ("adaptive-en", "adaptive-ashrae", "givoni"):
         name = "operative temperature"
-    series = figures.Series(times, found.values, name, index.unit)
+    series = figures.Series(times, evaluation.values, name, index.unit)
     if kind == "series":
-        figures.with_limits(axes, series, found.low, found.high)
+        figures.with_limits(axes, series, evaluation.low, evaluation.high)
         axes.set_xlabel(f"local time ({times.tz})")
     elif kind == "profile":
         figures.daily_profile(axes, series)
     elif kind == "carpet":
-        excess = np.where(np.isnan(found.values), np.nan, found.excess)
+        excess = np.where(np.isnan(evaluation.values), np.nan, evaluation.excess)
         unit = "K" if index.unit == "degC" else index.unit
         figures.carpet(axes, figures.Series(times, excess, "outside the limits by", unit), centre=0.0)
     else:

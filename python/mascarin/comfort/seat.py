@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin.building.geometry import Polygon, open_edges, parents, plane_factor, solid_angle
 from mascarin.building.geometry.flat import inside
-from mascarin.building.window import emissivities as emissivities_of_glass
+from mascarin.building.parts.openings.window import emissivities as emissivities_of_glass
 from mascarin.errors import InputError
 from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.zone_surfaces import ZoneSurface
+    from mascarin.building.parts.zone_surfaces import ZoneSurface
 
     Array = npt.NDArray[np.float64]
 
@@ -32,7 +32,7 @@ _PROJECTED: Final[dict[str, tuple[float, float, float]]] = {
     "standing": (0.08, 0.23, 0.35),
 }
 #: Least distance of a seat from a surface. [m]
-_NEAR: Final = 0.01
+_LEAST_DISTANCE: Final = 0.01
 #: Part of all directions that may be without a surface. [-]
 _OPEN: Final = 1e-3
 _KELVIN: Final = KELVIN
@@ -101,7 +101,7 @@ class SeatView:
 def seen_from(
     building: Building,
     zone: str,
-    at: Sequence[float],
+    position: Sequence[float],
     posture: Posture = "sphere",
     facing: float | None = None,
 ) -> SeatView:
@@ -116,7 +116,7 @@ def seen_from(
         The building.
     zone : str
         Name of the zone.
-    at : (x, y, z)
+    position : (x, y, z)
         The seat, in the coordinates of the vertices. [m]
     posture : str
         ``sphere``, ``seated`` or ``standing``.
@@ -149,37 +149,37 @@ def seen_from(
     """
     if zone not in building.zones:
         raise InputError(f"zone: found '{zone}'; expected one of {', '.join(building.zones)}")
-    seen, said = _faces(building, zone)
-    polygons = [polygon for _, polygon in seen]
-    point = (float(at[0]), float(at[1]), float(at[2]))
+    faces, said = _faces(building, zone)
+    polygons = [polygon for _, polygon in faces]
+    point = (float(position[0]), float(position[1]), float(position[2]))
     _require_distance(zone, polygons, point)
     _require_surrounded(zone, polygons, point)
-    gross = np.array([_factor(one, point, posture, facing) for one in polygons])
+    gross = np.array([_factor(outline, point, posture, facing) for outline in polygons])
     factors = gross.copy()
     for k, parent in enumerate(parents(polygons)):
         if parent is not None:
             factors[parent] -= gross[k]
     # What is missing between polygons that meet within their tolerance is shared out.
     factors = np.maximum(factors, 0.0) / np.maximum(factors, 0.0).sum()
-    emissivities, reflecting = _emissivities(building, zone, [item for item, _ in seen])
-    sides = tuple(f"{item.name}.{item.side}" for item, _ in seen)
+    emissivities, reflecting = _emissivities(building, zone, [item for item, _ in faces])
+    sides = tuple(f"{item.name}.{item.side}" for item, _ in faces)
     return SeatView(sides, tuple(map(float, factors)), emissivities, (reflecting, *said))
 
 
 def _faces(building: Building, zone: str) -> tuple[list[tuple[ZoneSurface, Polygon]], tuple[str, ...]]:
     """Surfaces and windows of a zone with their outlines, each once, and what is assumed of them."""
-    found: dict[str, tuple[ZoneSurface, Polygon]] = {}
+    faces: dict[str, tuple[ZoneSurface, Polygon]] = {}
     without, furniture, framed = [], [], []
     for item in building.connections.of(zone):
         if item.window is not None and item.window.frame is not None:
             framed.append(item.name)
         if item.polygon is not None:
-            found.setdefault(item.name, (item, item.polygon))
+            faces.setdefault(item.name, (item, item.polygon))
         elif item.surface is not None and item.surface.internal_mass:
             furniture.append(item.name)
         else:
             without.append(item.name)
-    if without or not found:
+    if without or not faces:
         raise InputError(
             f"seat: found {_listed(without) or 'no surface'} of zone '{zone}' without vertices; expected "
             "vertices of all its surfaces and windows, by which it is known what is seen from a seat. Add "
@@ -190,66 +190,69 @@ def _faces(building: Building, zone: str) -> tuple[list[tuple[ZoneSurface, Polyg
         notes.append(f"frames radiate as their glass ({_listed(list(dict.fromkeys(framed)))})")
     if furniture:
         notes.append(f"internal mass is not seen, because it has no place ({_listed(furniture)})")
-    return list(found.values()), tuple(notes)
+    return list(faces.values()), tuple(notes)
 
 
 def _emissivities(
-    building: Building, zone: str, seen: Sequence[ZoneSurface]
+    building: Building, zone: str, surfaces: Sequence[ZoneSurface]
 ) -> tuple[tuple[float, ...], str]:
     """Emissivities, where the long-wave exchange between the surfaces is known; and what is assumed."""
-    found = []
-    for item in seen:
+    emissivities = []
+    for item in surfaces:
         if item.window is not None:
             both = emissivities_of_glass(building.glazings[item.window.glazing])
-            found.append(float(both[item.side == "inside"]))
+            emissivities.append(float(both[item.side == "inside"]))
         elif item.surface is not None:
             side = item.surface.inside if item.side == "inside" else item.surface.outside
-            found.append(float(side.emissivity or 0.0))
-    blinds = any(item.window is not None and item.window.blind is not None for item in seen)
-    if building.zones[zone].longwave.kind == "none" or blinds or min(found) <= 0.0:
+            emissivities.append(float(side.emissivity or 0.0))
+    blinds = any(item.window is not None and item.window.blind is not None for item in surfaces)
+    if building.zones[zone].longwave.kind == "none" or blinds or min(emissivities) <= 0.0:
         return (), "surfaces are taken as black"
-    return tuple(found), "surfaces reflect what they do not absorb (radiosities)"
+    return tuple(emissivities), "surfaces reflect what they do not absorb (radiosities)"
 
 
 def _require_distance(zone: str, polygons: Sequence[Polygon], point: Point) -> None:
-    here = np.array([point])
+    points = np.array([point])
     for polygon in polygons:
-        near = abs(float(polygon.height_of(here)[0])) < _NEAR
-        if near and inside(polygon.outline, polygon.in_plane(here)[0].tolist()):
+        in_plane = abs(float(polygon.height_of(points)[0])) < _LEAST_DISTANCE
+        if in_plane and inside(polygon.outline, polygon.in_plane(points)[0].tolist()):
             raise InputError(
-                f"seat: found {_place(point)}, on '{polygon.name}' of zone '{zone}'; expected a position at "
-                f"least {_NEAR:g} m from every surface, such as 0.6 m above the floor"
+                f"seat: found {_position_text(point)}, on '{polygon.name}' of zone '{zone}'; expected a "
+                f"position at least {_LEAST_DISTANCE:g} m from every surface, such as 0.6 m above the floor"
             )
 
 
 def _require_surrounded(zone: str, polygons: Sequence[Polygon], point: Point) -> None:
     """Refuse a seat that the zone does not surround, and one from which a part of it is hidden."""
-    whole = 4.0 * math.pi
+    full_sphere = 4.0 * math.pi
     angles = [solid_angle(polygon, point) for polygon in polygons]
     inner = [k for k, parent in enumerate(parents(polygons)) if parent is not None]
     outer = [angle for k, angle in enumerate(angles) if k not in inner]
-    seen = sum(outer) / whole
+    covered = sum(outer) / full_sphere
     corners = np.concatenate([polygon.points for polygon in polygons])
     low, high = corners.min(axis=0), corners.max(axis=0)
     beyond = bool(np.any(np.array(point) < low) or np.any(np.array(point) > high))
-    if beyond or abs(seen) <= _OPEN:
+    if beyond or abs(covered) <= _OPEN:
         spans = ", ".join(f"{c} {a:g} to {b:g}" for c, a, b in zip("xyz", low, high, strict=True))
         raise InputError(
-            f"seat: found {_place(point)}, outside of zone '{zone}'; expected a position between its "
+            f"seat: found {_position_text(point)}, outside of zone '{zone}'; expected a position between its "
             f"surfaces ({spans} m), in the coordinates of the vertices"
         )
-    if abs(seen - 1.0) > _OPEN:
+    if abs(covered - 1.0) > _OPEN:
         gap = next((f"; the first open edge is that of {edge}" for edge in open_edges(polygons)), "")
         raise InputError(
-            f"seat: found surfaces of zone '{zone}' in {100.0 * seen:.1f} % of all directions from "
-            f"{_place(point)}: {(1.0 - seen) * whole:.2f} of {whole:.2f} sr are open; expected a closed "
-            f"zone{gap}. Correct the vertices, or leave out 'seat:'"
+            f"seat: found surfaces of zone '{zone}' in {100.0 * covered:.1f} % of all directions from "
+            f"{_position_text(point)}: {(1.0 - covered) * full_sphere:.2f} of {full_sphere:.2f} sr are open; "
+            f"expected a closed zone{gap}. Correct the vertices, or leave out 'seat:'"
         )
-    behind = [polygon.name for polygon, angle in zip(polygons, angles, strict=True) if angle < -_OPEN * whole]
+    behind = [
+        polygon.name for polygon, angle in zip(polygons, angles, strict=True) if angle < -_OPEN * full_sphere
+    ]
     if behind:
         raise InputError(
-            f"seat: found '{behind[0]}' of zone '{zone}' seen from behind from {_place(point)}: it hides a "
-            "part of the room; expected a seat from which the whole room is seen. Choose another position, "
+            f"seat: found '{behind[0]}' of zone '{zone}' seen from behind from "
+            f"{_position_text(point)}: it hides a part of the room; expected a seat "
+            "from which the whole room is seen. Choose another position, "
             "or leave out 'seat:'"
         )
 
@@ -271,7 +274,7 @@ def _factor(polygon: Polygon, point: Point, posture: Posture, facing: float | No
     return total / (2.0 * (level + side + front))
 
 
-def _place(point: Point) -> str:
+def _position_text(point: Point) -> str:
     return "[" + ", ".join(f"{c:g}" for c in point) + "]"
 
 

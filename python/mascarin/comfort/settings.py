@@ -9,9 +9,9 @@ import numpy.typing as npt
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import InitErrorDetails
 
-from mascarin.building.number import problem, shown
-from mascarin.building.part import Part, fault, insist
-from mascarin.building.schedule import ClockTime
+from mascarin.building.base.number import problem, shown
+from mascarin.building.base.part import Part, fault, insist
+from mascarin.building.parts.air.schedule import ClockTime
 from mascarin.comfort.conditions import Conditions
 from mascarin.comfort.evaluation import Discomfort, Evaluation, Floats, discomfort
 from mascarin.comfort.indices import INDICES, Band, Index, index_named, require_limits
@@ -128,8 +128,8 @@ class ComfortSettings(Part):
             require_limits(index, self.limits)
         except InputError as error:
             key = "category" if index.categories else "band"
-            found, _, expected = str(error).partition("found ")[2].partition("; expected ")
-            return [fault((key,), found, expected, f"Correct '{key}:'.")]
+            stated, _, expected = str(error).partition("found ")[2].partition("; expected ")
+            return [fault((key,), stated, expected, f"Correct '{key}:'.")]
         if self.posture != "sphere" and self.seat is None:
             return [fault(("posture",), repr(self.posture), "a seat beside it", "Add 'seat: [x, y, z]'.")]
         if self.facing is not None and self.posture == "sphere":
@@ -191,17 +191,17 @@ class ComfortSettings(Part):
         >>> float(ComfortSettings(hours=[["08:00", "18:00"]]).occupied(times).sum())
         10.0
         """
-        place = np.asarray((times - times[0]).total_seconds(), dtype=np.float64) / 3600.0
-        widths = np.diff(place)
+        hours_since = np.asarray((times - times[0]).total_seconds(), dtype=np.float64) / 3600.0
+        widths = np.diff(hours_since)
         weights = 0.5 * (np.append(widths, 0.0) + np.append(0.0, widths))
-        there = np.ones(len(times), dtype=bool)
+        is_present = np.ones(len(times), dtype=bool)
         if self.hours:
             clock = np.asarray(times.hour * 60 + times.minute, dtype=np.float64)
-            there = np.any([_between(clock, *pair) for pair in self.hours], axis=0)
+            is_present = np.any([_between(clock, *pair) for pair in self.hours], axis=0)
         if self.days != "all":
             weekend = np.asarray(times.day_of_week) >= 5
-            there &= weekend if self.days == "weekends" else ~weekend
-        return np.where(there, weights, 0.0)
+            is_present &= weekend if self.days == "weekends" else ~weekend
+        return np.where(is_present, weights, 0.0)
 
     def conditions(
         self,

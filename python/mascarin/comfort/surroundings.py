@@ -73,24 +73,24 @@ class Surroundings:
         """
         record, seconds = climate.record, epoch_seconds(times)
         names = set(climate.data.columns)
-        outdoors = _at(climate, "air_temperature", seconds)
+        outdoors = _sampled(climate, "air_temperature", seconds)
         pressure = np.full(len(times), STANDARD_PRESSURE)
         if "pressure" in names:
-            pressure = _at(climate, "pressure", seconds)
+            pressure = _sampled(climate, "pressure", seconds)
         ratio = None
         if "dew_point" in names:
-            dew = _at(climate, "dew_point", seconds)
+            dew = _sampled(climate, "dew_point", seconds)
             ratio = humidity_ratio(outdoors, humidity_of_dew_point(outdoors, dew), pressure)
         days, daily = _daily(climate, seconds[0] - (_BEFORE + 1) * _DAY, seconds[-1] + _DAY)
-        here = _local_days(seconds, record.grid.zone)
-        place = np.clip(np.searchsorted(days, here), 0, len(days) - 1)
-        known = days[place] == here
-        means = (weighted_mean(daily, weights)[place] for weights in (EN_WEIGHTS, ASHRAE_WEIGHTS))
-        running, prevailing = (np.where(known, mean, np.nan) for mean in means)
+        local_days = _local_days(seconds, record.grid.zone)
+        index = np.clip(np.searchsorted(days, local_days), 0, len(days) - 1)
+        is_covered = days[index] == local_days
+        means = (weighted_mean(daily, weights)[index] for weights in (EN_WEIGHTS, ASHRAE_WEIGHTS))
+        running, prevailing = (np.where(is_covered, mean, np.nan) for mean in means)
         return cls(outdoors, running, prevailing, ratio, pressure)
 
 
-def _at(climate: Climate, name: str, seconds: Array) -> Floats:
+def _sampled(climate: Climate, name: str, seconds: Array) -> Floats:
     """A channel at some times, linear between its values. [its unit]"""
     start, values, kind = window(climate.record, name, float(seconds[0]), float(seconds[-1]))
     middle = 0.5 if kind == "mean" else 0.0
@@ -106,11 +106,11 @@ def _daily(climate: Climate, first: float, last: float) -> tuple[Floats, Floats]
     values = np.asarray(values_in(column, np.nan, rows, "mean"), dtype=np.float64)
     day = _local_days(start + (np.arange(len(values)) + 0.5) * grid.interval, grid.zone)
     days = np.arange(day[0], day[-1] + 1.0)
-    place = (day - day[0]).astype(np.int64)
-    count = np.bincount(place, minlength=len(days))
-    total = np.bincount(place, weights=values, minlength=len(days))
-    whole = count * grid.interval >= _DAY - 3601.0  # a day of 23 h where the clock is put forward
-    return days, np.where(whole, total / np.maximum(count, 1), np.nan)
+    day_number = (day - day[0]).astype(np.int64)
+    count = np.bincount(day_number, minlength=len(days))
+    total = np.bincount(day_number, weights=values, minlength=len(days))
+    is_complete = count * grid.interval >= _DAY - 3601.0  # a day of 23 h where the clock is put forward
+    return days, np.where(is_complete, total / np.maximum(count, 1), np.nan)
 
 
 def _local_days(seconds: Array, zone: tzinfo) -> Floats:

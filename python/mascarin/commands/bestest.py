@@ -68,30 +68,30 @@ def bestest(
     from mascarin.verification.bestest.catalogue import CASES, chosen
     from mascarin.verification.bestest.reference import read_ranges
 
-    own = [Path(word) for word in dict.fromkeys(cases) if word.endswith(SUFFIXES)]
-    wanted = chosen([word for word in cases if not word.endswith(SUFFIXES)] if cases else list(CASES))
+    own_files = [Path(word) for word in dict.fromkeys(cases) if word.endswith(SUFFIXES)]
+    chosen_cases = chosen([word for word in cases if not word.endswith(SUFFIXES)] if cases else list(CASES))
     if list_cases:
-        return _list(wanted, as_json=as_json)
+        return _list(chosen_cases, as_json=as_json)
     _require_possible_folder(out)
-    known = read_ranges(ranges) if ranges is not None else None
-    _require_own(own, known)
+    ranges_read = read_ranges(ranges) if ranges is not None else None
+    _require_own(own_files, ranges_read)
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
     with writing_into(out), identity.outputs(*(() if out is None else (out / PAGE,))):
-        rows_found = _compared(cases, own, wanted, known, weather, out, step, workers)
+        rows_found = _compared(cases, own_files, chosen_cases, ranges_read, weather, out, step, workers)
     if as_json:
         print_json([row.to_dict() for row in rows_found])
     else:
         _print(rows_found)
     held = [row.passed for row in rows_found if row.passed is not None]
     outside = held.count(False)
-    of = "the six programs" if known is None else "the six programs, or of --ranges"
+    of = "the six programs" if ranges_read is None else "the six programs, or of --ranges"
     print(f"{len(held) - outside} of {len(held)} numbers inside the range of {of}", file=sys.stderr)
     return 1 if outside else 0
 
 
 def _compared(
-    words: Sequence[str], own: Sequence[Path], wanted: Sequence[Case], known: Ranges | None,
+    words: Sequence[str], own_files: Sequence[Path], chosen_cases: Sequence[Case], own_ranges: Ranges | None,
     weather: Path | None, out: Path | None, step: str, workers: int,
 ) -> list[Quantity]:  # fmt: skip
     """Run the cases, and write the page."""
@@ -103,15 +103,17 @@ def _compared(
     climate = read(weather)
     started = time.monotonic()
     with Progress("cases") as progress:
-        years, others = run(
-            wanted, climate, files=own, step=seconds(step), workers=workers, progress=progress
+        years, hours = run(
+            chosen_cases, climate, files=own_files, step=seconds(step), workers=workers, progress=progress
         )
     took = time.monotonic() - started
-    rows_found = [row for case in wanted for row in quantities(years, case)]
-    rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series, known)]
-    _warn_unused(rows_found, known)
+    rows_found = [row for case in chosen_cases for row in quantities(years, case)]
+    rows_found += [
+        row for file, series in hours.items() for row in quantities_of(str(file), series, own_ranges)
+    ]
+    _warn_unused(rows_found, own_ranges)
     if out is not None:
-        from mascarin.report.bestest import write
+        from mascarin.pages.suites.bestest import write
 
         facts = {
             "Command": " ".join(("mascarin bestest", *words, "--weather", climate.file, "--step", step)),
@@ -123,8 +125,8 @@ def _compared(
     return rows_found
 
 
-def _list(wanted: Sequence[Case], *, as_json: bool) -> int:
-    rows = [(case.name, case.base, case.change, str(case.file)) for case in wanted]
+def _list(cases: Sequence[Case], *, as_json: bool) -> int:
+    rows = [(case.name, case.base, case.change, str(case.file)) for case in cases]
     if as_json:
         print_json([dict(zip(("case", "base", "change", "file"), row, strict=True)) for row in rows])
     else:
@@ -132,24 +134,24 @@ def _list(wanted: Sequence[Case], *, as_json: bool) -> int:
     return 0
 
 
-def _require_own(own: Sequence[Path], known: Ranges | None) -> None:
+def _require_own(own_files: Sequence[Path], own_ranges: Ranges | None) -> None:
     """Refuse ranges of cases that are not run, before the simulations start."""
     from mascarin.verification.bestest.quantities import case_names
 
-    names = {name for file in own for name in case_names(str(file))}
-    for case, _ in known or ():
+    names = {name for file in own_files for name in case_names(str(file))}
+    for case, _ in own_ranges or ():
         if case not in names:
             raise InputError(
                 f"--ranges: found the case '{case}'; expected one of the building files of this command: "
-                f"{', '.join(map(str, own)) or 'none was given'}. {did_you_mean(case, names)}".rstrip()
+                f"{', '.join(map(str, own_files)) or 'none was given'}. {did_you_mean(case, names)}".rstrip()
             )
 
 
-def _warn_unused(rows: Sequence[Quantity], known: Ranges | None) -> None:
+def _warn_unused(rows: Sequence[Quantity], own_ranges: Ranges | None) -> None:
     """Say which ranges were compared with nothing."""
     used = {id(row.range) for row in rows}
-    for (case, quantity), found in (known or {}).items():
-        if id(found) not in used:
+    for (case, quantity), limits in (own_ranges or {}).items():
+        if id(limits) not in used:
             names = [row.quantity for row in rows if row.range is None]
             print(
                 f"warning: --ranges: {case} has no quantity '{quantity}'; expected one of "

@@ -117,7 +117,7 @@ def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_jso
     patterns : str
         Only outputs that fit these patterns, such as "roof.*" or "*_temperature".
     """
-    from mascarin.simulation.compiling import chosen_outputs
+    from mascarin.simulation.preparation.prepare import chosen_outputs
 
     described = read_building(building, settings)
     usual = {output.name for output in chosen_outputs(described, None)}
@@ -154,7 +154,7 @@ def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
     if weather is None:
         raise InputError("--reach: found no --weather; expected a weather file to run the building in")
     from mascarin.commands.inputs import read_weather
-    from mascarin.simulation.inactive import inactive_parameters
+    from mascarin.simulation.unused_parameters import inactive_parameters
 
     return inactive_parameters(building, read_weather(weather))
 

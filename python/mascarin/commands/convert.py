@@ -38,18 +38,18 @@ def convert(
     weather : Path
         Weather file (EPW) that gives the site, for a model without Site:Location.
     """
-    from mascarin.convert import convert as converted
-    from mascarin.convert import report, run_options, terminal_lines, yaml_text
+    from mascarin.energyplus import convert as converted
+    from mascarin.energyplus import report, run_options, terminal_lines, yaml_text
 
     target = Path(f"{model.stem}.yaml") if out is None else out
     if target.suffix.lower() not in (".yaml", ".yml"):
         raise InputError(f"--out: found '{target}'; expected a file that ends with .yaml")
     with writing(target):
-        found = converted(model, weather=weather)
-        atomic.write(target, yaml_text(found))
+        conversion = converted(model, weather=weather)
+        atomic.write(target, yaml_text(conversion))
     if as_json:
-        print_json(report(found) | {"building": str(target)})
+        print_json(report(conversion) | {"building": str(target)})
     else:
-        print("\n".join(terminal_lines(found)))
-    print(f"wrote {target}; mascarin run {target} --weather EPW {run_options(found)}", file=sys.stderr)
-    return 0 if found.complete else 1
+        print("\n".join(terminal_lines(conversion)))
+    print(f"wrote {target}; mascarin run {target} --weather EPW {run_options(conversion)}", file=sys.stderr)
+    return 0 if conversion.complete else 1

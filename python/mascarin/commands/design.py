@@ -80,20 +80,20 @@ def _print_plan(inputs: DesignInputs, as_json: bool) -> int:
 
 def _print(results: DesignResults, out: Path, as_json: bool) -> int:
     """Print the ranking; the exit code."""
-    from mascarin.simulation.judgement import all_sound
+    from mascarin.simulation.checks.judgement import all_sound
 
-    found = results.summary()
+    summary = results.summary()
     sound = all(all_sound(table) for table in (results.sampled, results.nominal))
-    code = exit_code(warnings=results.warnings, sound=sound, failed=found["failed"])
-    if found["failed"]:
-        print(f"{found['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
+    code = exit_code(warnings=results.warnings, sound=sound, failed=summary["failed"])
+    if summary["failed"]:
+        print(f"{summary['failed']} runs failed; reasons are in designs.csv and samples.csv", file=sys.stderr)
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     if as_json:
-        print_json({**found, "folder": str(out)})
+        print_json({**summary, "folder": str(out)})
         return code
-    for climate, rows in found["ranking"].items():
-        print(f"{climate}: {found['ranked_by']}, {found['unit']}")
+    for climate, rows in summary["ranking"].items():
+        print(f"{climate}: {summary['ranked_by']}, {summary['unit']}")
         table = [
             (str(number), row["chosen"], row["mean"], row["spread"], row["verdict"])
             for number, row in enumerate(rows, start=1)

@@ -34,7 +34,7 @@ from mascarin.commands.view import open_page
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.explore import Session
+    from mascarin.pages.explore import Session
     from mascarin.weather import Climate
 
 Sliders = Annotated[list[str] | None, Parameter(name=("--parameters", "--parameter"), negative="")]
@@ -93,12 +93,12 @@ def explore(
     no_open : bool
         Print the address without opening it.
     """
-    from mascarin.explore import Session
-    from mascarin.explore.session import Band
+    from mascarin.pages.explore import Session
+    from mascarin.pages.explore.session import Band
 
     target = _target(out, building)
     described = read_building(building, settings)
-    given = set_values(settings)
+    start_values = set_values(settings)
     with lines_named(building), identity.outputs(target):
         climate, measured = run_inputs(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
@@ -121,19 +121,25 @@ def explore(
             options=options,
         )
 
-    _serve(session, building, given, target, port=port, open_it=not no_open)
+    _serve(session, building, start_values, target, port=port, open_it=not no_open)
 
 
 def _serve(
-    session: Session, building: Path, given: Mapping[str, float], target: Path, *, port: int, open_it: bool
+    session: Session,
+    building: Path,
+    start_values: Mapping[str, float],
+    target: Path,
+    *,
+    port: int,
+    open_it: bool,
 ) -> None:
     """Serve the page until Ctrl-C."""
-    from mascarin.explore import Server
-    from mascarin.explore.page import render
+    from mascarin.pages.explore import Server
+    from mascarin.pages.explore.page import render
 
     def save(content: Mapping[str, Any]) -> dict[str, str]:
         with writing(target):
-            session.save(target, building, _values(content), given)
+            session.save(target, building, _values(content), start_values)
         return {"file": str(target)}
 
     server = Server(
@@ -161,7 +167,7 @@ def _end(climate: Climate, start: str | None) -> Any:
     """Two weeks after the start, or the end of the weather."""
     import pandas as pd
 
-    from mascarin.simulation.compiling import period
+    from mascarin.simulation.preparation.prepare import period
 
     first, last = period(climate, start, None)
     return min(first + pd.Timedelta(days=_DAYS), last)

@@ -120,14 +120,14 @@ def _optimize(
         progress=not quiet,
     )
     if check:
-        found, lines = check_project(project, options)
+        checked, lines = check_project(project, options)
         print("\n".join(lines))
-        _notes(found.report.notes)
+        _notes(checked.report.notes)
         return _OK
     if not quiet and not resume:
-        left = interrupted(project)
-        if left:
-            _say(left)
+        remainder = interrupted(project)
+        if remainder:
+            _say(remainder)
     try:
         outcome = optimize(project, options)
     except KeyboardInterrupt:

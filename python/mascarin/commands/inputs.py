@@ -155,7 +155,7 @@ def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list
     if patterns is None:
         return None
     names = [output.name for output in building.outputs()]
-    found: dict[str, None] = {}
+    names_found: dict[str, None] = {}
     for pattern in patterns:
         meant = [name for name in names if fnmatchcase(name, pattern)]
         if not meant and any(sign in pattern for sign in "*?["):
@@ -163,17 +163,17 @@ def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list
                 f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
                 f"{_suggestion(pattern, names)}".rstrip()
             )
-        found |= dict.fromkeys(meant or [building.output(pattern).name])
-    return list(found)
+        names_found |= dict.fromkeys(meant or [building.output(pattern).name])
+    return list(names_found)
 
 
 def _suggestion(pattern: str, names: Sequence[str]) -> str:
     """Suggest patterns that fit: with the zone or surface, or the quantity, taken from an existing name."""
     owner, _, what = pattern.partition(".")
-    pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
-    near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
-    near |= {f"{owner}.{right}" for left, right in pairs if fnmatchcase(left, owner)}
-    return did_you_mean(pattern, near or names)
+    pairs = [(part, right) for part, _, right in (name.partition(".") for name in names)]
+    candidates = {f"{part}.{what}" for part, right in pairs if fnmatchcase(right, what)}
+    candidates |= {f"{owner}.{right}" for part, right in pairs if fnmatchcase(part, owner)}
+    return did_you_mean(pattern, candidates or names)
 
 
 def read_weather(file: Path, *, check_sun: bool = True) -> Climate:

@@ -49,7 +49,7 @@ def materials(
 
     _require_format(plot)
     chosen = search(query, melting=_interval(melting), kind=kind)
-    exact = [one for one in chosen if _same(one.name, query)]
+    exact = [product for product in chosen if _same(product.name, query)]
     chosen = exact or chosen
     if not chosen:
         hint = suggestion(query) if query else ""
@@ -57,7 +57,7 @@ def materials(
             f"found no such product; expected a part of a name, or a wider search. {hint}".rstrip()
         )
     if as_json:
-        print_json([described(one) for one in chosen])
+        print_json([described(product) for product in chosen])
     elif exact:
         _show(exact[0])
     else:
@@ -111,45 +111,48 @@ def _list(chosen: list[Product]) -> None:
     )
     rows = [
         (
-            one.name,
-            one.kind or "",
-            _number(one.melting_temperature, 1),
-            _number(one.freezing_temperature, 1),
-            _number(_kilo(one.number("latent_heat")), 0),
-            *(_pair(one.pair(key)) for key in ("specific_heat", "conductivity", "density")),
-            one.maker,
+            product.name,
+            product.kind or "",
+            _number(product.melting_temperature, 1),
+            _number(product.freezing_temperature, 1),
+            _number(_kilo(product.number("latent_heat")), 0),
+            *(_pair(product.pair(key)) for key in ("specific_heat", "conductivity", "density")),
+            product.maker,
         )
-        for one in chosen
+        for product in chosen
     ]
     print_table(header, rows)
 
 
-def _show(one: Product) -> None:
-    ranged = one.melting_range
+def _show(product: Product) -> None:
+    ranged = product.melting_range
     lines = [
-        ("maker", one.maker),
-        ("kind", ", ".join(text for text in (one.kind, one.form) if text)),
+        ("maker", product.maker),
+        ("kind", ", ".join(text for text in (product.kind, product.form) if text)),
         ("melting range", f"{ranged[0]:g} to {ranged[1]:g} degC" if ranged else ""),
         (
             "melts",
-            _with(one.melting_temperature, "degC (half is liquid)" if one.heating else "degC (as stated)"),
+            _with(
+                product.melting_temperature,
+                "degC (half is liquid)" if product.heating else "degC (as stated)",
+            ),
         ),
-        ("freezes", _with(one.freezing_temperature, "degC (half is liquid)")),
-        ("latent heat", _with(_kilo(one.number("latent_heat")), "kJ/kg")),
-        ("specific heat", _with(_pair(one.pair("specific_heat")), "J/(kg K) solid/liquid")),
-        ("conductivity", _with(_pair(one.pair("conductivity")), "W/(m K) solid/liquid")),
-        ("density", _with(_pair(one.pair("density")), "kg/m3 solid/liquid")),
-        ("thickness", _with(one.number("thickness"), "m")),
-        ("curves", ", ".join(name for name in ("heating", "cooling") if getattr(one, name)) or "none"),
-        ("law", json.dumps(_bare(one.raw["law"])) if "law" in one.raw else ""),
-        ("source", one.source),
-        ("note", one.note or ""),
+        ("freezes", _with(product.freezing_temperature, "degC (half is liquid)")),
+        ("latent heat", _with(_kilo(product.number("latent_heat")), "kJ/kg")),
+        ("specific heat", _with(_pair(product.pair("specific_heat")), "J/(kg K) solid/liquid")),
+        ("conductivity", _with(_pair(product.pair("conductivity")), "W/(m K) solid/liquid")),
+        ("density", _with(_pair(product.pair("density")), "kg/m3 solid/liquid")),
+        ("thickness", _with(product.number("thickness"), "m")),
+        ("curves", ", ".join(name for name in ("heating", "cooling") if getattr(product, name)) or "none"),
+        ("law", json.dumps(_bare(product.raw["law"])) if "law" in product.raw else ""),
+        ("source", product.source),
+        ("note", product.note or ""),
     ]
-    print(one.name)
+    print(product.name)
     for label, text in lines:
         if text:
             print(f"  {label:14} {text}")
-    print(f"\nIn a building file:\n  materials:\n    my_pcm: {{product: {one.name}}}")
+    print(f"\nIn a building file:\n  materials:\n    my_pcm: {{product: {product.name}}}")
 
 
 def _number(value: float | None, digits: int) -> str:
@@ -178,28 +181,28 @@ def _bare(raw: Any) -> Any:
     return raw
 
 
-def described(one: Product) -> dict[str, Any]:
+def described(product: Product) -> dict[str, Any]:
     """Data of a product in SI units; None where the source gives no value."""
     from mascarin.materials.library import curves
 
     return {
-        "name": one.name,
-        "maker": one.maker,
-        "kind": one.kind,
-        "form": one.form,
-        "melting_temperature": one.melting_temperature,
-        "freezing_temperature": one.freezing_temperature,
-        "melting_range": one.melting_range,
-        "latent_heat": one.number("latent_heat"),
-        **{key: one.pair(key) for key in ("specific_heat", "conductivity", "density")},
-        "thickness": one.number("thickness"),
-        "law": _bare(one.raw.get("law")),
+        "name": product.name,
+        "maker": product.maker,
+        "kind": product.kind,
+        "form": product.form,
+        "melting_temperature": product.melting_temperature,
+        "freezing_temperature": product.freezing_temperature,
+        "melting_range": product.melting_range,
+        "latent_heat": product.number("latent_heat"),
+        **{key: product.pair(key) for key in ("specific_heat", "conductivity", "density")},
+        "thickness": product.number("thickness"),
+        "law": _bare(product.raw.get("law")),
         "curves": {
             direction: {"temperatures": curve.temperatures, "liquid_fraction": curve.liquid_fraction}
-            for direction, curve in curves(one)
+            for direction, curve in curves(product)
         },
-        "source": one.source,
-        "note": one.note,
+        "source": product.source,
+        "note": product.note,
     }
 
 

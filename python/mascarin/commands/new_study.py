@@ -95,13 +95,13 @@ def undescribed(text: str) -> str:
     >>> undescribed("name: The cell\nabout: |\n  A cell.\n  Measured.\nstep: 1h\n")
     'name: New study\nabout: Describe your data here.\nstep: 1h\n'
     """
-    kept, comments = [], ""
+    lines_kept, comments = [], ""
     for part in re.split(r"(?m)^(?=[A-Za-z_]+:|#)", text):
         if part.startswith("#"):
             comments += part
             continue
         # A comment above a key describes it.
         key = part.partition(":")[0]
-        kept.append(_TEXTS.get(key, comments + part))
+        lines_kept.append(_TEXTS.get(key, comments + part))
         comments = ""
-    return _PUBLISHED.sub("", "".join(kept)) + comments
+    return _PUBLISHED.sub("", "".join(lines_kept)) + comments

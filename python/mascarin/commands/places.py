@@ -34,18 +34,18 @@ def lines_named(building: Path) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        where = _place(str(error), building)
+        where = _location(str(error), building)
         if where is None:
             raise
         raise InputError(f"{where}: {error}") from None
 
 
-def _place(text: str, building: Path) -> str | None:
+def _location(text: str, building: Path) -> str | None:
     from mascarin.study.locations import Places
 
     if zone := _ZONE.match(text):
         return Places(building).at("zones", zone["name"]).removesuffix(f": zones.{zone['name']}")
     if column := _COLUMN.search(text):
-        places = Places(building)
-        return next((at for key in _KEYS if (at := places.find(key, column["name"]))), None)
+        source = Places(building)
+        return next((line for key in _KEYS if (line := source.find(key, column["name"]))), None)
     return None

@@ -36,8 +36,8 @@ from mascarin.errors import InputError
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import Report
-    from mascarin.simulation.finished import Finished
     from mascarin.simulation.results import Results
+    from mascarin.simulation.run_summary import Finished
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
 
@@ -99,7 +99,7 @@ def run(
         Temperature of the whole building at the start [degC]. Default: the first day is repeated until it is
         periodic, which takes long in heavy buildings.
     """
-    from mascarin.simulation.files import require_ending
+    from mascarin.simulation.records.files import require_ending
 
     described = read_building(building, settings)
     if out is not None:
@@ -145,7 +145,7 @@ def _start(temperature: float | None) -> float | Literal["repeat"]:
     InputError
         The temperature is not possible; the text is about the option, not about the forms of Python.
     """
-    from mascarin.building.initial_state import LIMITS
+    from mascarin.simulation.preparation.initial_state import LIMITS
 
     if temperature is None:
         return "repeat"
@@ -167,15 +167,15 @@ def _compiled(
     **options: Any,
 ) -> Simulation:
     """Compile a run, with warnings about the building on standard error; `more`: record what a page shows."""
-    from mascarin.simulation.compiling import chosen_outputs
+    from mascarin.simulation.preparation.prepare import chosen_outputs
     from mascarin.simulation.simulation import Simulation
 
     names = matching_outputs(building, outputs)
     if more:
-        from mascarin.report.run_page import needed
+        from mascarin.pages.run.page import needed
 
-        own = [output.name for output in chosen_outputs(building, names)]
-        names = list(dict.fromkeys([*own, *needed(building)]))
+        chosen = [output.name for output in chosen_outputs(building, names)]
+        names = list(dict.fromkeys([*chosen, *needed(building)]))
     simulation = Simulation(building, climate, step=seconds(step), outputs=names, **options)
     _print_warnings(building, simulation)
     _print_cost(building, simulation)
@@ -193,10 +193,10 @@ def _simulated(simulation: Simulation) -> Results:
 def _stored(simulation: Simulation, out: Path) -> Finished:
     """Run once, and write the series while the run goes on; messages as `_simulated`."""
     with _progress() as progress:
-        found = simulation.run_into(out, progress=progress).finished
-    _print_lines(_new(found.warnings, simulation))
+        summary = simulation.run_into(out, progress=progress).finished
+    _print_lines(_new(summary.warnings, simulation))
     print(f"wrote {out}", file=sys.stderr)
-    return found
+    return summary
 
 
 def _new(warnings: Sequence[str], simulation: Simulation) -> list[str]:
@@ -211,7 +211,7 @@ def _print_lines(warnings: Sequence[str]) -> None:
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
     from mascarin.building import check
-    from mascarin.report.run_page import Notes, write
+    from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
     lines = check(simulation.building, simulation.step_seconds)
@@ -228,13 +228,13 @@ def _only(results: Results, names: Sequence[str] | None) -> Results:
     """The results with these outputs alone, or with the usual ones."""
     from dataclasses import replace
 
-    kept = [
+    rows_kept = [
         k
         for k, output in enumerate(results.outputs)
         if (output.usual if names is None else output.name in names)
     ]
-    outputs = [results.outputs[k] for k in kept]
-    return replace(results, outputs=outputs, records=results.records[:, kept])
+    outputs = [results.outputs[k] for k in rows_kept]
+    return replace(results, outputs=outputs, records=results.records[:, rows_kept])
 
 
 @contextlib.contextmanager
@@ -276,7 +276,7 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
 
 def _print_cost(building: Building, simulation: Simulation) -> None:
     """Say how long shadows take, where it is long."""
-    from mascarin.building.self_shading import expected_seconds, obstructions, pairs_with_shades
+    from mascarin.building.parts.self_shading import expected_seconds, obstructions, pairs_with_shades
 
     steps, stages, _ = simulation.compiled.forcing.shape
     shades = pairs_with_shades(building)

@@ -95,8 +95,8 @@ def sensitivity(
         print_json(content)
         return code
     rows: list[tuple[str | float, ...]] = []
-    for output, found in content["sensitivity"].items():
-        ranked = sorted(found.items(), key=lambda item: -(item[1]["share"] or 0.0))
+    for output, indices in content["sensitivity"].items():
+        ranked = sorted(indices.items(), key=lambda item: -(item[1]["share"] or 0.0))
         rows += [
             (output, path, *(round(value[key] or 0.0, 4) for key in ("share", "low", "high")))
             for path, value in ranked[:_SHOWN]
@@ -136,11 +136,11 @@ def calibrate(
         rows = [
             (
                 path,
-                "" if found["nominal"] is None else number(found["nominal"]),
-                *with_interval(found["fitted"], found["low"], found["high"]),
-                found["unit"] or "",
+                "" if estimate["nominal"] is None else number(estimate["nominal"]),
+                *with_interval(estimate["fitted"], estimate["low"], estimate["high"]),
+                estimate["unit"] or "",
             )
-            for path, found in content["parameters"].items()
+            for path, estimate in content["parameters"].items()
         ]
         print_table(("parameter", "nominal", "fitted", "low", "high", "unit"), rows)
         print()
@@ -214,9 +214,9 @@ def _print_warnings(lines: Sequence[str]) -> None:
 
 def _print_scores(content: Mapping[str, Any]) -> None:
     rows = [
-        (sensor, period, model, *(_rounded(found[model][metric]) for metric in _METRICS))
+        (sensor, period, model, *(_rounded(scores[model][metric]) for metric in _METRICS))
         for sensor, periods in content["sensors"].items()
-        for period, found in periods.items()
+        for period, scores in periods.items()
         for model in content["models"]
     ]
     print_table(("sensor", "period", "model", "rmse", "sd", "bias", "max"), rows)
@@ -235,11 +235,11 @@ def _exit_code(verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[str], *
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
-        found = "no common values"
+        measured = "no common values"
         if value is not None:
-            found = f"{beside_limit(value, verdict['limit'], least=3)[0]} {unit.replace('degC', 'K')}"
+            measured = f"{beside_limit(value, verdict['limit'], least=3)[0]} {unit.replace('degC', 'K')}"
         where = f"{verdict['sensor']}, {verdict['period']}"
-        print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
+        print(f"missed: {where}: {verdict['name']}; found {measured}", file=sys.stderr)
     if verdicts:
         print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
     return exit_code(warnings=warnings, sound=sound, missed=len(missed))

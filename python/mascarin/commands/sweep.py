@@ -113,15 +113,15 @@ def sweep(
             "expected either --objective (a number of each member) or --output (its series), such as "
             "--objective max:room.air_temperature"
         )
-    kept = {text: Statistic.read(text) for text in objectives or ()}
+    statistics = {text: Statistic.read(text) for text in objectives or ()}
     climate, measured = run_inputs(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
         allow_outside=allow_outside, check_sun=check_sun,
     )  # fmt: skip
     with lines_named(building), Progress("members") as progress:
         store = sweep_into(
-            out, described, climate, table, measurements=measured, objectives=kept,
-            outputs=outputs or list(dict.fromkeys(statistic.output for statistic in kept.values())),
+            out, described, climate, table, measurements=measured, objectives=statistics,
+            outputs=outputs or list(dict.fromkeys(statistic.output for statistic in statistics.values())),
             step=seconds(step), scheme=scheme, precision=precision, start=start, end=end, workers=workers,
             seed=None if samples is not None else seed, progress=progress,
         )  # fmt: skip

@@ -75,7 +75,7 @@ def run_inputs(
             raise InputError(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"
             )
-        from mascarin.building.yaml_document import merged
+        from mascarin.building.files.yaml_document import merged
         from mascarin.study.run_inputs import open_run_inputs
 
         if "climate" not in merged(weather, "weather and measurements", blanks=True).plain:

@@ -36,7 +36,7 @@ def view(
     no_open : bool
         Write the page without opening it.
     """
-    from mascarin.view import write
+    from mascarin.pages.view import write
 
     described = read_building(building, settings)
     target = page_file(out, building)

@@ -67,19 +67,19 @@ def weather(
     climate = _checked(file, check_sun)
     if changes is not None:
         climate = morphed(climate, changes)
-    found = overview(climate, heating_base=heating_base, cooling_base=cooling_base)
-    result = _result(climate, found)
+    summary = overview(climate, heating_base=heating_base, cooling_base=cooling_base)
+    result = _result(climate, summary)
     with writing(epw):
         if epw is not None:
             write_epw(climate, epw)
             print(f"wrote {epw}", file=sys.stderr)
     if out is not None:
-        for path in _figures(climate, found, out):
+        for path in _figures(climate, summary, out):
             print(f"wrote {path}", file=sys.stderr)
     if as_json:
         print_json(result)
     else:
-        _show(climate, found, result)
+        _show(climate, summary, result)
 
 
 def _checked(file: Path, check_sun: bool) -> Climate:
@@ -105,45 +105,43 @@ def _list(as_json: bool) -> None:
     from mascarin.weather import SHIPPED
 
     if as_json:
-        print_json([{"name": f"shipped:{one.name}", "climate": one.climate, "file": one.file,
-                     "sha256": one.sha256} for one in SHIPPED.values()])  # fmt: skip
+        print_json([{"name": f"shipped:{shipped.name}", "climate": shipped.climate, "file": shipped.file,
+                     "sha256": shipped.sha256} for shipped in SHIPPED.values()])  # fmt: skip
         return
-    rows = [(f"shipped:{one.name}", one.climate, one.file) for one in SHIPPED.values()]
+    rows = [(f"shipped:{shipped.name}", shipped.climate, shipped.file) for shipped in SHIPPED.values()]
     print_table(("name", "climate", "file"), rows)
     print("\nTypical years of the U.S. government (NREL TMY3, 2008), in the public domain.")
 
 
-def _result(climate: Climate, found: Overview) -> dict[str, Any]:
+def _result(climate: Climate, overall: Overview) -> dict[str, Any]:
     from mascarin.comfort.outdoors import hours_in_givoni_zones
     from mascarin.weather import summary
 
     zones = hours_in_givoni_zones(climate) if "dew_point" in climate.data else {}
-    months = {str(month): row.to_dict() for month, row in found.months.iterrows()}
+    months = {str(month): row.to_dict() for month, row in overall.months.iterrows()}
     return {
         **summary(climate),
         "quality": [
-            {"column": one.channel, "kind": one.kind, "start": str(one.start), "end": str(one.end),
-             "count": one.count, "detail": one.detail}
-            for one in climate.quality()
+            {"column": defect.channel, "kind": defect.kind, "start": str(defect.start),
+             "end": str(defect.end), "count": defect.count, "detail": defect.detail}
+            for defect in climate.quality()
         ],
         "months": months,
-        "heating_degree_days": {"base": found.heating_base, "sum": found.heating_degree_days},
-        "cooling_degree_days": {"base": found.cooling_base, "sum": found.cooling_degree_days},
-        "sunshine_hours": found.sunshine,
+        "heating_degree_days": {"base": overall.heating_base, "sum": overall.heating_degree_days},
+        "cooling_degree_days": {"base": overall.cooling_base, "sum": overall.cooling_degree_days},
+        "sunshine_hours": overall.sunshine,
         "outdoor_hours_in_givoni_zones": zones,
     }  # fmt: skip
 
 
-def _show(climate: Climate, found: Overview, result: dict[str, Any]) -> None:
-    place = climate.site
-    if place is not None:
-        print(
-            f"{place.name}: {place.latitude:g} deg north, {place.longitude:g} deg east, {place.altitude:g} m"
-        )
+def _show(climate: Climate, summary: Overview, result: dict[str, Any]) -> None:
+    site = climate.site
+    if site is not None:
+        print(f"{site.name}: {site.latitude:g} deg north, {site.longitude:g} deg east, {site.altitude:g} m")
     kind = "a typical year" if climate.grid.periodic else climate.grid.span()
     print(f"{kind}, every {climate.grid.interval:g} s, {climate.timezone}\n")
     _show_quality(result["quality"])
-    table = found.months.round(1)
+    table = summary.months.round(1)
     header = ["month", *(name.replace(", horizontal", "").replace(" [", "\n[") for name in table.columns)]
     units = [name.rpartition(" ")[2] for name in table.columns]
     names = [_SHORT.get(name.rpartition(" ")[0], name.rpartition(" ")[0]) for name in table.columns]
@@ -153,10 +151,10 @@ def _show(climate: Climate, found: Overview, result: dict[str, Any]) -> None:
         for month, row in zip(table.index, table.to_numpy(), strict=True)
     ]
     print_table(header, rows)
-    print(f"\nheating degree days {found.heating_degree_days:.0f} K d (daily mean below "
-          f"{found.heating_base:g} degC), cooling degree days {found.cooling_degree_days:.0f} K d (above "
-          f"{found.cooling_base:g} degC)")  # fmt: skip
-    print(f"sunshine {found.sunshine:.0f} h (direct irradiance of 120 W/m2 and more)")
+    print(f"\nheating degree days {summary.heating_degree_days:.0f} K d (daily mean below "
+          f"{summary.heating_base:g} degC), cooling degree days {summary.cooling_degree_days:.0f} K d (above "
+          f"{summary.cooling_base:g} degC)")  # fmt: skip
+    print(f"sunshine {summary.sunshine:.0f} h (direct irradiance of 120 W/m2 and more)")
     if result["outdoor_hours_in_givoni_zones"]:
         print("\nOutdoor air in the shade, hours in Givoni's zones of comfort for hot climates:")
         zones = result["outdoor_hours_in_givoni_zones"]
@@ -176,12 +174,15 @@ def _show_quality(quality: list[dict[str, Any]]) -> None:
         print("quality: no gaps, no impossible and no suspicious values\n")
         return
     print(f"quality: {len(quality)} suspicious parts")
-    rows = [(one["column"], one["kind"], one["start"][:16], one["count"], one["detail"]) for one in quality]
+    rows = [
+        (defect["column"], defect["kind"], defect["start"][:16], defect["count"], defect["detail"])
+        for defect in quality
+    ]
     print_table(("column", "kind", "from", "rows", "found"), rows[:_MOST])
     print(f"... {len(rows) - _MOST} more (--json lists all)\n" if len(rows) > _MOST else "")
 
 
-def _figures(climate: Climate, found: Overview, folder: Path) -> list[Path]:
+def _figures(climate: Climate, summary: Overview, folder: Path) -> list[Path]:
     """Figures of the climate and the table of months."""
     from matplotlib.figure import Figure
 
@@ -213,5 +214,5 @@ def _figures(climate: Climate, found: Overview, folder: Path) -> list[Path]:
         humid = humidity_of_dew_point(air, data["dew_point"].to_numpy(dtype=float))
         pressure = data["pressure"].to_numpy(dtype=float) if "pressure" in data else STANDARD_PRESSURE
         add("comfort_chart", lambda ax: psychrometric(ax, air, humid, pressure), 5.0)
-    written.append(atomic.write(folder / "months.csv", found.months.round(3).to_csv()))
+    written.append(atomic.write(folder / "months.csv", summary.months.round(3).to_csv()))
     return written

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mascarin.building.json_schemas import schema_of
-from mascarin.design.description import DesignFile
+from mascarin.design.variants.description import DesignFile
 
 
 def design_schema() -> dict[str, Any]:

@@ -10,18 +10,18 @@ import numpy as np
 
 from mascarin._io import identity, own_files
 from mascarin._io.locks import writing_into
-from mascarin.design.inputs import DesignInputs
-from mascarin.design.results import ALL, FILES, DesignResults, by_climate, rank_all, shortlist
-from mascarin.design.runs import FOLDER, Runs, runs_per_design
-from mascarin.design.search import searched
-from mascarin.design.variables import Choice, Choices
+from mascarin.design.variants.inputs import DesignInputs
+from mascarin.design.variants.results import ALL, FILES, DesignResults, by_climate, rank_all, shortlist
+from mascarin.design.variants.runs import FOLDER, Runs, runs_per_design
+from mascarin.design.variants.search import searched
+from mascarin.design.variants.variables import Choice, Choices
 from mascarin.ensemble import latin_hypercube
 from mascarin.progress import reporting
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.design.variables import Design
+    from mascarin.design.variants.variables import Design
     from mascarin.progress import ProgressOption
 
 
@@ -53,7 +53,7 @@ def run_design(
     SolverError
         All designs failed.
     """
-    from mascarin.design.page import write_page
+    from mascarin.pages.design.page import write_page
 
     out = Path(out)
     identity.require_no_inputs_in(own_files.require_folder(out, FOLDER))

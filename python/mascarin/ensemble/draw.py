@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mascarin._io import memory
-from mascarin.building.set_points import tied_set_points
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.set_point_pairs import tied_set_points
+from mascarin.building.parameters.ties import expanded
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,12 +58,12 @@ def latin_hypercube(
 
     if members < 1:
         raise InputError(f"members: found {members}; expected 1 or more")
-    every = building.parameters()
-    following = {path for one in every for path in one.members}
+    all_parameters = building.parameters()
+    following = {path for candidate in all_parameters for path in candidate.members}
     chosen = (
         [building.parameter(path) for path in expanded(building, vary)]
         if vary
-        else [one for one in every if one.path not in following]
+        else [candidate for candidate in all_parameters if candidate.path not in following]
     )
     for parameter in chosen if vary else ():
         if parameter.structural:
@@ -81,6 +81,6 @@ def latin_hypercube(
         "draw fewer members, or vary fewer parameters",
     )
     unit = qmc.LatinHypercube(len(free), seed=seed).random(members)
-    drawn = {p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)}
-    second_values = {tied[path]: values for path, values in drawn.items() if path in tied}
-    return pd.DataFrame(drawn | second_values)
+    samples = {p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)}
+    second_values = {tied[path]: values for path, values in samples.items() if path in tied}
+    return pd.DataFrame(samples | second_values)

@@ -42,12 +42,12 @@ _DIFFERENCE: Final[dict[str, type | tuple[type, ...]]] = {
 _MOST: Final = 2**40
 
 
-def read(place: Path) -> dict[str, Any]:
+def read(file: Path) -> dict[str, Any]:
     """Read a manifest.
 
     Parameters
     ----------
-    place : Path
+    file : Path
         The file.
 
     Returns
@@ -61,27 +61,27 @@ def read(place: Path) -> dict[str, Any]:
         There is none, or it is damaged.
     """
     try:
-        manifest = own_files.read_json(place)
+        manifest = own_files.read_json(file)
         _check(manifest)
     except (OSError, own_files.DamagedError) as error:
         raise InputError(
-            f"{place}: found no readable manifest ({error}); expected the folder of an ensemble, as "
+            f"{file}: found no readable manifest ({error}); expected the folder of an ensemble, as "
             "sweep_into() or 'mascarin sweep --out' makes it. If it was one, remove it and run it again"
         ) from None
     return manifest
 
 
-def _check(found: dict[str, Any]) -> None:
-    own_files.require(found, _TYPES, further=_FURTHER)
-    if not 1 <= found["members"] <= _MOST:
-        raise own_files.DamagedError(f"members: found {found['members']}")
+def _check(manifest: dict[str, Any]) -> None:
+    own_files.require(manifest, _TYPES, further=_FURTHER)
+    if not 1 <= manifest["members"] <= _MOST:
+        raise own_files.DamagedError(f"members: found {manifest['members']}")
     for key in _LISTS:
-        if not all(isinstance(text, str) for text in found.get(key, [])):
+        if not all(isinstance(text, str) for text in manifest.get(key, [])):
             raise own_files.DamagedError(f"{key}: found something else than texts")
     for key in ("kept", "sample_units"):
-        if not all(isinstance(text, str) for text in found.get(key, {}).values()):
+        if not all(isinstance(text, str) for text in manifest.get(key, {}).values()):
             raise own_files.DamagedError(f"{key}: found something else than texts")
-    for values in found.get("single_precision", {}).values():
+    for values in manifest.get("single_precision", {}).values():
         own_files.require(values if isinstance(values, dict) else {}, _DIFFERENCE)
         if set(values) != set(_DIFFERENCE):
             raise own_files.DamagedError("single_precision: found other keys")

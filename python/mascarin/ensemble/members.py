@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building.part import worked_out
+from mascarin.building.base.part import worked_out
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,11 +63,11 @@ class Members:
 
     def groups(self) -> list[tuple[dict[str, Any], list[int]]]:
         """Members by structure: what is replaced, and the rows of the members that have it in common."""
-        found: dict[str, tuple[dict[str, Any], list[int]]] = {}
+        by_structure: dict[str, tuple[dict[str, Any], list[int]]] = {}
         for member in range(self.count):
             structure = {path: values[member] for path, values in self.structures.items()}
-            found.setdefault(json.dumps(structure, sort_keys=True), (structure, []))[1].append(member)
-        return list(found.values())
+            by_structure.setdefault(json.dumps(structure, sort_keys=True), (structure, []))[1].append(member)
+        return list(by_structure.values())
 
     def taken(self, order: Sequence[int]) -> Members:
         """Some members, in another order."""
@@ -84,12 +84,12 @@ class Members:
 
     def digest(self) -> str:
         """Hash of all samples."""
-        whole = hashlib.sha256()
+        digest = hashlib.sha256()
         for path, values in self.numbers.items():
-            whole.update(path.encode())
-            whole.update(np.ascontiguousarray(values).tobytes())
-        whole.update(json.dumps(dict(self.structures), sort_keys=True).encode())
-        return whole.hexdigest()
+            digest.update(path.encode())
+            digest.update(np.ascontiguousarray(values).tobytes())
+        digest.update(json.dumps(dict(self.structures), sort_keys=True).encode())
+        return digest.hexdigest()
 
 
 #: Numbers of the buildings of other structures that are kept between check and run: some 50 MB of them.
@@ -127,8 +127,8 @@ def variant(building: Building, structure: Mapping[str, Any]) -> Building:
     structure : mapping of str to any
         What is replaced, by path.
     """
-    kept = _variants(building).pop(json.dumps(structure, sort_keys=True), None)
-    return building.replace(structure) if kept is None else kept
+    cached = _variants(building).pop(json.dumps(structure, sort_keys=True), None)
+    return building.replace(structure) if cached is None else cached
 
 
 def _variants(building: Building) -> dict[str, Building]:
@@ -154,24 +154,24 @@ def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Me
     """
     numbers: dict[str, Array] = {}
     structures: dict[str, list[Any]] = {}
-    for key, given in samples.items():
-        path, values = str(key), np.asarray(given)
+    for key, column in samples.items():
+        path, values = str(key), np.asarray(column)
         if values.ndim != 1 or not len(values):
             raise InputError(f"samples: {path} has shape {values.shape}; expected one value for each member")
         if _is_number(building, path, values):
             numbers[building.parameter(path).path] = _numbers(building, path, values)
         else:
             # As given: an array of mixed values would turn the numbers into text.
-            whole = values.tolist() if values.dtype.kind in "fiub" else list(given)
-            structures[path] = [_native(building, path, value) for value in whole]
+            values_list = values.tolist() if values.dtype.kind in "fiub" else list(column)
+            structures[path] = [_native(building, path, value) for value in values_list]
     _same_length({**numbers, **structures})
-    found = Members(numbers, structures)
-    for structure, rows in found.groups() if structures else []:
+    members_read = Members(numbers, structures)
+    for structure, rows in members_read.groups() if structures else []:
         try:
             keep_variant(building, structure)
         except InputError as error:
             raise InputError(f"samples: member {rows[0]}: {error}") from None
-    return found
+    return members_read
 
 
 def _is_number(building: Building, path: str, values: npt.NDArray[Any]) -> bool:

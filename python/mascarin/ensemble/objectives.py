@@ -64,18 +64,20 @@ class Statistic:
         InputError
             Another text.
         """
-        kind, *rest = text.split(":")
+        kind, *arguments = text.split(":")
         limited = kind in ("above", "below")
-        if kind not in _STATISTICS or len(rest) != 1 + limited or not rest[-1]:
+        if kind not in _STATISTICS or len(arguments) != 1 + limited or not arguments[-1]:
             raise InputError(
                 f"objective: found '{text}'; expected min, mean, max or sd and an output "
                 "(max:room.air_temperature), or above or below with a limit "
                 f"(above:26:room.operative_temperature). {did_you_mean(kind, list(_STATISTICS))}".rstrip()
             )
         try:
-            return cls(kind, rest[-1], float(rest[0]) if limited else 0.0)
+            return cls(kind, arguments[-1], float(arguments[0]) if limited else 0.0)
         except ValueError:
-            raise InputError(f"objective: found '{text}', whose limit '{rest[0]}' is no number") from None
+            raise InputError(
+                f"objective: found '{text}', whose limit '{arguments[0]}' is no number"
+            ) from None
 
 
 def _hours(series: xr.DataArray, counted: xr.DataArray) -> xr.DataArray:

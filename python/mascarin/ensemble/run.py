@@ -30,10 +30,10 @@ from mascarin.ensemble.work import (
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.judgement import OUTSIDE
+from mascarin.simulation.checks.judgement import OUTSIDE
 from mascarin.simulation.nominal import of_nominal
-from mascarin.simulation.options import RunOptions, described, require_precision
+from mascarin.simulation.preparation.options import RunOptions, described, require_precision
+from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base, of_members
 from mascarin.simulation.single_precision import Difference, differences, members_to_check, run_in_double
 from mascarin.weather import summary, summary_of_measurements
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Precision, Scheme, TimeLike
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Precision, Scheme, TimeLike
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate, Measurements
 
@@ -130,25 +130,25 @@ def sweep(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    inputs, found = _prepared(building, climate, samples, options, objectives, precision)
-    _require_room(inputs, found)
-    order = found.by_structure()
+    inputs, members_read = _prepared(building, climate, samples, options, objectives, precision)
+    _require_room(inputs, members_read)
+    order = members_read.by_structure()
     with reporting(progress, "members") as report:
         members, judged, failures = _gathered(
             order,
             _chunks(
                 inputs,
-                found.taken(order),
-                [(0, found.count)],
+                members_read.taken(order),
+                [(0, members_read.count)],
                 workers,
-                lambda done: report(done, found.count),
+                lambda done: report(done, members_read.count),
             ),
         )
-    if len(failures) == found.count:
-        raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
-    first = _first(inputs, found)
+    if len(failures) == members_read.count:
+        raise SolverError(f"all {members_read.count} members failed; the first: {failures[0]}")
+    first = _first(inputs, members_read)
     return (
-        _dataset(inputs, found, members)
+        _dataset(inputs, members_read, members)
         .assign(
             closure=xr.DataArray(judged[0], dims="member", attrs=CLOSURE),
             outside=xr.DataArray(judged[1], dims="member", attrs=OUTSIDE),
@@ -159,7 +159,7 @@ def sweep(
                 *of_members(*judged, step_seconds=first.step_seconds, precision=precision),
                 *of_base(of_nominal(first)),
             ],
-            **({} if precision == "double" else {"single_precision": _said(inputs, found, judged[0])}),
+            **({} if precision == "double" else {"single_precision": _said(inputs, members_read, judged[0])}),
         )
     )
 
@@ -239,37 +239,40 @@ def sweep_into(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    inputs, found = _prepared(building, climate, samples, options, objectives, precision, ranges)
+    inputs, members_read = _prepared(building, climate, samples, options, objectives, precision, ranges)
     folder = Path(store)
     Store.require_usable(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with FolderLock(folder), reporting(progress, "members") as report:
-        kept = Store.begin(folder, _manifest(inputs, found, seed))
-        before = kept.done
+        open_store = Store.begin(folder, _manifest(inputs, members_read, seed))
+        before = open_store.done
 
         def count(done: int) -> object:
-            return report(before + done, found.count)
+            return report(before + done, members_read.count)
 
-        for chunk in _chunks(inputs, found, kept.gaps(), workers, count):
-            kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
-        if not kept.complete:
-            kept.finish(
-                [] if precision == "double" else _differences(inputs, found),
-                of_base(of_nominal(_first(inputs, found))),
+        for chunk in _chunks(inputs, members_read, open_store.gaps(), workers, count):
+            open_store.add(chunk, members_read.part(chunk.first, chunk.first + len(chunk.closure)))
+        if not open_store.complete:
+            open_store.finish(
+                [] if precision == "double" else _differences(inputs, members_read),
+                of_base(of_nominal(_first(inputs, members_read))),
             )
-    return kept
+    return open_store
 
 
 def _differences(inputs: EnsembleInputs, members: Members) -> list[Difference]:
     """How far results in single precision are from those in double precision, in some members."""
     some = members.taken(members_to_check(members.count))
     single, double = (
-        run_chunk(replace(inputs, precision=precision), some, 0).kept for precision in ("single", "double")
+        run_chunk(replace(inputs, precision=precision), some, 0).recorded
+        for precision in ("single", "double")
     )
     if inputs.objectives:
         return differences(list(inputs.objectives), [""] * len(inputs.objectives), single, double)
     outputs = _first(inputs, members).outputs
-    return differences([one.name for one in outputs], [one.unit for one in outputs], single, double)
+    return differences(
+        [output.name for output in outputs], [output.unit for output in outputs], single, double
+    )
 
 
 def _said(inputs: EnsembleInputs, members: Members, closure: npt.NDArray[np.float64]) -> list[str]:
@@ -319,9 +322,9 @@ def _prepared(
         raise InputError(f"objectives: '{clash.pop()}' is a variable of every result; choose another name")
     structure = _first_structure(members)
     compiled = inputs.compiled(structure)
-    whole = hashlib.sha256(compiled.identity.encode())
-    whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives), precision]).encode())
-    inputs = replace(inputs, identity=whole.hexdigest())
+    digest = hashlib.sha256(compiled.identity.encode())
+    digest.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives), precision]).encode())
+    inputs = replace(inputs, identity=digest.hexdigest())
     inputs.keep(structure, compiled)
     return inputs, members
 
@@ -330,11 +333,11 @@ def _joined(
     ranges: Mapping[str, tuple[float, float]], wider: Mapping[str, tuple[float, float]]
 ) -> dict[str, tuple[float, float]]:
     """Ranges that contain both."""
-    found = {path: tuple(bounds) for path, bounds in ranges.items()}
+    joined = {path: tuple(bounds) for path, bounds in ranges.items()}
     for path, (low, high) in wider.items():
-        own = found.get(path, (low, high))
-        found[path] = (min(low, own[0]), max(high, own[1]))
-    return {path: (low, high) for path, (low, high) in found.items()}
+        bounds_of_path = joined.get(path, (low, high))
+        joined[path] = (min(low, bounds_of_path[0]), max(high, bounds_of_path[1]))
+    return {path: (low, high) for path, (low, high) in joined.items()}
 
 
 def _require_room(inputs: EnsembleInputs, members: Members) -> None:
@@ -373,18 +376,18 @@ def _chunks(
 
 def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
     """Results of all members, and by what they are judged; chunks have them in another order."""
-    whole: Any = None
+    array: Any = None
     judged = np.full((3, len(order)), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
         members = order[chunk.first : chunk.first + len(chunk.closure)]
-        if whole is None and chunk.kept.size:
-            whole = np.full((len(order), *chunk.kept.shape[1:]), np.nan)
-        if whole is not None and chunk.kept.size:
-            whole[members] = chunk.kept
+        if array is None and chunk.recorded.size:
+            array = np.full((len(order), *chunk.recorded.shape[1:]), np.nan)
+        if array is not None and chunk.recorded.size:
+            array[members] = chunk.recorded
         judged[:, members] = chunk.closure, chunk.outside, chunk.step_errors
         failures |= {order[member]: reason for member, reason in chunk.failures.items()}
-    return whole, judged, failures
+    return array, judged, failures
 
 
 def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Dataset:
@@ -400,11 +403,11 @@ def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Datase
     units = {path: _unit(inputs.building, path) for path in members.paths}
     if members.structures:
         everything: dict[str, Any] = {**members.numbers, **members.structures}
-        found = {
+        variables = {
             f"sample: {path}": ("member", column, attributes(path, units[path]))
             for path, column in everything.items()
         }
-        return data.assign(found)
+        return data.assign(variables)
     samples = xr.DataArray(np.column_stack(list(members.numbers.values())), dims=("member", "parameter"))
     coordinates = {"parameter": members.paths, "parameter_unit": ("parameter", list(units.values()))}
     return data.assign_coords(coordinates).assign(samples=samples)
@@ -420,14 +423,14 @@ def _unit(building: Building, path: str) -> str:
 
 def _manifest(inputs: EnsembleInputs, members: Members, seed: int | None) -> dict[str, Any]:
     simulation = _first(inputs, members)
-    given = inputs.options.measurements
+    measured = inputs.options.measurements
     units = {output.name: output.unit for output in simulation.outputs}
     times = simulation.index.tz_convert("UTC").tz_localize(None)
     return {
         "mascarin_version": __version__,
         "building": inputs.building.name,
         "climate": summary(inputs.climate),
-        "measurements": None if given is None else summary_of_measurements(given),
+        "measurements": None if measured is None else summary_of_measurements(measured),
         "identity": inputs.identity,
         "samples": members.digest(),
         "members": members.count,

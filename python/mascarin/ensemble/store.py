@@ -24,8 +24,8 @@ from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
-from mascarin.simulation.judgement import JUDGED, OUTSIDE, all_sound
-from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.checks.judgement import JUDGED, OUTSIDE, all_sound
+from mascarin.simulation.records.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
 from mascarin.tables.timezones import parse_timezone
@@ -145,8 +145,8 @@ class Store:
 
     def _restore(self, manifest: Mapping[str, Any]) -> None:
         """Take the entries as they are known, and forget what was damaged: it is run again."""
-        own: dict[str, Any] = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
-        self.manifest = {**json.loads(json.dumps(manifest)), **own}
+        entries: dict[str, Any] = {key: self.manifest[key] for key in _AT_END if key in self.manifest}
+        self.manifest = {**json.loads(json.dumps(manifest)), **entries}
         self.manifest["complete"] = self.complete and self._has_results()
         if self.complete:
             return
@@ -221,12 +221,12 @@ class Store:
         """Members that have not been run: ranges of the first and the one after the last."""
         if self.complete:
             return []
-        gaps, at = [], 0
+        gaps, position = [], 0
         for first, last in sorted(self._chunks()):
-            if first > at:
-                gaps.append((at, first))
-            at = max(at, last)
-        return gaps if at >= self.count else [*gaps, (at, self.count)]
+            if first > position:
+                gaps.append((position, first))
+            position = max(position, last)
+        return gaps if position >= self.count else [*gaps, (position, self.count)]
 
     def add(self, chunk: Chunk, members: Members) -> None:
         """Write a chunk, completely or not at all.
@@ -262,7 +262,9 @@ class Store:
         with self._blamed(), atomic.drafted(self.path / RESULTS) as draft, draft.open("wb") as file:
             self._join(file)
         if single_precision:
-            self.manifest["single_precision"] = {one.name: one.to_dict() for one in single_precision}
+            self.manifest["single_precision"] = {
+                difference.name: difference.to_dict() for difference in single_precision
+            }
         self.manifest["warnings"] = list(warnings)
         self.manifest["complete"] = True
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
@@ -284,12 +286,12 @@ class Store:
                 held.append(table)
                 joined = pa.concat_tables(held)
                 full_rows = len(joined) // rows * rows
-                for at in range(0, full_rows, rows):
-                    writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
+                for row in range(0, full_rows, rows):
+                    writer.write_table(joined.slice(row, rows).combine_chunks(), row_group_size=rows)
                 held = [joined.slice(full_rows)]
-            rest = pa.concat_tables(held) if held else None
-            if writer is not None and rest is not None and len(rest):
-                writer.write_table(rest.combine_chunks(), row_group_size=rows)
+            remainder = pa.concat_tables(held) if held else None
+            if writer is not None and remainder is not None and len(remainder):
+                writer.write_table(remainder.combine_chunks(), row_group_size=rows)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Samples, objectives, relative energy-balance residual and failures by member; no series.
@@ -333,8 +335,8 @@ class Store:
 
     def single_precision(self) -> list[str]:
         """How far some members are from double precision, and how many were run in it; nothing in double."""
-        found = self.manifest.get("single_precision", {})
-        lines = [str(Difference(name, **values)) for name, values in found.items()]
+        entries = self.manifest.get("single_precision", {})
+        lines = [str(Difference(name, **values)) for name, values in entries.items()]
         return [*lines, *run_in_double(self.to_dataframe()["closure"].to_numpy())] if lines else []
 
     def to_xarray(self, first: int = 0, last: int | None = None) -> xr.Dataset:
@@ -366,8 +368,8 @@ class Store:
         import pyarrow as pa
         import xarray as xr
 
-        wanted = [("member", ">=", first), ("member", "<", until)]
-        table = pa.concat_tables(self._tables(filters=wanted)).sort_by("member")
+        filters = [("member", ">=", first), ("member", "<", until)]
+        table = pa.concat_tables(self._tables(filters=filters)).sort_by("member")
         members = table.column("member").to_numpy()
         if not np.array_equal(members, np.arange(first, until)):
             raise InputError(
@@ -403,9 +405,9 @@ class Store:
 
     def _width(self) -> int:
         """Numbers in a row."""
-        kept = len(self.manifest["kept"])
+        recorded = len(self.manifest["kept"])
         rows = 1 if self.manifest["objectives"] else len(self.manifest["time"])
-        return kept * rows + len(self.manifest["paths"]) + 4
+        return recorded * rows + len(self.manifest["paths"]) + 4
 
     def _chunks(self) -> list[tuple[int, int]]:
         chunks = []
@@ -456,13 +458,13 @@ class Store:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        at = 0
+        position = 0
         for first, last in sorted(self._chunks()):
-            if last <= at:
+            if last <= position:
                 continue
             table = pq.read_table(pa.BufferReader(self._piece(first, last)))
-            yield table.slice(max(at - first, 0))
-            at = last
+            yield table.slice(max(position - first, 0))
+            position = last
 
     def _table(self, chunk: Chunk, members: Members) -> pa.Table:
         import pyarrow as pa
@@ -475,7 +477,7 @@ class Store:
         for path, structures in members.structures.items():
             columns[f"sample: {path}"] = pa.array([json.dumps(shape, sort_keys=True) for shape in structures])
         for k, name in enumerate(self.manifest["kept"]):
-            column = np.ascontiguousarray(chunk.kept[..., k]) if chunk.kept.size else None
+            column = np.ascontiguousarray(chunk.recorded[..., k]) if chunk.recorded.size else None
             columns[name] = self._column(column, count)
         judged = (chunk.closure, chunk.outside, chunk.step_errors)
         columns |= {name: pa.array(values) for name, values in zip(_JUDGED, judged, strict=True)}

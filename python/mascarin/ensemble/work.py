@@ -12,8 +12,8 @@ import numpy as np
 from mascarin import _engine
 from mascarin.ensemble.members import variant
 from mascarin.errors import InputError, MascarinError
-from mascarin.simulation.coarse import member_errors
-from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.checks.step_check import member_errors
+from mascarin.simulation.records.labels import time_coordinates
 from mascarin.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building, Output
     from mascarin.ensemble.members import Members
-    from mascarin.simulation.options import Precision, RunOptions
+    from mascarin.simulation.preparation.options import Precision, RunOptions
     from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
@@ -103,7 +103,7 @@ class Chunk:
     ----------
     first : int
         Its first member.
-    kept : ndarray, shape (members, rows, outputs) or (members, objectives)
+    recorded : ndarray, shape (members, rows, outputs) or (members, objectives)
         Series, or objectives where there are some; NaN for a member that failed. [unit of each]
     closure : ndarray, shape (members,)
         Relative energy-balance residual. [-]
@@ -112,11 +112,12 @@ class Chunk:
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
     step_errors : ndarray, shape (members,)
-        Error of an air by the time step, as of `mascarin.simulation.coarse`; NaN where none was recorded. [K]
+        Error of an air by the time step, as of `mascarin.simulation.checks.step_check`; NaN where none was
+        recorded. [K]
     """
 
     first: int
-    kept: Array
+    recorded: Array
     closure: Array
     outside: Array
     failures: Mapping[int, str]

@@ -37,18 +37,18 @@ def here(
     """Run chunks in this process, on all its threads."""
     size, done = FIRST, 0
     for first, last in gaps:
-        at = first
-        while at < last:
-            until = min(at + size, last)
+        position = first
+        while position < last:
+            until = min(position + size, last)
             began, before = time.monotonic(), done
             call = None if report is None else (lambda count, before=before: report(before + count))
-            chunk = run_chunk(inputs, members.part(at, until), at, call)
-            done += until - at
+            chunk = run_chunk(inputs, members.part(position, until), position, call)
+            done += until - position
             if report is not None:
                 report(done)
             yield chunk
-            size = _sized(until - at, time.monotonic() - began)
-            at = until
+            size = _sized(until - position, time.monotonic() - began)
+            position = until
 
 
 def elsewhere(
@@ -189,7 +189,9 @@ def _follow(parent: BaseProcess) -> None:
 
 def _end(executor: Executor) -> None:
     """End a pool; workers that are still busy are stopped, so that nobody waits for them."""
-    running = [one for one in (getattr(executor, "_processes", None) or {}).values() if one.is_alive()]
+    running = [
+        worker for worker in (getattr(executor, "_processes", None) or {}).values() if worker.is_alive()
+    ]
     executor.shutdown(wait=False, cancel_futures=True)
     for process in running:
         process.terminate()
@@ -198,9 +200,9 @@ def _end(executor: Executor) -> None:
 def _slots(executor: Executor) -> int:
     """Number of workers of an executor, where it can be found out."""
     for name in ("_max_workers", "_client"):
-        found = getattr(executor, name, None)
-        if isinstance(found, int):
-            return found
-        if found is not None and hasattr(found, "ncores"):
-            return max(int(sum(found.ncores().values())), 1)
+        slots = getattr(executor, name, None)
+        if isinstance(slots, int):
+            return slots
+        if slots is not None and hasattr(slots, "ncores"):
+            return max(int(sum(slots.ncores().values())), 1)
     return os.cpu_count() or 1

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.course_uses import courses
-from mascarin.building.courses import ColumnCourse
+from mascarin.building.base.time_series import ColumnCourse
+from mascarin.building.engine_input.series_users import courses
 from mascarin.errors import InputError, did_you_mean
-from mascarin.simulation.compiling import limits_of_columns
-from mascarin.simulation.flow_balance import require_balanced_flows
+from mascarin.simulation.checks.flow_balance import require_balanced_flows
+from mascarin.simulation.preparation.prepare import limits_of_columns
 from mascarin.weather.channels import BY_NAME, CHANNELS, COEFFICIENTS, IRRADIANCES, TEMPERATURES
 from mascarin.weather.schedules import LIMITS_OF_COURSES
 
@@ -68,17 +68,17 @@ def channels_of(simulation: Simulation) -> list[Channel]:
 
 
 def _weather(simulation: Simulation) -> list[Channel]:
-    found = []
+    channels = []
     for position, name in enumerate(_WEATHER):
         if np.isnan(simulation.compiled.forcing[..., position]).any():
             continue  # the run does without it
         channel = BY_NAME[name]
         # Measured irradiances may be a little below zero at night.
         low = 0.0 if name in _GLOBAL else channel.low
-        found.append(
+        channels.append(
             Channel(f"weather.{name}", position, channel.unit, low, channel.high, channel.description)
         )
-    return found
+    return channels
 
 
 def _tables(simulation: Simulation) -> list[Channel]:
@@ -87,23 +87,23 @@ def _tables(simulation: Simulation) -> list[Channel]:
     columns = simulation.channels[: len(simulation.channels) - len(by_name)]
     limits = limits_of_columns(simulation.building)
     first = len(CHANNELS)
-    found = []
+    channels = []
     for position, column in enumerate(columns, start=first):
         low, high = limits[column]
         unit = _COLUMN_UNITS[low, high]
-        found.append(Channel(f"columns.{column}", position, unit, low, high, f"measured column {column}"))
-    taken = {channel.name for channel in found}
+        channels.append(Channel(f"columns.{column}", position, unit, low, high, f"measured column {column}"))
+    taken = {channel.name for channel in channels}
     for position, (name, course) in enumerate(by_name.items(), start=first + len(columns)):
         low, high = LIMITS_OF_COURSES[course.kind]
         if isinstance(course, ColumnCourse):
             short = f"columns.{' and '.join(course.columns)}"
-            whole = f"columns.{name}" if short in taken else short
+            full_name = f"columns.{name}" if short in taken else short
             words = f"measured: {name}"
         else:
-            whole, words = f"schedules.{name}", f"schedule {name}, {course.kind}"
-        taken.add(whole)
-        found.append(Channel(whole, position, _UNITS[course.kind], low, high, words))
-    return found
+            full_name, words = f"schedules.{name}", f"schedule {name}, {course.kind}"
+        taken.add(full_name)
+        channels.append(Channel(full_name, position, _UNITS[course.kind], low, high, words))
+    return channels
 
 
 def chosen_inputs(simulation: Simulation, patterns: Sequence[str]) -> list[Channel]:
@@ -114,8 +114,8 @@ def chosen_inputs(simulation: Simulation, patterns: Sequence[str]) -> list[Chann
     InputError
         A pattern fits none; or a flow could differ from the other flows of its zone.
     """
-    every = channels_of(simulation)
-    names = [channel.name for channel in every]
+    all_channels = channels_of(simulation)
+    names = [channel.name for channel in all_channels]
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in names):
             raise InputError(
@@ -123,10 +123,12 @@ def chosen_inputs(simulation: Simulation, patterns: Sequence[str]) -> list[Chann
                 f"as 'weather.*'; it has {', '.join(names)}. {did_you_mean(pattern, names)} A number in the "
                 "building is a parameter: to make it an input, give a schedule or a column in its place"
             )
-    found = [channel for channel in every if any(fnmatchcase(channel.name, one) for one in patterns)]
-    for channel in found:
+    chosen = [
+        channel for channel in all_channels if any(fnmatchcase(channel.name, word) for word in patterns)
+    ]
+    for channel in chosen:
         _require_free(simulation, channel)
-    return found
+    return chosen
 
 
 def global_follows(inputs: Sequence[Channel]) -> bool:

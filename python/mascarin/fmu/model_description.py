@@ -73,8 +73,8 @@ def fmi3(model: Model) -> bytes:
             structure.append(str(reference))
     listed = ET.SubElement(root, "ModelStructure")
     for element in ("Output", "InitialUnknown"):
-        for one in structure:
-            ET.SubElement(listed, element, valueReference=one)
+        for entry in structure:
+            ET.SubElement(listed, element, valueReference=entry)
     return _written(root)
 
 
@@ -104,8 +104,8 @@ def fmi2(model: Model) -> bytes:
     listed = ET.SubElement(root, "ModelStructure")
     for element in ("Outputs", "InitialUnknowns") if structure else ():
         group = ET.SubElement(listed, element)
-        for one in structure:
-            ET.SubElement(group, "Unknown", index=one)
+        for entry in structure:
+            ET.SubElement(group, "Unknown", index=entry)
     return _written(root)
 
 
@@ -144,14 +144,14 @@ def _attributes(variable: Variable) -> dict[str, str]:
 
 
 def _type(variable: Variable) -> dict[str, str]:
-    found = {} if variable.unit in ("-", "") else {"unit": variable.unit}
+    attributes = {} if variable.unit in ("-", "") else {"unit": variable.unit}
     if variable.low is not None:
-        found["min"] = repr(variable.low)
+        attributes["min"] = repr(variable.low)
     if variable.high is not None:
-        found["max"] = repr(variable.high)
+        attributes["max"] = repr(variable.high)
     if variable.causality != "output":
-        found["start"] = repr(variable.start)
-    return found
+        attributes["start"] = repr(variable.start)
+    return attributes
 
 
 def _written(root: ET.Element) -> bytes:

@@ -31,7 +31,7 @@ class BaseUnit:
 
     def power(self, exponent: int) -> BaseUnit:
         """The unit to a power."""
-        raised = {base: exponent * own for base, own in self.exponents.items()}
+        raised = {base: exponent * power for base, power in self.exponents.items()}
         return BaseUnit(raised, self.factor**exponent)
 
     def times(self, other: BaseUnit) -> BaseUnit:
@@ -43,7 +43,7 @@ class BaseUnit:
         )
 
 
-_KNOWN: Final = {
+_SYMBOLS: Final = {
     "m": BaseUnit({"m": 1}),
     "kg": BaseUnit({"kg": 1}),
     "s": BaseUnit({"s": 1}),
@@ -92,7 +92,7 @@ def base_unit(unit: str) -> BaseUnit | None:
 
 def _product(signs: Iterator[str]) -> BaseUnit:
     """Read factors up to the end or a closing bracket."""
-    found, last, below = BaseUnit(), BaseUnit(), False
+    product, last, below = BaseUnit(), BaseUnit(), False
     for sign in signs:
         if sign == ")":
             break
@@ -102,9 +102,9 @@ def _product(signs: Iterator[str]) -> BaseUnit:
             continue
         elif sign.isdigit() and last.exponents:
             # An exponent: the factor itself has been counted once.
-            found = found.times(last.power(int(sign) - 1))
+            product = product.times(last.power(int(sign) - 1))
         elif sign != "1":
-            last = _product(signs) if sign == "(" else _KNOWN[sign]
+            last = _product(signs) if sign == "(" else _SYMBOLS[sign]
             last = last.power(-1) if below else last
-            found = found.times(last)
-    return found
+            product = product.times(last)
+    return product

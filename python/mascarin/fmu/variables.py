@@ -80,13 +80,13 @@ def variables_of(
     InputError
         A pattern that fits no parameter, or a name that occurs twice.
     """
-    found = [
+    variables = [
         *(_input(simulation, channel) for channel in inputs),
         *_outputs(simulation),
         *_parameters(simulation, patterns),
     ]
-    _require_names(found)
-    return found
+    _require_names(variables)
+    return variables
 
 
 def _input(simulation: Simulation, channel: Channel) -> Variable:
@@ -114,26 +114,26 @@ def _parameters(simulation: Simulation, patterns: Sequence[str] | None) -> list[
                 f"--parameter: found '{pattern}', expected the path of a parameter that can vary, or a "
                 f"pattern such as 'zones.*'. {did_you_mean(pattern, list(paths))}".rstrip()
             )
-    known = {parameter.path: parameter for parameter in simulation.building.parameters()}
-    found = []
+    by_path = {parameter.path: parameter for parameter in simulation.building.parameters()}
+    variables = []
     for position, (path, value) in enumerate(zip(paths, compiled.values.tolist(), strict=True)):
         if patterns is not None and not any(fnmatchcase(path, pattern) for pattern in patterns):
             continue
-        parameter = known[path]
+        parameter = by_path[path]
         low, high = (limit if math.isfinite(limit) else None for limit in (parameter.lower, parameter.upper))
-        found.append(
+        variables.append(
             Variable(
                 path, "parameter", parameter.unit, parameter.description, {"parameter": position},
                 start=value, low=low, high=high,
             )
         )  # fmt: skip
-    return found
+    return variables
 
 
 def _require_names(variables: Sequence[Variable]) -> None:
-    seen: set[str] = {"time"}
+    names: set[str] = {"time"}
     for variable in variables:
-        if variable.name in seen:
+        if variable.name in names:
             raise InputError(
                 f"{variable.name}: found this name twice among the variables of the unit, expected each "
                 "once; give the zone, surface or column another name"
@@ -143,4 +143,4 @@ def _require_names(variables: Sequence[Variable]) -> None:
                 f"{variable.name!r}: found a sign in the name that a unit cannot have, such as a line break; "
                 "give the column another name"
             )
-        seen.add(variable.name)
+        names.add(variable.name)

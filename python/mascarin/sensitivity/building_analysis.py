@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,18 +10,18 @@ import numpy as np
 
 from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
 from mascarin._io.durations import seconds_of
-from mascarin.building.set_points import tied_set_points
-from mascarin.building.ties import expanded, spread
+from mascarin.building.parameters.set_point_pairs import tied_set_points
+from mascarin.building.parameters.ties import expanded, spread
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.sensitivity.factors import DistributionName, Factor
+from mascarin.sensitivity.base.factors import DistributionName, Factor
+from mascarin.sensitivity.base.result import Sensitivity
+from mascarin.sensitivity.base.runs import Collector, batches
 from mascarin.sensitivity.methods import MethodName, collector, plan
-from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import Collector, batches
-from mascarin.simulation.compiling import in_climate
-from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.nominal import of_nominal
-from mascarin.simulation.options import described, require_precision
+from mascarin.simulation.preparation.options import described, require_precision
+from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
@@ -33,9 +32,9 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity.methods import Plan
-    from mascarin.simulation.compiled import EnsembleRun
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Precision, Scheme, TimeLike
+    from mascarin.simulation.preparation.engine_run import EnsembleRun
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Precision, Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -271,45 +270,6 @@ def _single_precision(
     outputs = simulation.outputs
     names, units = [output.name for output in outputs], [output.unit for output in outputs]
     return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
-
-
-def screen(
-    building: Building,
-    climate: Climate,
-    *,
-    parameters: Sequence[str] | None = None,
-    ranges: Mapping[str, tuple[float, float]] | None = None,
-    **options: Any,
-) -> Sensitivity:
-    """Call `sensitivity_analysis` under its former name and with its former options.
-
-    Parameters
-    ----------
-    building, climate
-        As in `sensitivity_analysis`.
-    parameters : sequence of str, optional
-        Paths that vary; now `vary`.
-    ranges : mapping of str to (float, float), optional
-        Ranges; now values of `vary`. [unit of each]
-    **options
-        Other options of `sensitivity_analysis`.
-
-    Returns
-    -------
-    Sensitivity
-        Indices with intervals, and signed effects.
-    """
-    warnings.warn(
-        "screen() is now sensitivity_analysis(); its options parameters= and ranges= are now vary=",
-        DeprecationWarning,
-        stacklevel=2,
-    )
-    spans = {building.parameter(path).path: span for path, span in (ranges or {}).items()}
-    paths = [building.parameter(path).path for path in parameters] if parameters is not None else None
-    if paths is None and spans:
-        paths = [factor.path for factor in factors_of(building, ranges=spans)]
-    vary = None if paths is None else {path: spans.get(path) for path in paths}
-    return sensitivity_analysis(building, climate, vary=vary, **options)
 
 
 def run_samples(

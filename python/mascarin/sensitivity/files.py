@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from mascarin.figures import sensitivity as figures
 from mascarin.figures.files import save
-from mascarin.sensitivity.result import Sensitivity, local_hours
+from mascarin.sensitivity.base.result import Sensitivity, local_hours
 from mascarin.sensitivity.spectral import SpectralSensitivity
 from mascarin.sensitivity.spectral.result import lines
 

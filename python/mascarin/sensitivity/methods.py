@@ -11,9 +11,9 @@ from mascarin._io.arguments import whole_number
 from mascarin.errors import InputError, did_you_mean
 from mascarin.progress import ProgressOption, reporting
 from mascarin.sensitivity import salib, spectral
-from mascarin.sensitivity.factors import Factor, Floats
-from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import Collector, batches
+from mascarin.sensitivity.base.factors import Factor, Floats
+from mascarin.sensitivity.base.result import Sensitivity
+from mascarin.sensitivity.base.runs import Collector, batches
 
 MethodName = Literal["spectral", "rbd-fast", "sobol", "morris"]
 

@@ -107,8 +107,11 @@ def _at_seat(
             "(mascarin.comfort.seen_from)"
         )
     radiant = view.radiant(np.stack([columns[key] for key in view.outputs], axis=-1))
-    place = ", ".join(f"{c:g}" for c in settings.seat or ())
-    notes = (f"the mean radiant temperature is that at the seat [{place}] ({settings.posture})", *view.notes)
+    position = ", ".join(f"{c:g}" for c in settings.seat or ())
+    notes = (
+        f"the mean radiant temperature is that at the seat [{position}] ({settings.posture})",
+        *view.notes,
+    )
     return columns[f"{name}.{_AIR}"], radiant, (*notes, "no sun falls on the person")
 
 
@@ -121,19 +124,19 @@ def zone_of(columns: Mapping[str, Any], zone: str | None) -> str:
         Nothing of it was recorded, or there are several and none is named.
     """
     keys = (_AIR, _RADIANT, _OPERATIVE)
-    found = list(dict.fromkeys(n.rpartition(".")[0] for n in columns if n.rpartition(".")[2] in keys))
-    if not found:
+    owners = list(dict.fromkeys(n.rpartition(".")[0] for n in columns if n.rpartition(".")[2] in keys))
+    if not owners:
         raise InputError(
             "comfort: found no temperature of a zone in this run; record ZONE.air_temperature and "
             "ZONE.mean_radiant_temperature (outputs= of simulate)"
         )
     if zone is None:
-        if len(found) > 1:
-            raise InputError(f"zone: found none; expected one of {', '.join(found)}")
-        return found[0]
-    if zone not in found:
+        if len(owners) > 1:
+            raise InputError(f"zone: found none; expected one of {', '.join(owners)}")
+        return owners[0]
+    if zone not in owners:
         raise InputError(
-            f"zone: found {zone!r}; expected a zone with recorded temperatures. {did_you_mean(zone, found)}"
+            f"zone: found {zone!r}; expected a zone with recorded temperatures. {did_you_mean(zone, owners)}"
         )
     return zone
 

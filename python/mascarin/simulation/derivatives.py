@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mascarin.simulation.compiled import MEMORY
-from mascarin.simulation.objectives import Gradient, Mean, Objective, SquaredResiduals
-from mascarin.simulation.options import RunOptions, described
+from mascarin.simulation.preparation.engine_run import MEMORY
+from mascarin.simulation.preparation.objectives import Gradient, Mean, Objective, SquaredResiduals
+from mascarin.simulation.preparation.options import RunOptions, described
 from mascarin.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
 __all__ = ["Gradient", "Mean", "Objective", "SquaredResiduals", "gradient", "jacobian"]

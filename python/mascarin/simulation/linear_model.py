@@ -107,7 +107,7 @@ def state_space(building: Building, *, step: str | float = "15min") -> StateSpac
     >>> state_space(building).outputs
     ['room.air_temperature', 'facade.outside_temperature', 'facade.inside_temperature']
     """
-    from mascarin.building import plausibility  # pydantic
+    from mascarin.building.checks import plausibility  # pydantic
 
     description = building.to_engine(seconds_of(step), {})
     with translated():

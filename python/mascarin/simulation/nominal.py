@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import SolverError
+from mascarin.simulation.records.times import Times
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.times import Times
 
 if TYPE_CHECKING:
     import numpy.typing as npt

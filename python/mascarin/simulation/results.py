@@ -13,14 +13,14 @@ from mascarin._io import display
 from mascarin._io.durations import seconds_of
 from mascarin._io.own_files import json_of, require
 from mascarin.errors import InputError, did_you_mean
-from mascarin.simulation import files, labels
-from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.finished import Finished
-from mascarin.simulation.judgement import Judgement
-from mascarin.simulation.provenance import Provenance
-from mascarin.simulation.spacing import means, state_means
-from mascarin.simulation.times import Times
-from mascarin.simulation.vapour import VapourLedger
+from mascarin.simulation.checks.energy import EnergyLedger
+from mascarin.simulation.checks.judgement import Judgement
+from mascarin.simulation.checks.vapour import VapourLedger
+from mascarin.simulation.records import files, labels
+from mascarin.simulation.records.provenance import Provenance
+from mascarin.simulation.records.resample import means, state_means
+from mascarin.simulation.records.times import Times
+from mascarin.simulation.run_summary import Finished
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 Default = TypeVar("Default")
 
 #: Series that the figure in a notebook shows.
-_DRAWN: Final = 8
+_MAX_CURVES: Final = 8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,14 +184,14 @@ class Results(Mapping[str, "xr.DataArray"]):
         import pandas as pd
 
         seconds = seconds_of(interval, "interval")
-        place = self.times.since_start
-        times = np.arange(0.0, place[-1] + 1e-6, seconds)
+        elapsed = self.times.since_start
+        times = np.arange(0.0, elapsed[-1] + 1e-6, seconds)
         if len(times) < 2:
             raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
         columns = [
-            means(place, self.records[:, k], times)
+            means(elapsed, self.records[:, k], times)
             if output.mean
-            else np.interp(times, place, self.records[:, k])
+            else np.interp(times, elapsed, self.records[:, k])
             for k, output in enumerate(self.outputs)
         ]
         index = Times.of(self.index[0] + pd.to_timedelta(times, unit="s"))
@@ -221,16 +221,18 @@ class Results(Mapping[str, "xr.DataArray"]):
 
         position = self._position(name)
         output, values = self.outputs[position], self.records[:, position]
-        place = self.times.since_start
+        elapsed = self.times.since_start
         first = self.index[0].ceil("h", ambiguous=True, nonexistent="shift_forward")
         early = (first - self.index[0]).total_seconds()
-        times = np.arange(early, place[-1] + 1e-6, 3600.0)
+        times = np.arange(early, elapsed[-1] + 1e-6, 3600.0)
         if len(times) < 2:
             raise InputError(
                 f"{name}: the run covers no whole hour; expected one from full hour to full hour"
             )
-        found = (means(place, values, times) if output.mean else state_means(place, values, times))[1:]
-        return pd.Series(found, first + pd.to_timedelta(times[:-1] - early, unit="s"), name=output.name)
+        resampled = (means(elapsed, values, times) if output.mean else state_means(elapsed, values, times))[
+            1:
+        ]
+        return pd.Series(resampled, first + pd.to_timedelta(times[:-1] - early, unit="s"), name=output.name)
 
     def heat(self, name: str) -> float:
         """Heat of a load over the run. [J]
@@ -478,7 +480,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             f"Results of '{self.provenance.building}'",
             self._rows(),
             tables={"Statistics": self.to_dataframe().describe().T} if len(self) else {},
-            figures={"Plot": self.plot(list(self)[:_DRAWN])} if len(self) else {},
+            figures={"Plot": self.plot(list(self)[:_MAX_CURVES])} if len(self) else {},
         )
 
     def _rows(self) -> list[tuple[str, str]]:

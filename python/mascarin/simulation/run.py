@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mascarin.simulation.options import RunOptions, described
+from mascarin.simulation.preparation.options import RunOptions, described
 from mascarin.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.options import Scheme, TimeLike
     from mascarin.simulation.results import Results
     from mascarin.weather import Climate, Measurements
 

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.simulation.coarse import LARGE
-from mascarin.simulation.formula_laws import range_warnings
-from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.checks.formula_laws import range_warnings
+from mascarin.simulation.checks.judgement import ensemble_warnings
+from mascarin.simulation.checks.step_check import LARGE
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.simulation.blocks import Watch
-    from mascarin.simulation.energy import EnergyLedger
-    from mascarin.simulation.judgement import Judgement
-    from mascarin.simulation.vapour import VapourLedger
+    from mascarin.simulation.checks.energy import EnergyLedger
+    from mascarin.simulation.checks.judgement import Judgement
+    from mascarin.simulation.checks.vapour import VapourLedger
+    from mascarin.simulation.records.blocks import Watch
 
     Array = npt.NDArray[np.float64]
 

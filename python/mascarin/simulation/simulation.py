@@ -14,20 +14,22 @@ import numpy as np
 from mascarin._io.arguments import names_of
 from mascarin._io.durations import seconds_of
 from mascarin.progress import reporting
-from mascarin.simulation import coarse, files, run_warnings
-from mascarin.simulation.blocks import InMemory, Watch
-from mascarin.simulation.compiled import MEMORY, CompiledRun
-from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.finished import Finished, StoredRun
-from mascarin.simulation.judgement import Judgement
-from mascarin.simulation.options import RunOptions, described
-from mascarin.simulation.provenance import Provenance
-from mascarin.simulation.readings import Readings
+from mascarin.simulation import run_warnings
+from mascarin.simulation.checks import step_check
+from mascarin.simulation.checks.energy import EnergyLedger
+from mascarin.simulation.checks.judgement import Judgement
+from mascarin.simulation.checks.vapour import VapourLedger
+from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
+from mascarin.simulation.preparation.options import RunOptions, described
+from mascarin.simulation.preparation.parameter_vectors import VectorRuns
+from mascarin.simulation.preparation.slopes import gradient_of, labelled_slopes
+from mascarin.simulation.records import files
+from mascarin.simulation.records.blocks import InMemory, Watch
+from mascarin.simulation.records.provenance import Provenance
+from mascarin.simulation.records.recorded_outputs import Readings
+from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
-from mascarin.simulation.slopes import gradient_of, labelled_slopes
-from mascarin.simulation.times import Times
-from mascarin.simulation.vapour import VapourLedger
-from mascarin.simulation.vectors import VectorRuns
+from mascarin.simulation.run_summary import Finished, StoredRun
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
 from mascarin.weather.brightness import findings
@@ -38,9 +40,9 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption, Report
-    from mascarin.simulation.initial import Initial
-    from mascarin.simulation.objectives import Gradient, Objective
-    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.preparation.objectives import Gradient, Objective
+    from mascarin.simulation.preparation.options import Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -118,38 +120,40 @@ class Simulation(VectorRuns):
         measurements: Measurements | None = None,
         ranges: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
-        from mascarin.simulation import compiling  # pydantic, which an evaluation for GenOpt does without
+        from mascarin.simulation.preparation import (
+            prepare,
+        )  # pydantic, which an evaluation for GenOpt does without
 
         options = RunOptions(
             parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
             initial=initial, first_period=first_period, measurements=measurements,
         )  # fmt: skip
-        self.building = compiling.in_climate(
+        self.building = prepare.in_climate(
             building, climate, measurements=measurements, parameters=options.parameters, varied=ranges or ()
         )
         self.climate = climate
         self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
-        first, last = compiling.span(climate, start, end)
+        first, last = prepare.span(climate, start, end)
         self.times = Times(first, last, self.step_seconds, climate.grid.zone)
-        self.outputs = compiling.chosen_outputs(self.building, outputs)
-        self._replaced = compiling.changed_parameters(building, self.building, options.parameters)
-        wanted = compiling.read_initial(initial)
+        self.outputs = prepare.chosen_outputs(self.building, outputs)
+        self._replaced = prepare.changed_parameters(building, self.building, options.parameters)
+        stated_start = prepare.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
-        forcing = compiling.forcing_of(
+        forcing = prepare.forcing_of(
             self.building, climate, description, times=self.times, scheme=scheme, measurements=measurements
         )  # fmt: skip
         self.channels = tuple(description.channels)
-        self.initial = compiling.start_of(wanted, self.building, description, forcing, self.times.start)
+        self.initial = prepare.start_of(stated_start, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
             description=description.json,
             forcing=forcing,
             paths=tuple(description.paths),
             values=description.values,
-            settings=compiling.settings_of(
+            settings=prepare.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
                 first_period=self._first_period,
             ),
@@ -288,10 +292,12 @@ class Simulation(VectorRuns):
             vector = self.vector(parameters or {})
             trajectory = self.trajectory(vector, memory=memory)
             report(1, 2)
-            known = [self.building.parameter(path) for path in self.paths]
-            found = gradient_of(objective, trajectory, [output.name for output in self.outputs], known)
+            free_parameters = [self.building.parameter(path) for path in self.paths]
+            derivatives = gradient_of(
+                objective, trajectory, [output.name for output in self.outputs], free_parameters
+            )
             report(2, 2)
-        return replace(found, warnings=self.warnings_at(vector))
+        return replace(derivatives, warnings=self.warnings_at(vector))
 
     def run_vector(self, vector: Array, *, progress: Report | None = None) -> Results:
         """Run once with a parameter vector; as `run`.
@@ -303,17 +309,17 @@ class Simulation(VectorRuns):
         progress : callable, optional
             Called with the number of steps done and their total.
         """
-        whole = InMemory(self.times.rows, len(self.outputs))
-        found = self._run_through(vector, whole.take, progress, kept=True)
+        memory = InMemory(self.times.rows, len(self.outputs))
+        summary = self._run_through(vector, memory.take, progress, keeps_rows=True)
         return Results(
             outputs=self.outputs,
             times=self.times,
-            records=whole.records,
-            energy=found.energy,
-            provenance=found.provenance,
-            warnings=found.warnings,
-            vapour=found.vapour,
-            judgement=found.judgement,
+            records=memory.records,
+            energy=summary.energy,
+            provenance=summary.provenance,
+            warnings=summary.warnings,
+            vapour=summary.vapour,
+            judgement=summary.judgement,
         )
 
     def run_into(
@@ -373,13 +379,18 @@ class Simulation(VectorRuns):
         ):
             steps = len(self.compiled.forcing)
             report(0, steps)
-            found = self._run_through(self.vector(parameters or {}), draft.take, report)
-            draft.finish(found.attributes(self.outputs, self.times.timezone))
+            summary = self._run_through(self.vector(parameters or {}), draft.take, report)
+            draft.finish(summary.attributes(self.outputs, self.times.timezone))
             report(steps, steps)
-        return StoredRun(target, self.outputs, self.times, found)
+        return StoredRun(target, self.outputs, self.times, summary)
 
     def _run_through(
-        self, vector: Array, take: Callable[[Array], object], progress: Report | None, *, kept: bool = False
+        self,
+        vector: Array,
+        take: Callable[[Array], object],
+        progress: Report | None,
+        *,
+        keeps_rows: bool = False,
     ) -> Finished:
         """Run once, and hand the records over in blocks of rows."""
         vector = np.array(vector, dtype=np.float64)
@@ -390,7 +401,7 @@ class Simulation(VectorRuns):
             watch.add(rows)
             take(rows[:, :count])
 
-        raw = self.compiled.run_into(vector, seen, self._recorded, kept=kept, progress=progress)
+        raw = self.compiled.run_into(vector, seen, self._recorded, keeps_rows=keeps_rows, progress=progress)
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
@@ -419,15 +430,15 @@ class Simulation(VectorRuns):
     @cached_property
     def _recorded(self) -> Readings:
         """What a run records: the outputs asked for, and layers and airs that are watched."""
-        from mascarin.building import unmelted  # pydantic, as above
+        from mascarin.simulation.checks import unmelted  # pydantic, as above
 
-        airs = coarse.watched(self.building, self.outputs)
+        airs = step_check.watched(self.building, self.outputs)
         return Readings.of([*self.outputs, *unmelted.watched(self.building), *airs])
 
     @cached_property
     def building_warnings(self) -> tuple[str, ...]:
         """Warnings that every run has: areas, volumes, materials and mesh of the building, irradiance."""
-        from mascarin.building import plausibility  # pydantic, as above
+        from mascarin.building.checks import plausibility  # pydantic, as above
 
         site = self.building.site
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))

@@ -120,11 +120,11 @@ def differences(names: Sequence[str], units: Sequence[str], single: Array, doubl
     0.001
     """
     apart = (single - double).reshape(len(single), -1, len(names))
-    found = []
+    lines = []
     for k, (name, unit) in enumerate(zip(names, units, strict=True)):
-        own = apart[:, :, k]
-        own = own[np.isfinite(own).all(axis=1)]
-        if own.size:
-            rms, largest = float(np.sqrt(np.mean(own**2))), float(np.abs(own).max())
-            found.append(Difference(name, _OF_DIFFERENCE.get(unit, unit), rms, largest, len(own)))
-    return found
+        of_output = apart[:, :, k]
+        of_output = of_output[np.isfinite(of_output).all(axis=1)]
+        if of_output.size:
+            rms, largest = float(np.sqrt(np.mean(of_output**2))), float(np.abs(of_output).max())
+            lines.append(Difference(name, _OF_DIFFERENCE.get(unit, unit), rms, largest, len(of_output)))
+    return lines

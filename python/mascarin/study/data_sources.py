@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
-from mascarin.building.part import Part, fault, insist
+from mascarin.building.base.part import Part, fault, insist
 from mascarin.study.field_types import Columns, Duration, TimeZone
 
 if TYPE_CHECKING:

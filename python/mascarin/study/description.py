@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mascarin.building.names import Name
-from mascarin.building.part import Part, fault, insist
+from mascarin.building.base.names import Name
+from mascarin.building.base.part import Part, fault, insist
 from mascarin.calibration.search_options import WITH_SQUARES, SlopesName
 from mascarin.calibration.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
-from mascarin.sensitivity.factors import DistributionName
+from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.study.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
 from mascarin.study.field_types import (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building.outputs import Output
+from mascarin.building.outputs.output import Output
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.building_analysis import factors_of

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, WithJsonSchema
 
-from mascarin.building.initial_state import Degrees, GivenStart
-from mascarin.building.number import problem
+from mascarin.building.base.number import problem
 from mascarin.errors import InputError, did_you_mean
+from mascarin.simulation.preparation.initial_state import Degrees, GivenStart
 
 
 def _duration(text: str) -> str:

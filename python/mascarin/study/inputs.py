@@ -23,7 +23,7 @@ from mascarin.weather.shipped import PREFIX
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.building.site import Site
+    from mascarin.building.parts.site import Site
     from mascarin.study.data_sources import ClimateSource, MeasuredWeather, Table
     from mascarin.study.description import StudyFile
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from mascarin.building.initial_state import StartError
 from mascarin.building.reading import lines
 from mascarin.errors import InputError
+from mascarin.simulation.preparation.initial_state import StartError
 
 
 class _Several(InputError):

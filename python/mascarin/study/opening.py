@@ -16,7 +16,7 @@ from mascarin._io.regular import requiring
 from mascarin.building import Building, load
 from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
-from mascarin.simulation.compiling import in_climate, require_inputs
+from mascarin.simulation.preparation.prepare import in_climate, require_inputs
 from mascarin.study.description import StudyFile, StudyPlan, read_study
 from mascarin.study.inputs import (
     Beside,

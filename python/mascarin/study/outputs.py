@@ -13,8 +13,8 @@ from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
 from mascarin.figures import days as day_figures
 from mascarin.figures.files import save
-from mascarin.report.figure_files import Once, write_figures
-from mascarin.report.folder import read_folder
+from mascarin.pages.study.data.folder import read_folder
+from mascarin.pages.study.figures.figure_files import Once, write_figures
 from mascarin.sensitivity.files import save_all
 from mascarin.study.comfort_step import comfort_figures, comfort_table, rated
 from mascarin.study.document.sensitivity import analyzed_hours

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mascarin.building.ties import How, expanded, with_ties
-from mascarin.building.wildcards import is_pattern
+from mascarin.building.base.wildcards import is_pattern
+from mascarin.building.parameters.ties import How, expanded, with_ties
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.material import PhaseChangeMaterial
-from mascarin.building.phase_change import TanhLaw
-from mascarin.building.phases import PhaseDensities, Phases, PhaseSpecificHeats
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
+from mascarin.building.parts.materials.phase_change import TanhLaw
+from mascarin.building.parts.materials.phases import PhaseDensities, Phases, PhaseSpecificHeats
 
 if TYPE_CHECKING:
     import numpy.typing as npt

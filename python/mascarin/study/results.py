@@ -7,10 +7,10 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mascarin import report as reports
 from mascarin._io import display
 from mascarin.errors import InputError, did_you_mean
-from mascarin.report.folder import read_series
+from mascarin.pages import study as reports
+from mascarin.pages.study.data.folder import read_series
 from mascarin.study.document.whole import document
 from mascarin.study.findings import Findings
 from mascarin.study.outputs import run_facts

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field, model_validator
 
 from mascarin._io.regular import requiring
+from mascarin.building.base.part import Part
 from mascarin.building.engine_input import measured_columns
-from mascarin.building.part import Part
-from mascarin.building.yaml_document import validated
+from mascarin.building.files.yaml_document import validated
 from mascarin.study.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
 from mascarin.study.inputs import Beside, filled, find, open_climate
 from mascarin.study.locations import Places

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.building.ties import expanded
+from mascarin.building.parameters.ties import expanded
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
-from mascarin.simulation.judgement import ensemble_warnings
+from mascarin.simulation.checks.judgement import ensemble_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt

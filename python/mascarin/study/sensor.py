@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import AliasChoices, Field
 
-from mascarin.building.part import Part
+from mascarin.building.base.part import Part
 from mascarin.calibration.sensor_errors import SensorError
 from mascarin.calibration.stated_errors import shared_errors
 from mascarin.study.field_types import Duration, Hours, Spans, Stretch

@@ -14,9 +14,9 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin._io.durations import seconds_of
-from mascarin.building.ties import expanded, with_ties
+from mascarin.building.parameters.ties import expanded, with_ties
 from mascarin.errors import InputError
-from mascarin.simulation.initial import Initial, MeasuredStart
+from mascarin.simulation.preparation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.building.parameters import Parameter
+    from mascarin.building.parameters.parameter import Parameter
     from mascarin.calibration import CalibrationProblem
-    from mascarin.simulation.options import TimeLike
+    from mascarin.simulation.preparation.options import TimeLike
     from mascarin.simulation.results import Results
     from mascarin.study.description import Free, StudyPlan, Variant
     from mascarin.study.field_types import Duration

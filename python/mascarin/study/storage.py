@@ -21,7 +21,7 @@ import numpy as np
 from mascarin._io import atomic, identity, own_files
 from mascarin._io.locks import FolderLock
 from mascarin.errors import InputError
-from mascarin.report import is_report
+from mascarin.pages.study import is_report
 
 if TYPE_CHECKING:
     from typing import Self

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from mascarin import report
 from mascarin._io import display
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
-from mascarin.report.folder import read_folder
+from mascarin.pages import study
+from mascarin.pages.study.data.folder import read_folder
 from mascarin.study import opening
 from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
@@ -279,7 +279,7 @@ class Study(Setup):
         with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
             results = self._carried_out(workspace, progress)
             written = write_all(results, workspace, figures=figures)
-            report.write(workspace.out / "report.html", *read_folder(workspace.out))
+            study.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.record("study", written)
             workspace.drop("sensitivity")
             workspace.drop("diagnosis")

@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin._io import atomic
 from mascarin._io.identity import DESCRIPTION
-from mascarin.building.yaml_text import text_of
+from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import InputError
 from mascarin.study.description import StudyFile
 from mascarin.study.inputs import KNOWN

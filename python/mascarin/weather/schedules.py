@@ -21,8 +21,8 @@ from mascarin.weather.forcing import column_means, column_values, record_of
 from mascarin.weather.measurements import Measurements
 
 if TYPE_CHECKING:
-    from mascarin.building.courses import ColumnCourse
-    from mascarin.building.schedule import Schedule
+    from mascarin.building.base.time_series import ColumnCourse
+    from mascarin.building.parts.air.schedule import Schedule
 
 # A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.bridge import ThermalBridge
-from mascarin.building.courses import temperature_course
-from mascarin.building.description import Description
-from mascarin.building.driven import Driven
+from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper, fields_of
-from mascarin.building.set_point import SetPoint
-from mascarin.building.ventilation import VentilationUnit
-from mascarin.building.zone import AirPath, Opening
+from mascarin.building.parts.air.measured_values import Driven
+from mascarin.building.parts.air.set_point import SetPoint
+from mascarin.building.parts.air.ventilation import VentilationUnit
+from mascarin.building.parts.air.zone import AirPath, Opening
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.bridge import ThermalBridge
 
 
 def schedule_of(part: Any, places: Places) -> Json:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from mascarin.building.convection import measured_column
-from mascarin.building.course_uses import courses
-from mascarin.building.description import Description
+from mascarin.building.engine_input.series_users import courses
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.convection import measured_column
 
 
 def channels(building: Description) -> list[str]:
@@ -27,7 +27,7 @@ def channels(building: Description) -> list[str]:
 
 def measured_columns(building: Description) -> list[str]:
     """Measured columns that a building needs, those of its schedules and other courses included."""
-    found = channels(building)
+    columns = channels(building)
     for course in courses(building).values():
-        found += course.columns
-    return list(dict.fromkeys(found))
+        columns += course.columns
+    return list(dict.fromkeys(columns))

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from mascarin._io.memory import uncollected
-from mascarin.building.course_uses import courses
-from mascarin.building.description import Description
+from mascarin.building.base.number import Interval
+from mascarin.building.base.part import worked_out
 from mascarin.building.engine_input.air import (
     describe_air_path,
     describe_bridges,
@@ -25,6 +25,8 @@ from mascarin.building.engine_input.channels import channels
 from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
+from mascarin.building.engine_input.mesh import Mesh, choose
+from mascarin.building.engine_input.series_users import courses
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
 from mascarin.building.engine_input.vents import describe_vents
 from mascarin.building.engine_input.windows import (
@@ -37,14 +39,12 @@ from mascarin.building.engine_input.windows import (
     shaded,
 )
 from mascarin.building.engine_input.zones import describe_zone
-from mascarin.building.mesh import Mesh, choose
-from mascarin.building.number import Interval
-from mascarin.building.parameters import parameters
-from mascarin.building.part import worked_out
-from mascarin.building.schedule import schedule_channel
-from mascarin.building.self_shading import obstructions
-from mascarin.building.site import CloudFactor, CloudLayer, Site
-from mascarin.building.zone import AirPath
+from mascarin.building.parameters.parameter import parameters
+from mascarin.building.parts.air.schedule import schedule_channel
+from mascarin.building.parts.air.zone import AirPath
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.self_shading import obstructions
+from mascarin.building.parts.site import CloudFactor, CloudLayer, Site
 
 
 @dataclass(frozen=True)

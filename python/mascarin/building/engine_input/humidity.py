@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mascarin.building.description import Description
 from mascarin.building.engine_input.air import driven, schedule_of
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper
-from mascarin.building.humidity import CoolingCoil, Humidistat, Humidity, VapourGain
-from mascarin.building.sorption import LinearSorption
-from mascarin.building.vapour_sides import VapourSide, vapour_sides
+from mascarin.building.parts.air.humidity import CoolingCoil, Humidistat, Humidity, VapourGain
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.materials.sorption import LinearSorption
+from mascarin.building.parts.moisture_surfaces import VapourSide, vapour_sides
 
 
 def describe_humidity(building: Description, places: Places, ids: Mapping[str, int]) -> Json | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from mascarin.building.number import Number
-from mascarin.building.window import Vertices
+from mascarin.building.base.number import Number
+from mascarin.building.parts.openings.window import Vertices
 
 Json = dict[str, Any]
 #: Position of the channel of each schedule.

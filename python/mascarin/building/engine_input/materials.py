@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mascarin.building.description import Description
+from mascarin.building.base.part import Part
 from mascarin.building.engine_input.ids import Ids, Json, fields_of
-from mascarin.building.formula_curve import FormulaCurve
-from mascarin.building.material import Material, PhaseChangeMaterial
-from mascarin.building.part import Part
-from mascarin.building.phase_change import (
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.surface import Construction
+from mascarin.building.parts.materials.formula_curve import FormulaCurve
+from mascarin.building.parts.materials.material import Material, PhaseChangeMaterial
+from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
     FractionsLaw,
     GumbelLaw,
@@ -17,8 +18,7 @@ from mascarin.building.phase_change import (
     TableLaw,
     TanhLaw,
 )
-from mascarin.building.phases import Phases
-from mascarin.building.surface import Construction
+from mascarin.building.parts.materials.phases import Phases
 
 
 def describe_material(_: str, material: Material, ids: Ids) -> Json:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.convection import Convection, Measured, Power
-from mascarin.building.courses import temperature_course
-from mascarin.building.description import Description
+from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
-from mascarin.building.formula_law import FormulaLaw
-from mascarin.building.schedule import schedule_channel
-from mascarin.building.surface import Side, Surface
+from mascarin.building.parts.air.schedule import schedule_channel
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.convection import Convection, Measured, Power
+from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.envelope.surface import Side, Surface
 
 
 def describe_surface(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.description import Description
 from mascarin.building.engine_input.air import control_of, schedule_of
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper, each
-from mascarin.building.vent import LowRise, PressureTable, Vent, VentControl
+from mascarin.building.parts.air.vent import LowRise, PressureTable, Vent, VentControl
+from mascarin.building.parts.description import Description
 
 
 def describe_vents(building: Description, places: Places, ids: Mapping[str, int]) -> Json:

@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.description import Description
 from mascarin.building.engine_input.air import schedule_of
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, deeper, fields_of
 from mascarin.building.engine_input.surfaces import describe_convection
-from mascarin.building.glazing import Angular, FilledGap, GivenGap, Glazing, Pane, SimpleGlazing, TwoSides
-from mascarin.building.window import Window
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.openings.glazing import (
+    Angular,
+    FilledGap,
+    GivenGap,
+    Glazing,
+    Pane,
+    SimpleGlazing,
+    TwoSides,
+)
+from mascarin.building.parts.openings.window import Window
 
 
 def framed(building: Description) -> list[str]:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.building.description import Description
 from mascarin.building.engine_input.air import driven, schedule_of, set_point
 from mascarin.building.engine_input.ids import Ids, Json, Places, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
-from mascarin.building.rules import surface_names
-from mascarin.building.zone import FloorSun, GivenSun, IdealLoads, SunShares, Zone
-from mascarin.building.zone_surfaces import closed, floors
+from mascarin.building.parts.air.zone import FloorSun, GivenSun, IdealLoads, SunShares, Zone
+from mascarin.building.parts.description import Description
+from mascarin.building.parts.zone_surfaces import closed, floors, surface_names
 from mascarin.errors import InputError
 
 

@@ -57,7 +57,7 @@ def parents(polygons: Sequence[Polygon]) -> list[int | None]:
     InputError
         Two polygons cover the same area.
     """
-    found: list[int | None] = []
+    parent_of: list[int | None] = []
     index = BoxIndex(polygons)
     for i, child in enumerate(polygons):
         best: int | None = None
@@ -71,8 +71,8 @@ def parents(polygons: Sequence[Polygon]) -> list[int | None]:
                 )
             if best is None or candidate.area < polygons[best].area:
                 best = j
-        found.append(best)
-    return found
+        parent_of.append(best)
+    return parent_of
 
 
 def net_areas(polygons: Sequence[Polygon]) -> Array:
@@ -111,10 +111,10 @@ def net_of(polygons: Sequence[Polygon], within: Sequence[int | None]) -> Array:
     for i, parent in enumerate(within):
         if parent is not None:
             net[parent] -= areas[i]
-    for polygon, left in zip(polygons, net, strict=True):
-        if left <= 0.0:
+    for polygon, area in zip(polygons, net, strict=True):
+        if area <= 0.0:
             raise InputError(
-                f"surface '{polygon.name}': the surfaces in it leave {left:.3f} m2 of {polygon.area:.3f} m2; "
+                f"surface '{polygon.name}': the surfaces in it leave {area:.3f} m2 of {polygon.area:.3f} m2; "
                 "expected more than 0; describe the surfaces side by side instead"
             )
     return net
@@ -145,12 +145,12 @@ def _gaps(shell: Sequence[Polygon]) -> list[OpenEdge]:
     # Most edges are covered by one that runs from end to start between the same corners.
     backwards = Counter((end, start) for _, start, end in owners)
     forwards = Counter((start, end) for _, start, end in owners)
-    left = [one for one in owners if forwards[one[1:]] != 1 or backwards[one[1:]] != 1]
-    if not left:
+    unmatched = [owner for owner in owners if forwards[owner[1:]] != 1 or backwards[owner[1:]] != 1]
+    if not unmatched:
         return []
-    starts, ends = (np.array([one[k] for one in owners]) for k in (1, 2))
+    starts, ends = (np.array([owner[k] for owner in owners]) for k in (1, 2))
     gaps = []
-    for name, start, end in left:
+    for name, start, end in unmatched:
         pieces = _uncovered(np.array(start), np.array(end), starts, ends)
         gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in pieces]
     return gaps
@@ -248,14 +248,14 @@ def _reversed(polygons: Sequence[Polygon]) -> list[str]:
     ]
     pending = [0]
     while pending:
-        one = pending.pop()
+        index = pending.pop()
         for other in range(len(polygons)):
             if other in turned:
                 continue
-            same = any(_meet(a, b, c, d) for a, b in edges[one] for c, d in edges[other])
-            opposite = any(_meet(a, b, d, c) for a, b in edges[one] for c, d in edges[other])
+            same = any(_meet(a, b, c, d) for a, b in edges[index] for c, d in edges[other])
+            opposite = any(_meet(a, b, d, c) for a, b in edges[index] for c, d in edges[other])
             if same != opposite:
-                turned[other] = turned[one] != same
+                turned[other] = turned[index] != same
                 pending.append(other)
     for wrong in ({k for k, turn in turned.items() if turn}, {k for k, turn in turned.items() if not turn}):
         mended = [p.reversed() if k in wrong else p for k, p in enumerate(polygons)]
@@ -304,8 +304,8 @@ def check_convex(polygons: Sequence[Polygon]) -> None:
 def _by_line(points: Array, start: Array, along: Array) -> tuple[Array, Array]:
     """Distances of points, shape (m, 3), from a line, and their places along it. [m]"""
     between = points - start
-    places = between @ along
-    return np.linalg.norm(between - places[:, None] * along, axis=1), places
+    positions = between @ along
+    return np.linalg.norm(between - positions[:, None] * along, axis=1), positions
 
 
 def _triple(point: Array) -> tuple[float, float, float]:

@@ -140,8 +140,8 @@ def _shape(polygons: Sequence[Polygon]) -> Shape:
     """Corners from the first one of all [m]: rooms of one shape are the same wherever they are."""
     x, y, z = polygons[0].vertices[0]
     return tuple(
-        tuple((round(u - x, 12), round(v - y, 12), round(w - z, 12)) for u, v, w in one.vertices)
-        for one in polygons
+        tuple((round(u - x, 12), round(v - y, 12), round(w - z, 12)) for u, v, w in polygon.vertices)
+        for polygon in polygons
     )
 
 
@@ -149,12 +149,12 @@ def _shape(polygons: Sequence[Polygon]) -> Shape:
 def _gross(shape: Shape) -> Array:
     """Exchange areas between polygons, none subtracted from another: equal rooms are worked out once. [m2]"""
     polygons = [Polygon("", corners) for corners in shape]
-    found = np.zeros((len(polygons), len(polygons)))
-    for i, one in enumerate(polygons):
+    factors = np.zeros((len(polygons), len(polygons)))
+    for i, polygon in enumerate(polygons):
         for j, other in enumerate(polygons[:i]):
-            found[i, j] = found[j, i] = _exchange_area(other, one)
-    found.flags.writeable = False
-    return found
+            factors[i, j] = factors[j, i] = _exchange_area(other, polygon)
+    factors.flags.writeable = False
+    return factors
 
 
 def _exchange_area(a: Polygon, b: Polygon) -> float:
@@ -224,8 +224,8 @@ def _parallel(between: Array, e: Array, along: Array, length_p: Array, length_q:
 
 def _lengths(vectors: Array) -> Array:
     """Lengths of the rows."""
-    found: Array = np.sqrt(np.sum(vectors * vectors, axis=1))
-    return found
+    lengths: Array = np.sqrt(np.sum(vectors * vectors, axis=1))
+    return lengths
 
 
 def _skew(p0: Array, p1: Array, q0: Array, length_q: float, e: Array, f: Array) -> float:

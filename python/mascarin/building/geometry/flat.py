@@ -105,7 +105,7 @@ def middles_of_pieces(outline: Sequence[Point], other: Sequence[Point]) -> list[
             before, after = turn(c, d, a), turn(c, d, b)
             if before * after < 0.0:
                 cuts.append(before / (before - after))
-        for one, two in pairwise(sorted(cuts)):
-            share = 0.5 * (one + two)
+        for begin, two in pairwise(sorted(cuts)):
+            share = 0.5 * (begin + two)
             middles.append((a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])))
     return middles

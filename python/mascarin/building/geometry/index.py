@@ -15,7 +15,7 @@ Box: TypeAlias = tuple[Triple, Triple]
 Cell: TypeAlias = tuple[int, ...]
 
 #: Polygons that are compared one by one: a grid pays for more.
-_FEW: Final = 24
+_LEAST_BOXES: Final = 24
 #: Cells that one box may touch; a larger one is compared with all.
 _MOST_CELLS: Final = 64
 
@@ -44,28 +44,28 @@ class BoxIndex:
         self._slack = 2.0 * TOLERANCE
         self._cells: dict[Cell, list[int]] | None = None
         self._large: list[int] = []
-        if len(polygons) > _FEW:
+        if len(polygons) > _LEAST_BOXES:
             self._fill_cells()
 
     def around(self, polygon: Polygon) -> list[int]:
         """Positions of the polygons whose boxes contain that of a polygon."""
         (x, y, z), (u, v, w) = self._widened(polygon.box, -self._slack)
-        found = []
-        for k in self._at((polygon.box[0], polygon.box[0])):
+        indices = []
+        for k in self._boxes_at((polygon.box[0], polygon.box[0])):
             (a, b, c), (d, e, f) = self._boxes[k]
             if a <= x and b <= y and c <= z and d >= u and e >= v and f >= w:
-                found.append(k)
-        return found
+                indices.append(k)
+        return indices
 
     def touching(self, polygon: Polygon) -> list[int]:
         """Positions of the polygons whose boxes meet that of a polygon."""
         (x, y, z), (u, v, w) = self._widened(polygon.box, self._slack)
-        found = []
-        for k in self._at(polygon.box):
+        indices = []
+        for k in self._boxes_at(polygon.box):
             (a, b, c), (d, e, f) = self._boxes[k]
             if a <= u and b <= v and c <= w and d >= x and e >= y and f >= z:
-                found.append(k)
-        return found
+                indices.append(k)
+        return indices
 
     def _fill_cells(self) -> None:
         """Note each box at the cells of a grid that it touches, or among the large ones."""
@@ -81,17 +81,17 @@ class BoxIndex:
                 cells.setdefault(cell, []).append(k)
         self._cells = cells
 
-    def _at(self, box: Box) -> Iterable[int]:
+    def _boxes_at(self, box: Box) -> Iterable[int]:
         """Positions of the boxes that can meet a box, in order."""
         if self._cells is None:
             return self._all
         touched = self._touched(box)
         if touched is None:
             return self._all
-        found = set(self._large)
+        indices = set(self._large)
         for cell in touched:
-            found.update(self._cells.get(cell, ()))
-        return sorted(found)
+            indices.update(self._cells.get(cell, ()))
+        return sorted(indices)
 
     def _touched(self, box: Box) -> Iterable[Cell] | None:
         """Cells of the grid that a box touches; None if they are many."""

@@ -15,14 +15,14 @@ from mascarin.building.geometry.polygon import Array, Polygon
 _SLOPE = 1e-3
 
 
-def in_front(polygon: Polygon, others: Sequence[Polygon]) -> list[int]:
+def in_front(polygon: Polygon, obstacles: Sequence[Polygon]) -> list[int]:
     """Polygons of which a part stands on the side of the normal of a polygon.
 
     Parameters
     ----------
     polygon : Polygon
         The polygon.
-    others : sequence of Polygon
+    obstacles : sequence of Polygon
         What may stand in front of it; itself and others in its plane do not.
 
     Returns
@@ -38,7 +38,7 @@ def in_front(polygon: Polygon, others: Sequence[Polygon]) -> list[int]:
     >>> in_front(south, [south, fin, roof])
     [1]
     """
-    return InFront(others).of(polygon)
+    return InFront(obstacles).of(polygon)
 
 
 class InFront:
@@ -56,11 +56,11 @@ class InFront:
     [0]
     """
 
-    def __init__(self, others: Sequence[Polygon]) -> None:
-        self._others = others
-        self._points = np.concatenate([np.zeros((0, 3)), *(other.points for other in others)])
-        counts = [len(other.vertices) for other in others]
-        self._owners = np.repeat(np.arange(len(others)), counts)
+    def __init__(self, obstacles: Sequence[Polygon]) -> None:
+        self._others = obstacles
+        self._points = np.concatenate([np.zeros((0, 3)), *(other.points for other in obstacles)])
+        counts = [len(other.vertices) for other in obstacles]
+        self._owners = np.repeat(np.arange(len(obstacles)), counts)
 
     def of(self, polygon: Polygon) -> list[int]:
         """Positions of those of which a part stands in front of a polygon; see `in_front`."""
@@ -68,7 +68,7 @@ class InFront:
         owners, points = self._owners[above], self._points[above]
         high = set(owners[_rising(polygon, points)].tolist())
         for k in sorted(set(owners.tolist()) - high):
-            if _rising(polygon, _near(polygon, self._others[k])).any():
+            if _rising(polygon, _nearest_point(polygon, self._others[k])).any():
                 high.add(k)
         return sorted(high)
 
@@ -80,14 +80,14 @@ def _rising(polygon: Polygon, points: Array) -> npt.NDArray[np.bool_]:
     return higher
 
 
-def _near(polygon: Polygon, other: Polygon) -> Array:
+def _nearest_point(polygon: Polygon, other: Polygon) -> Array:
     """Points of another polygon above the corners of a polygon or beside them, shape (m, 3). [m]"""
     steep = float(polygon.normal @ other.normal)
     start, along = other.points, np.roll(other.points, -1, axis=0) - other.points
     level = along - np.outer(along @ polygon.normal, polygon.normal)
     long = np.maximum((level * level).sum(axis=1), TOLERANCE**2)
-    place = ((polygon.points[:, None] - start) * level).sum(axis=2) / long
-    beside: Array = (start + np.clip(place, 0.0, 1.0)[:, :, None] * along).reshape(-1, 3)
+    position = ((polygon.points[:, None] - start) * level).sum(axis=2) / long
+    beside: Array = (start + np.clip(position, 0.0, 1.0)[:, :, None] * along).reshape(-1, 3)
     if abs(steep) < _SLOPE:
         return beside
     over = polygon.points - np.outer(other.height_of(polygon.points) / steep, polygon.normal)
@@ -99,8 +99,8 @@ def _distances(polygon: Polygon, points: Array) -> Array:
     outline, flat = polygon.in_plane(polygon.points), polygon.in_plane(points)
     along = np.roll(outline, -1, axis=0) - outline
     from_start = flat[:, None] - outline
-    place = np.clip((from_start * along).sum(axis=2) / (along * along).sum(axis=1), 0.0, 1.0)
-    gaps: Array = np.linalg.norm(from_start - place[:, :, None] * along, axis=2).min(axis=1)
+    position = np.clip((from_start * along).sum(axis=2) / (along * along).sum(axis=1), 0.0, 1.0)
+    gaps: Array = np.linalg.norm(from_start - position[:, :, None] * along, axis=2).min(axis=1)
     (x, y), (u, v) = flat.T[:, :, None], outline.T
     ends = np.roll(v, -1)
     crossed = (v > y) != (ends > y)

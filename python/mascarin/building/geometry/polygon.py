@@ -75,11 +75,11 @@ class Polygon:
             Fewer than three corners, a corner without three finite coordinates, corners that coincide, that
             enclose no area, that do not lie in one plane, or edges that cross.
         """
-        given = vertices if isinstance(vertices, tuple) else tuple(vertices)
+        corners = vertices if isinstance(vertices, tuple) else tuple(vertices)
         try:
-            return _checked(name, given)
+            return _checked(name, corners)
         except TypeError:  # lists of coordinates
-            return _checked(name, tuple(map(tuple, given)))
+            return _checked(name, tuple(map(tuple, corners)))
 
     def _check(self) -> None:
         if len(self.vertices) < 3:
@@ -231,7 +231,7 @@ class Polygon:
         """Corners of a polygon in the frame of `in_plane`. [m]"""
         first, (along, across) = self.vertices[0], self._frame
         apart = (subtracted(corner, first) for corner in other.vertices)
-        return [[dot(one, along), dot(one, across)] for one in apart]
+        return [[dot(point, along), dot(point, across)] for point in apart]
 
     def above(self, point: Triple) -> float:
         """Signed distance of a point from the plane, positive on the side of the normal. [m]"""
@@ -266,10 +266,10 @@ class Polygon:
             return False
         if self.contains(other) or other.contains(self):
             return True
-        here, there = self.outline, self._flat(other)
+        own_outline, other_outline = self.outline, self._flat(other)
         return any(
             inside(outline, middle) and not on_outline(outline, middle)
-            for outline, cut in ((here, there), (there, here))
+            for outline, cut in ((own_outline, other_outline), (other_outline, own_outline))
             for middle in middles_of_pieces(cut, outline)
         )
 

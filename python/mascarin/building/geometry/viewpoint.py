@@ -94,20 +94,20 @@ def plane_factor(polygon: Polygon, point: Sequence[float], direction: Sequence[f
     across = np.cross(corners, after)
     length = np.linalg.norm(across, axis=1)
     angle = np.arctan2(length, np.sum(corners * after, axis=1))
-    seen = length > 0.0
-    along = across[seen] @ up / length[seen]
-    return float(-(angle[seen] @ along) / (2.0 * math.pi))
+    has_length = length > 0.0
+    along = across[has_length] @ up / length[has_length]
+    return float(-(angle[has_length] @ along) / (2.0 * math.pi))
 
 
 def _above(corners: Array, up: Array) -> Array:
     """The part of an outline above the plane through the origin (Sutherland & Hodgman 1974)."""
     heights = corners @ up
-    kept: list[Array] = []
+    visible: list[Array] = []
     for k, height in enumerate(heights):
         before = heights[k - 1]
         if (height > 0.0) != (before > 0.0):
             share = before / (before - height)
-            kept.append(corners[k - 1] + share * (corners[k] - corners[k - 1]))
+            visible.append(corners[k - 1] + share * (corners[k] - corners[k - 1]))
         if height > 0.0:
-            kept.append(corners[k])
-    return np.array(kept).reshape(-1, 3)
+            visible.append(corners[k])
+    return np.array(visible).reshape(-1, 3)

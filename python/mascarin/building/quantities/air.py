@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.base.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE, POSITIVE
 
 CapacityFactor = Annotated[
@@ -190,7 +190,7 @@ BridgeNumber = Annotated[
         "-", "Number of such bridges", OnlyGiven("counted: it varies only if a range is given"), NOT_NEGATIVE
     ),
 ]
-_OWN = OnlyGiven("chosen for the control: it varies only if a range is given")
+_CHOSEN = OnlyGiven("chosen for the control: it varies only if a range is given")
 VentHeight = Annotated[
     Number,
     Quantity(
@@ -246,16 +246,18 @@ PressureCoefficient = Annotated[
     ),
 ]
 ControlTemperature = Annotated[
-    Number, Quantity("degC", "Limit of a control", _OWN, Limits(at_least=-60, at_most=90))
+    Number, Quantity("degC", "Limit of a control", _CHOSEN, Limits(at_least=-60, at_most=90))
 ]
 ControlDifference = Annotated[
-    Number, Quantity("K", "Limit of a control", _OWN, Limits(at_least=-100, at_most=100))
+    Number, Quantity("K", "Limit of a control", _CHOSEN, Limits(at_least=-100, at_most=100))
 ]
-ControlSpeed = Annotated[Number, Quantity("m/s", "Limit of a control", _OWN, Limits(at_least=0, at_most=110))]
+ControlSpeed = Annotated[
+    Number, Quantity("m/s", "Limit of a control", _CHOSEN, Limits(at_least=0, at_most=110))
+]
 ControlRain = Annotated[
-    Number, Quantity("mm/h", "Limit of a control", _OWN, Limits(at_least=0, at_most=1000))
+    Number, Quantity("mm/h", "Limit of a control", _CHOSEN, Limits(at_least=0, at_most=1000))
 ]
 MinimumTime = Annotated[
     Number,
-    Quantity("min", "Time for which a control keeps its state", _OWN, Limits(at_least=0, at_most=10080)),
+    Quantity("min", "Time for which a control keeps its state", _CHOSEN, Limits(at_least=0, at_most=10080)),
 ]

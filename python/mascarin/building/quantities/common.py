@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mascarin.building.number import Limits
+from mascarin.building.base.number import Limits
 
 POSITIVE = Limits(above=0)
 NOT_NEGATIVE = Limits(at_least=0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Within
+from mascarin.building.base.number import Fixed, Limits, Number, Percent, Quantity, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE, POSITIVE, TAPE
 
 Volume = Annotated[Number, Quantity("m3", "Volume of air", Percent(5, TAPE), POSITIVE)]

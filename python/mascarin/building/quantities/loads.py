@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.base.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE
 
 GainPower = Annotated[

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.base.number import Limits, Number, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import ABOVE_0_TO_1, FRACTION, TEMPERATURE
 
 Emissivity = Annotated[

@@ -23,7 +23,7 @@ from mascarin._io.regular import require_regular
 from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.simulation.compiled import CompiledRun
+from mascarin.simulation.preparation.engine_run import CompiledRun
 from mascarin.validation.observation import instants, means
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from mascarin.sensitivity.factors import Floats
-from mascarin.sensitivity.jackknife import Ratio, above_zero, interval, student_reach
-from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import Collector
+from mascarin.sensitivity.base.factors import Floats
+from mascarin.sensitivity.base.jackknife import Ratio, above_zero, interval, student_reach
+from mascarin.sensitivity.base.result import Sensitivity
+from mascarin.sensitivity.base.runs import Collector
 from mascarin.sensitivity.salib.estimators import ESTIMATORS, Part, components
 from mascarin.sensitivity.salib.plans import SalibPlan
 

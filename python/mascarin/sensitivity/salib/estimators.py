@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from mascarin.sensitivity.factors import Floats
+from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.salib.library import salib
 from mascarin.sensitivity.salib.plans import LEVELS, SalibName, SalibPlan
 

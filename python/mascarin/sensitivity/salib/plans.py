@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped
+from mascarin.sensitivity.base.factors import Factor, Floats, check_factors, grouped
 from mascarin.sensitivity.salib.library import salib
 
 SalibName = Literal["rbd-fast", "sobol", "morris"]

@@ -39,9 +39,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.sensitivity.factors import Floats
-from mascarin.sensitivity.jackknife import Ratio, above_zero, interval
-from mascarin.sensitivity.runs import Collector
+from mascarin.sensitivity.base.factors import Floats
+from mascarin.sensitivity.base.jackknife import Ratio, above_zero, interval
+from mascarin.sensitivity.base.runs import Collector
 from mascarin.sensitivity.spectral.designs import Design
 from mascarin.sensitivity.spectral.replicates import Replicate, transform
 from mascarin.sensitivity.spectral.result import SpectralSensitivity

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped, unit_factors
+from mascarin.sensitivity.base.factors import Factor, Floats, check_factors, grouped, unit_factors
 
 Integers = NDArray[np.int64]
 

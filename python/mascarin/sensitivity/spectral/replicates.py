@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mascarin.sensitivity.factors import Floats
+from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.spectral.designs import Design
 
 

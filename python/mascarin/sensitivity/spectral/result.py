@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from mascarin.errors import InputError
 from mascarin.figures import colors
 from mascarin.figures import sensitivity as figures
-from mascarin.sensitivity.factors import Floats
-from mascarin.sensitivity.result import Sensitivity, local_hours
+from mascarin.sensitivity.base.factors import Floats
+from mascarin.sensitivity.base.result import Sensitivity, local_hours
 from mascarin.sensitivity.spectral.designs import Design
 from mascarin.sensitivity.spectral.spectrum import Peak, Spectrum
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.simulation.options import Scheme
+    from mascarin.simulation.preparation.options import Scheme
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate

@@ -14,7 +14,7 @@ from mascarin.verification.analytical.check import Case, Check
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.simulation.options import Scheme
+    from mascarin.simulation.preparation.options import Scheme
     from mascarin.simulation.simulation import Simulation
 
 #: Dry air at sea level: ICAO standard pressure, 15 degC; specific heat of ASHRAE Fundamentals, ch. 1.

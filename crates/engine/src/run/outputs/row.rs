@@ -117,7 +117,7 @@ pub(super) struct Place {
     pub(super) sensor: usize,
 }
 
-/// Parts of a building that have a quantity. `python/mascarin/building/output_places.py` lists the parts of a description.
+/// Parts of a building that have a quantity. `python/mascarin/building/outputs/locations.py` lists the parts of a description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Of {

@@ -1,0 +1,71 @@
+"""Paths with ``*``, which stands for any name between two dots or for a part of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fnmatch import fnmatchcase
+
+from mascarin.errors import InputError, did_you_mean
+
+
+def is_pattern(path: str) -> bool:
+    """Whether a path has a ``*``."""
+    return "*" in path
+
+
+def matching(pattern: str, paths: Iterable[str], *, parts: bool = False) -> list[str]:
+    """Paths that a pattern stands for, in their order.
+
+    Parameters
+    ----------
+    pattern : str
+        Such as ``zones.*.infiltration.constant`` or ``surfaces.wall_*.outside.absorptance``.
+    paths : iterable of str
+        All paths of numbers.
+    parts : bool
+        Whether it may also stand for parts, of which the numbers are leaves.
+
+    Returns
+    -------
+    list of str
+        Each once.
+
+    Raises
+    ------
+    InputError
+        Nothing matches; the text names the nearest patterns.
+
+    Examples
+    --------
+    >>> matching("zones.*.volume", ["zones.hall.volume", "zones.hall.height", "zones.attic.volume"])
+    ['zones.hall.volume', 'zones.attic.volume']
+    """
+    pattern_steps, all_steps = pattern.split("."), [path.split(".") for path in paths]
+    candidates = [steps[: len(pattern_steps)] if parts else steps for steps in all_steps]
+    matches = [".".join(steps) for steps in candidates if _fits(steps, pattern_steps)]
+    if not matches:
+        raise InputError(
+            f"{pattern}: found nothing in the building that matches; expected paths as listed by 'mascarin "
+            f"parameters'. {did_you_mean(pattern, _nearest(pattern_steps, all_steps))}".rstrip()
+        )
+    return list(dict.fromkeys(matches))
+
+
+def _fits(steps: list[str], pattern_steps: list[str]) -> bool:
+    return len(steps) == len(pattern_steps) and all(map(_same, steps, pattern_steps))
+
+
+def _same(step: str, pattern_step: str) -> bool:
+    # Names of layers and materials may have brackets, which fnmatch would read as a choice of letters.
+    return fnmatchcase(step, pattern_step.replace("[", "[[]"))
+
+
+def _nearest(pattern_steps: list[str], all_steps: list[list[str]]) -> set[str]:
+    """All paths with the stars of a pattern where they have the names that these stand for."""
+    return {
+        ".".join(
+            star if is_pattern(star) and _same(step, star) else step
+            for step, star in zip(steps, [*pattern_steps, *[""] * len(steps)], strict=False)
+        )
+        for steps in all_steps
+    }

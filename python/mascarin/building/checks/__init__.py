@@ -1,0 +1,1 @@
+"""Whether a description fits together and is plausible."""

@@ -1,0 +1,121 @@
+"""Courses over time that a building uses: its schedules, and columns that are used directly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mascarin.building.base.time_series import ColumnCourse, temperature_course
+
+if TYPE_CHECKING:
+    from mascarin.building.parts.air.schedule import Schedule
+    from mascarin.building.parts.description import Description
+
+Use = tuple[str, tuple[str, ...], str]
+
+
+def schedule_uses(building: Description) -> Iterator[Use]:
+    """Every use of a schedule: its name, the place, and the kind that is needed there."""
+    for name, zone in building.zones.items():
+        location = ("zones", name)
+        for section in ("gains", "ventilation"):
+            for key, part in getattr(zone, section).items():
+                if part.schedule is not None:
+                    yield part.schedule, (*location, section, key, "schedule"), "fraction"
+        for which, loads in zone.loads.items():
+            if loads.setpoint.schedule is not None:
+                yield loads.setpoint.schedule, (*location, which, "setpoint", "schedule"), "temperature"
+            if loads.schedule is not None:
+                yield loads.schedule, (*location, which, "schedule"), "fraction"
+    for name, surface in building.surfaces.items():
+        for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if side.scheduled is not None:
+                yield side.scheduled, ("surfaces", name, which, "scheduled"), "temperature"
+    for section in ("air_paths", "openings", "vents"):
+        for name, part in getattr(building, section).items():
+            if part.schedule is not None:
+                yield part.schedule, (section, name, "schedule"), "fraction"
+    for name, window in building.windows.items():
+        if window.blind is not None and window.blind.schedule is not None:
+            yield window.blind.schedule, ("windows", name, "blind", "schedule"), "fraction"
+    yield from _of_units(building)
+    yield from _of_humidity(building)
+
+
+def _of_humidity(building: Description) -> Iterator[Use]:
+    if building.humidity is None:
+        return
+    for name, zone in building.humidity.zones.items():
+        location = ("humidity", "zones", name)
+        for key, gain in zone.gains.items():
+            if gain.schedule is not None:
+                yield gain.schedule, (*location, "gains", key, "schedule"), "fraction"
+        for which, plant in zone.plants.items():
+            if plant.schedule is not None:
+                yield plant.schedule, (*location, which, "schedule"), "fraction"
+            key, setpoint = plant.setpoint
+            if setpoint.schedule is not None:
+                yield setpoint.schedule, (*location, which, key, "schedule"), setpoint.SCHEDULED
+
+
+def _of_units(building: Description) -> Iterator[Use]:
+    for name, unit in building.ventilation_units.items():
+        location = ("ventilation_units", name)
+        for section, flows in (("supply", unit.supply), ("exhaust", unit.exhaust)):
+            for zone, flow in flows.items():
+                if flow.schedule is not None:
+                    yield flow.schedule, (*location, section, zone, "schedule"), "fraction"
+        if unit.temperature is not None and unit.temperature.schedule is not None:
+            yield unit.temperature.schedule, (*location, "temperature", "schedule"), "temperature"
+
+
+def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[str, ...]]]:
+    """Every course that is taken from columns directly, and the place that names it."""
+    for name, zone in building.zones.items():
+        location = ("zones", name)
+        for key, gain in zone.gains.items():
+            if gain.course is not None:
+                yield gain.course, (*location, "gains", key, "column")
+        for which, loads in zone.loads.items():
+            if loads.setpoint.column is not None:
+                yield temperature_course(loads.setpoint.column), (*location, which, "setpoint", "column")
+        for key, bridge in zone.thermal_bridges.items():
+            if bridge.measured is not None:
+                yield temperature_course(bridge.measured), (*location, "thermal_bridges", key, "measured")
+    for name, surface in building.surfaces.items():
+        for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if isinstance(side.measured, tuple):
+                yield temperature_course(side.measured), ("surfaces", name, which, "measured")
+    for name, path in building.air_paths.items():
+        if path.course is not None:
+            yield path.course, ("air_paths", name, "column")
+    for name, unit in building.ventilation_units.items():
+        for section, flows in (("supply", unit.supply), ("exhaust", unit.exhaust)):
+            for zone_name, flow in flows.items():
+                if flow.course is not None:
+                    yield flow.course, ("ventilation_units", name, section, zone_name, "column")
+        if unit.temperature is not None and unit.temperature.column is not None:
+            yield (
+                temperature_course(unit.temperature.column),
+                ("ventilation_units", name, "temperature", "column"),
+            )
+    for name, control in building.controls.items():
+        if control.rain is not None:
+            yield control.rain.course, ("controls", name, "rain", "column")
+    for name, vapour in (building.humidity.zones if building.humidity is not None else {}).items():
+        for key, source in vapour.gains.items():
+            if source.course is not None:
+                yield source.course, ("humidity", "zones", name, "gains", key, "column")
+        for which, plant in vapour.plants.items():
+            key, setpoint = plant.setpoint
+            if setpoint.measured is not None:
+                yield setpoint.measured, ("humidity", "zones", name, which, key, "column")
+
+
+def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:
+    """Courses over time of a building by name: its used schedules, then those taken from columns directly."""
+    used = {name for name, _, _ in schedule_uses(building)}
+    by_channel: dict[str, Schedule | ColumnCourse] = {
+        name: schedule for name, schedule in building.schedules.items() if name in used
+    }
+    return by_channel | {course.name: course for course, _ in column_courses(building)}

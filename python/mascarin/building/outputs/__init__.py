@@ -1,0 +1,1 @@
+"""What a run of a building can give, by name."""

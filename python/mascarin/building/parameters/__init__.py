@@ -1,0 +1,1 @@
+"""Numbers of a description as parameters: ties, sources, numbers without effect."""

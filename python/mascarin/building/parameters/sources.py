@@ -1,0 +1,214 @@
+"""Sources of the numbers of a building, and of the methods that a run of it uses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mascarin.building.base.leaves import leaves
+from mascarin.building.base.number import Number, Remark
+from mascarin.building.parameters.unused_parameters import has_height, sides, without_effect
+from mascarin.building.parts.air.humidity import EMPD, PSYCHROMETRICS
+from mascarin.building.parts.air.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
+from mascarin.building.parts.air.vent import ORIFICE, SWAMI_CHANDRA, LowRise
+from mascarin.building.parts.air.ventilation import RECOVERY_SOURCE
+from mascarin.building.parts.air.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
+from mascarin.building.parts.envelope.convection import SOURCES
+from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
+from mascarin.building.parts.materials.phase_change import FractionsLaw, TableLaw
+from mascarin.building.parts.measured_sun import obstructed
+from mascarin.building.parts.moisture_surfaces import vapour_sides
+from mascarin.building.parts.openings.blind import NET_RADIATION
+from mascarin.building.parts.openings.glazing import SOURCES as GLASS
+from mascarin.building.parts.openings.glazing import FilledGap, SimpleGlazing, TwoSides
+from mascarin.building.parts.self_shading import obstructions
+from mascarin.building.parts.site import ASHRAE_WIND, CLARK, MARTIN
+from mascarin.building.parts.zone_surfaces import closed
+
+if TYPE_CHECKING:
+    from mascarin.building.parts.description import Description
+
+_TIME_STEPS = "Alexander 1977, doi:10.1137/0714068 (time steps: SDIRK2)"
+_SUN = "Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003 (sun position)"
+_PVLIB = "Anderson et al. 2023, doi:10.21105/joss.05994 (pvlib, which computes it)"
+_EXTRATERRESTRIAL = "Kopp & Lean 2011, doi:10.1029/2010GL045777 (solar constant)"
+_AIR_MASS = "Kasten & Young 1989, doi:10.1364/AO.28.004735 (air mass)"
+_DIFFUSE = {
+    "perez": "Perez et al. 1990, doi:10.1016/0038-092X(90)90055-H (diffuse radiation on a plane)",
+    "hay_davies": "Hay & Davies 1980, Proc. First Canadian Solar Radiation Data Workshop "
+    "(diffuse radiation on a plane)",
+    "isotropic": "Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9 (diffuse radiation on a plane)",
+}
+_SKIES = {
+    "martin_berdahl": (MARTIN,),
+    "clark_allen": (CLARK,),
+    "brunt": (
+        "Brunt 1932, doi:10.1002/qj.49705824704 (emissivity of the clear sky)",
+        "ASHRAE Handbook of Fundamentals 2017, ch. 1, eq. 6 (vapour pressure at the dew point)",
+    ),
+}
+_SKY_SPLIT = "Walton 1983, NBSIR 83-2655 (split of the sky by height above the horizon)"
+_ENCLOSURE = "Hottel & Sarofim 1967, Radiative Transfer, ch. 3 (exchange between the surfaces of a zone)"
+_EXACT_VIEW = "Sparrow 1963, doi:10.1115/1.3686058 (view factors of polygons)"
+_AREA_VIEW = (
+    "Carroll 1980, Proc. 2nd Systems Simulation and Economic Analysis Conference, San Diego "
+    "(view factors approximated by areas)"
+)
+_ATMOSPHERE = "ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (density of the air)"
+_IDEAL_LOADS = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (ideal loads)"
+_SHADOWS = "Sutherland & Hodgman 1974, doi:10.1145/360767.360802 (shadows and sun patches as polygons)"
+_CURVE = "Fritsch & Butland 1984, doi:10.1137/0905021 (monotone interpolation of enthalpy tables)"
+
+#: Marks of a publication in the text beside an assumed number.
+_PUBLICATION = re.compile(
+    r"\b(1[89]|20)\d\d\b|\bdoi\b|[A-Z]{2,}|\b(table|sec\.|ch\.|fig\.|eq\.) ?\d|(data|product) sheet"
+)
+
+
+def sources(building: Description) -> list[str]:
+    """Where the numbers and methods of a building come from, without repetition.
+
+    Listed are the sources of numbers on which a result depends, and of the methods of a run with the default
+    scheme. Remarks on defaults are not listed. The text beside a number marked as assumed is listed if it
+    names a publication: by a year, a DOI, capital letters such as ISO, a numbered table or section, a data
+    sheet.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Returns
+    -------
+    list of str
+        Sources of numbers in the order of the description, then of methods.
+    """
+    return list(dict.fromkeys([*_of_numbers(building), *_of_methods(building)]))
+
+
+def _of_numbers(building: Description) -> Iterator[str]:
+    inactive = without_effect(building)
+    if not _sunlit(building):
+        inactive |= dict.fromkeys(("site.latitude", "site.longitude"), "no irradiance comes from the climate")
+    for path, number, source in leaves(building):
+        # A direction that "only decides" between cases still has an effect.
+        acts = path not in inactive or inactive[path].startswith("it only decides")
+        if acts and _is_source(number, source):
+            yield source
+
+
+def _is_source(number: Number, source: str) -> bool:
+    if not source or isinstance(source, Remark):
+        return False
+    return not number.assumed or _PUBLICATION.search(source) is not None
+
+
+def _of_methods(building: Description) -> Iterator[str]:
+    yield from _of_sun(building)
+    yield from _of_sky(building)
+    yield from _of_zones(building)
+    films = [item.side.convection for item in sides(building)]
+    kinds = dict.fromkeys(film.kind for film in films if film is not None)
+    yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
+    yield from (film.source for film in films if isinstance(film, FormulaLaw) and film.source)
+    if any(item.windy and has_height(item.side) for item in sides(building)):
+        yield ASHRAE_WIND
+    yield from _of_air(building)
+    if any(zone.loads for zone in building.zones.values()):
+        yield _IDEAL_LOADS
+    if building.humidity is not None:
+        yield PSYCHROMETRICS
+        if any(side.takes_up for side in vapour_sides(building)):
+            yield EMPD
+    yield from _of_glazings(building)
+    if any(window.blind is not None for window in building.windows.values()):
+        yield NET_RADIATION
+    traced = any(isinstance(zone.sun, TracedSun) for zone in building.zones.values())
+    if building.shades or traced or obstructions(building):
+        yield _SHADOWS
+    if _tabulated(building):
+        yield _CURVE
+    yield _TIME_STEPS
+
+
+def _of_air(building: Description) -> Iterator[str]:
+    if building.openings:
+        yield ASHRAE_OPENING
+    if building.vents:
+        yield ORIFICE
+    if any(isinstance(vent.pressure, LowRise) for vent in building.vents.values()):
+        yield SWAMI_CHANDRA
+    if any(vent.height is not None for vent in building.vents.values()):
+        yield BROWN_SOLVASON
+    if any(path.door is not None for path in building.air_paths.values()):
+        yield BROWN_SOLVASON
+    if any(unit.recovery is not None for unit in building.ventilation_units.values()):
+        yield RECOVERY_SOURCE
+    tests = [zone.infiltration.blower_door for zone in building.zones.values()]
+    if any(isinstance(test, LeakageFactor) for test in tests):
+        yield ISO_13789
+    if any(isinstance(test, LeakageStackWind) for test in tests):
+        yield BASIC_MODEL
+
+
+def _sunlit(building: Description) -> bool:
+    return any(item.sunlit for item in sides(building)) or bool(obstructed(building))
+
+
+def _of_sun(building: Description) -> Iterator[str]:
+    if not _sunlit(building):
+        return
+    kind = building.site.diffuse
+    yield from (_SUN, _PVLIB, _DIFFUSE[kind])
+    if kind != "isotropic":
+        yield _EXTRATERRESTRIAL
+    if kind == "perez":
+        yield _AIR_MASS
+
+
+def _of_sky(building: Description) -> Iterator[str]:
+    if not any(item.sees_sky for item in sides(building)):
+        return
+    kind = building.site.sky.kind
+    yield from _SKIES.get(kind, ())
+    if kind in _SKIES:  # clouds act on an emissivity only
+        yield CLARK if building.site.cloud.kind == "factor" else MARTIN
+    yield _SKY_SPLIT
+
+
+def _of_zones(building: Description) -> Iterator[str]:
+    if building.zones and building.site.air_density is None:
+        yield _ATMOSPHERE
+    for name, zone in building.zones.items():
+        surfaces = building.connections.of(name)
+        if zone.longwave.kind == "none" or len(surfaces) < 2:
+            continue
+        yield _ENCLOSURE
+        if zone.view_factors is None:
+            yield _EXACT_VIEW if closed(surfaces) else _AREA_VIEW
+
+
+def _of_glazings(building: Description) -> Iterator[str]:
+    for name in dict.fromkeys(window.glazing for window in building.windows.values()):
+        glass = building.glazings[name]
+        if isinstance(glass, SimpleGlazing):
+            yield from (GLASS[key] for key in ("simple", "angle"))
+            continue
+        coated = [isinstance(pane.reflectance, TwoSides) for pane in glass.panes]
+        if glass.angular is None:
+            laws = {"panes": not all(coated), "coated": any(coated)}
+            yield from (GLASS[key] for key, acts in laws.items() if acts)
+        if any(isinstance(gap, FilledGap) for gap in glass.gaps):
+            yield GLASS["filled"]
+
+
+def _tabulated(building: Description) -> bool:
+    built = {surface.construction for surface in building.surfaces.values()}
+    used = {layer.material for name in built for layer in building.constructions[name].layers}
+    materials = (building.materials[name] for name in used)
+    return any(
+        isinstance(material, PhaseChangeMaterial) and isinstance(material.law, TableLaw | FractionsLaw)
+        for material in materials
+    )

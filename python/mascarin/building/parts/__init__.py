@@ -1,0 +1,1 @@
+"""The parts of a description, the description, and what follows from it."""

@@ -1,0 +1,1 @@
+"""Zones and their air: gains, ventilation, humidity, set points, schedules."""

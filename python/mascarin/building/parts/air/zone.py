@@ -1,0 +1,403 @@
+"""Zones: volumes of well-mixed air, their gains, ventilation and ideal loads, and the air between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import ConfigDict, Field, model_validator
+
+from mascarin.building import quantities as q
+from mascarin.building.base.names import ControlName, Name, ScheduleName, ZoneName
+from mascarin.building.base.number import Number, Remark, problem
+from mascarin.building.base.part import Part, Shorthand
+from mascarin.building.parts.air.leakage import PressureTest
+from mascarin.building.parts.air.measured_values import Driven
+from mascarin.building.parts.air.set_point import SetPoint
+from mascarin.building.parts.envelope.bridge import ThermalBridge
+from mascarin.building.parts.envelope.surface import Linearised, NoLongwave
+
+BROWN_SOLVASON = "Brown & Solvason 1962, doi:10.1016/0017-9310(62)90184-9 (two-way flow through a door)"
+ASHRAE_OPENING = (
+    "ASHRAE Handbook of Fundamentals 2017, ch. 16, eqs. 37, 38 (flow through openings by wind and buoyancy)"
+)
+
+
+class Infiltration(Part):
+    """Infiltration: ``constant + temperature |dT| + wind V`` air changes per hour.
+
+    Examples
+    --------
+    >>> Infiltration(constant=0.2, wind=0.05)
+    Infiltration(constant=0.2 1/h, temperature=0 1/(h K), wind=0.05 1/(h m/s))
+    """
+
+    constant: q.AirChange = Number(0.0, source=Remark("not given: airtight"), assumed=True)
+    temperature: q.AirChangePerKelvin = Number(0.0, source=Remark("not given: no stack effect"), assumed=True)
+    wind: q.AirChangePerSpeed = Number(0.0, source=Remark("not given: no effect of wind"), assumed=True)
+    blower_door: PressureTest | None = Field(
+        None, description="Infiltration by a pressure test, in addition: n50 [1/h], or a part with its kind"
+    )
+
+
+class Radiosity(Part):
+    """Exact exchange between gray, diffuse surfaces, with the fourth power of temperature."""
+
+    kind: Literal["radiosity"] = "radiosity"
+
+
+ZoneLongwave = Annotated[
+    Radiosity | Linearised | NoLongwave, Field(discriminator="kind"), Shorthand(word="kind")
+]
+
+
+class Gain(Driven):
+    """Heat from people, light, equipment or heaters; a negative power takes heat away.
+
+    Examples
+    --------
+    >>> people = Gain(power=200, radiative=0.5, schedule="presence")
+    >>> float(people.radiative)
+    0.5
+    >>> heater = Gain(column="P_heater", unit="kW", radiative=0.3)
+    >>> heater.course.name
+    'P_heater [kW]'
+    """
+
+    NUMBER: ClassVar = "power"
+    KIND: ClassVar = "power"
+    advice: ClassVar[Mapping[str, str]] = {
+        "latent": "Air is dry here: only sensible heat is simulated. Leave the latent part out of the power.",
+        "convective": "What is not 'radiative' goes to the air: write 'radiative:' alone.",
+    }
+
+    power: q.GainPower | None = None
+    unit: Literal["W", "kW"] | None = Field(None, description="Unit of the column; none: W")
+    radiative: q.Radiative = Number(0.0, source=Remark("not given: all of it goes to the air"), assumed=True)
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the power; none: always 1"
+    )
+
+
+class Ventilation(Part):
+    """Ventilation with outdoor air; flows are volumes at the density of the site.
+
+    Examples
+    --------
+    >>> float(Ventilation(air_changes=1.5).air_changes)
+    1.5
+    """
+
+    air_changes: q.Ventilation | None = None
+    flow: q.VolumeFlow | None = None
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the flow; none: always 1"
+    )
+
+    @model_validator(mode="after")
+    def _sourced(self) -> Ventilation:
+        if (self.air_changes is None) == (self.flow is None):
+            raise problem(
+                "ventilation without a flow" if self.flow is None else "air_changes and flow",
+                "exactly one of air_changes [1/h] and flow [m3/s]",
+                "Give the flow of outdoor air in one of the two ways.",
+            )
+        return self
+
+
+class IdealLoads(Part):
+    """Ideal heating or cooling: it holds the air temperature, without losses and without delay.
+
+    Examples
+    --------
+    >>> heating = IdealLoads(setpoint=20, capacity=2000)
+    >>> float(heating.setpoint.temperature)
+    20.0
+    """
+
+    setpoint: Annotated[SetPoint, Shorthand(number="temperature")] = Field(
+        description="Set point of the air temperature: a number, or {schedule: name}"
+    )
+    capacity: q.Capacity | None = None
+    radiative: q.LoadRadiative | None = None
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the available fraction of the capacity; none: always 1"
+    )
+
+
+class EvenSun(Part):
+    """Solar radiation distributed evenly over all surfaces; part of it leaves through the glass again.
+
+    Examples
+    --------
+    >>> EvenSun()
+    EvenSun()
+    """
+
+    kind: Literal["area"] = "area"
+
+
+class SunShares(Part):
+    """Fractions of the diffuse part of the solar radiation, scaled to a sum of one.
+
+    Examples
+    --------
+    >>> SunShares(shares={"floor": 0.3, "walls": 0.7})
+    SunShares(shares=floor, walls, lost=0)
+    """
+
+    shares: dict[Name, q.SunShare] = Field(
+        default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
+
+
+class GivenSun(Part):
+    """Solar radiation distributed by given fractions, scaled to a sum of one.
+
+    Examples
+    --------
+    >>> GivenSun(shares={"floor": 0.6, "walls": 0.4})
+    GivenSun(shares=floor, walls, lost=0)
+    """
+
+    kind: Literal["shares"] = "shares"
+    shares: dict[Name, q.SunShare] = Field(
+        default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
+    diffuse: SunShares | None = Field(
+        None, description="Fractions of the diffuse part; none: those of the beam for all of it"
+    )
+
+
+class FloorSun(Part):
+    """Beam radiation evenly on the floor; diffuse and reflected radiation evenly over all surfaces.
+
+    Examples
+    --------
+    >>> FloorSun()
+    FloorSun()
+    """
+
+    kind: Literal["floor"] = "floor"
+
+
+class TracedSun(Part):
+    """Beam radiation traced to the surfaces, the rest by view factors; needs vertices of all surfaces.
+
+    Examples
+    --------
+    >>> TracedSun()
+    TracedSun()
+    """
+
+    kind: Literal["geometry"] = "geometry"
+
+
+ZoneSun = Annotated[
+    EvenSun | GivenSun | FloorSun | TracedSun, Field(discriminator="kind"), Shorthand(word="kind")
+]
+
+
+#: Sources of a set point beside a number.
+_SET_POINT = ("schedule", "column")
+
+
+def _plant_of(held: Any) -> Any:
+    """Heating, or cooling, of a zone that is held: ``when`` is the schedule of both."""
+    if not isinstance(held, Mapping):
+        return {"setpoint": held}
+    plant = {"setpoint": {key: value for key, value in held.items() if key not in ("when", "radiative")}}
+    if "radiative" in held:
+        plant["radiative"] = held["radiative"]
+    if "when" in held:
+        plant["schedule"] = held["when"]
+    return plant
+
+
+def _or_held(schema: dict[str, Any]) -> None:
+    """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
+    texts = {
+        "schedule": "Schedule that gives the set point",
+        "column": "Measured column that gives the set point",
+        "when": "Schedule of the hours in which the zone is held",
+    }
+    words = {key: {"type": "string", "description": text} for key, text in texts.items()}
+    facts = {"temperature": "Set point [degC]", "radiative": "Radiative part of the load [-]"}
+    numbers = {key: {"type": ["number", "object"], "description": text} for key, text in facts.items()}
+    schema["properties"]["held"] = {
+        "description": "Heating and cooling with this set point [degC], where a schedule 'when' says so; "
+        "part of it may be radiative",
+        "anyOf": [
+            {"type": "number"},
+            {
+                "type": "object",
+                "properties": words | numbers,
+                "minProperties": 1,
+                "additionalProperties": False,
+            },
+        ],
+    }
+
+
+class Zone(Part):
+    """A volume of well-mixed air.
+
+    ``held`` in place of heating and cooling gives both the same set point.
+
+    Examples
+    --------
+    >>> zone = Zone(volume=30, infiltration=0.5, heating={"setpoint": 20})
+    >>> float(zone.infiltration.constant)
+    0.5
+    """
+
+    model_config = ConfigDict(json_schema_extra=_or_held)
+    advice: ClassVar[Mapping[str, str]] = {
+        "temperature": "The air temperature is a result: hold it with 'held: 24' or 'held: {column: "
+        "T_room}'. That at the start of a run is an option of the run (initial).",
+        "setpoint": "Write 'heating: {setpoint: 20}' or 'cooling: {setpoint: 26}'.",
+        "furniture": "Furniture is a surface with 'internal_mass: true', both sides of which face the zone.",
+        "n50": "Write 'infiltration: {blower_door: 2.2}'.",
+    }
+
+    volume: q.Volume | None = None
+    capacity_factor: q.CapacityFactor = Number(1.0, source=Remark("air alone, no furniture"), assumed=True)
+    infiltration: Annotated[Infiltration, Shorthand(number="constant")] = Field(
+        default_factory=Infiltration,
+        description="Infiltration: a number [1/h], or its three parts",
+    )
+    longwave: ZoneLongwave = Field(
+        default_factory=lambda: Radiosity(kind="radiosity"),
+        description="Long-wave exchange between the surfaces of the zone",
+    )
+    sun: ZoneSun | None = Field(
+        None, description="Distribution of the solar radiation that enters through windows; none: area"
+    )
+    view_factors: dict[str, dict[str, q.ViewFactor]] | None = Field(
+        None,
+        description="View factors between surfaces, by their names (name.outside and name.inside where both "
+        "sides of a surface face the zone); none: from vertices, else an approximation by areas",
+    )
+    gains: dict[Name, Gain] = Field(default_factory=dict, description="Internal heat gains by name")
+    ventilation: dict[Name, Ventilation] = Field(
+        default_factory=dict, description="Ventilation with outdoor air, by name"
+    )
+    heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
+    cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
+    thermal_bridges: dict[Name, ThermalBridge] = Field(
+        default_factory=dict, description="Thermal bridges of the zone, by name"
+    )
+    solar_to_air: q.SolarToAir | None = None
+    makeup_air: Literal["outdoors"] | None = Field(
+        None,
+        description="Where the air comes from that fans take out of the zone and do not bring in, and "
+        "where it goes to that they bring in too much: outdoors, through leaks; none: flows must balance",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _held(cls, raw: Any) -> Any:
+        """Read ``held`` as heating and cooling with the same set point."""
+        if not isinstance(raw, Mapping) or "held" not in raw:
+            return raw
+        both = [key for key in ("heating", "cooling") if raw.get(key) is not None]
+        if both:
+            raise problem(
+                f"held and {' and '.join(both)}",
+                "one of them",
+                "A zone that is held has both at one set point.",
+            )
+        other_keys = {key: value for key, value in raw.items() if key != "held"}
+        return other_keys | {key: _plant_of(raw["held"]) for key in ("heating", "cooling")}
+
+    @property
+    def loads(self) -> dict[str, IdealLoads]:
+        """Heating and cooling, where there are any."""
+        both = {"heating": self.heating, "cooling": self.cooling}
+        return {name: plant for name, plant in both.items() if plant is not None}
+
+
+class Door(Part):
+    """A door or another large opening through which a temperature difference drives air both ways.
+
+    ``C_d W H/3 sqrt(g H |dT|/T)`` flows in each direction.
+
+    Examples
+    --------
+    >>> Door(width=0.9, height=2)
+    Door(width=0.9 m, height=2 m, discharge=0.65, open=1)
+    """
+
+    width: q.DoorWidth
+    height: q.DoorHeight
+    discharge: q.Discharge = Number(0.65, source=BROWN_SOLVASON, assumed=True)
+    open: q.OpenFraction = Number(1.0, source=Remark("not given: fully open"))
+
+
+class AirPath(Driven):
+    """Air between two zones: the same flow both ways, a flow from one to the other, or through a door.
+
+    Examples
+    --------
+    >>> AirPath(between=("office", "corridor"), flow=0.02)
+    AirPath(between=[office, corridor], flow=0.02 m3/s, one_way=False)
+    >>> AirPath(between=("office", "corridor"), flow=0.02, one_way=True).one_way
+    True
+    >>> AirPath(between=("office", "corridor"), door={"width": 0.9, "height": 2}).flow is None
+    True
+    """
+
+    NUMBER: ClassVar = "flow"
+    KIND: ClassVar = "flow"
+
+    between: tuple[ZoneName, ZoneName] = Field(description="Names of the two zones")
+    flow: q.VolumeFlow | None = None
+    unit: Literal["m3/s", "m3/h", "L/s"] | None = Field(None, description="Unit of the column; none: m3/s")
+    one_way: bool = Field(
+        False, description="Whether air flows from the first zone to the second, driven by fans"
+    )
+    door: Door | None = Field(None, description="Flow by temperature difference; none: a given flow")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the flow; none: always 1"
+    )
+
+    def _needs_none(self) -> bool:
+        return self.door is not None
+
+    @model_validator(mode="after")
+    def _two(self) -> AirPath:
+        if self.between[0] == self.between[1]:
+            raise problem(f"'{self.between[0]}' twice", "two different zones", "Name the other zone.")
+        stated = "flow" if self.flow is not None else "column" if self.column is not None else ""
+        stated = stated or ("one_way" if self.one_way else "")
+        if self.door is not None and stated:
+            raise problem(
+                f"door and {stated}",
+                "one of them: the flow through a door follows from temperatures",
+                "Describe the other flow as an air path of its own.",
+            )
+        return self
+
+
+class Opening(Part):
+    """An opening to outdoors, with a flow of air by wind and buoyancy.
+
+    Examples
+    --------
+    >>> Opening(zone="attic", area=0.02, height=0.3)
+    Opening(zone=attic, area=0.02 m2, height=0.3 m, discharge=0.65, wind_coefficient=0.3)
+    """
+
+    zone: ZoneName = Field(description="Name of the zone")
+    area: q.OpeningArea
+    height: q.OpeningHeight
+    discharge: q.Discharge = Number(0.65, source=ASHRAE_OPENING, assumed=True)
+    wind_coefficient: q.WindCoefficient = Number(0.3, source=ASHRAE_OPENING, assumed=True)
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the area that is open; none: always 1"
+    )
+    control: ControlName | None = Field(
+        None, description="Name of the control that opens and closes it; none: not controlled"
+    )

@@ -1,0 +1,1 @@
+"""Surfaces with their layers, convection and thermal bridges."""

@@ -1,0 +1,139 @@
+"""A surface heat transfer coefficient written as text; the engine reads and computes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from mascarin import _engine
+from mascarin.building.base.number import Interval
+from mascarin.building.base.part import Location, text_fault
+from mascarin.building.parts.materials.formula import Formula, names_in, stated_unit
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+#: Names that Mascarin derives from the shape of a surface where a formula uses them.
+LENGTH: Final = "length"
+PERIMETER: Final = "perimeter"
+
+#: Name, value, range and unit, where they are stated.
+Given = tuple[tuple[str, float, Interval | None, str | None], ...]
+
+
+class FormulaLaw(Formula):
+    """A coefficient as a formula of the temperature difference and the wind; its numbers stand beside it.
+
+    The formula may use ``dT`` (surface minus air [K]), ``V`` (wind at the surface [m/s]), ``windward`` (holds
+    where the wind blows onto the surface), ``tilt`` [deg] and ``upward`` [-] of the normal into the air,
+    ``area`` [m2], ``density`` of the air [kg/m3], ``length`` and ``perimeter`` [m] of the surface, and the
+    numbers given with it.
+
+    Examples
+    --------
+    >>> law = FormulaLaw(formula="c*abs(dT)^n", c={"value": 2.3, "unit": "W/(m2 K^(1+n))"}, n=0.24)
+    >>> law.numbers["c"], law.valid
+    (2.3, None)
+    """
+
+    kind: Literal["text"] = "text"
+    formula: str = Field(description="The coefficient [W/(m2 K)], such as 2.3*abs(dT)^0.24")
+    valid: str | None = Field(
+        None, description="Where it holds, such as abs(dT) < 30; a run outside of it has a warning"
+    )
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names that the formula and its validity use, functions included."""
+        return names_in(self.formula) | names_in(self.valid)
+
+    def uses(self, name: str) -> bool:
+        """Whether a name is used."""
+        return name in self.names
+
+    @property
+    def given(self) -> Given:
+        """Names, values, ranges and units of its numbers."""
+        return tuple((name, float(one), one.range, stated_unit(one)) for name, one in self.numbers.items())
+
+    def coefficient(
+        self,
+        difference: npt.ArrayLike,
+        wind: npt.ArrayLike = 0.0,
+        *,
+        tilt: float = 90.0,
+        area: float = 10.0,
+        density: float = 1.2,
+    ) -> npt.NDArray[np.float64]:
+        """The coefficient as written, where the wind blows onto the surface.
+
+        Parameters
+        ----------
+        difference : array_like
+            Temperature of the surface minus that of the air. [K]
+        wind : array_like
+            Wind at the surface. [m/s]
+        tilt : float
+            Angle between upwards and the normal into the air. [deg]
+        area : float
+            Area of the surface. [m2]
+        density : float
+            Density of the air. [kg/m3]
+
+        Returns
+        -------
+        ndarray
+            In the shape of difference and wind together. [W/(m2 K)]
+
+        Raises
+        ------
+        InputError
+            If the formula has a fault.
+
+        Examples
+        --------
+        >>> FormulaLaw(formula="2*abs(dT)^(1/3)").coefficient([8.0, -8.0]).round(6).tolist()
+        [4.0, 4.0]
+        """
+        both = np.broadcast_arrays(np.asarray(difference, float), np.asarray(wind, float))
+        flat = [np.ascontiguousarray(array.ravel()) for array in both]
+        try:
+            found = _engine.formula_values(self.formula, list(self.given), (tilt, area, density), *flat)
+        except _engine.EngineInputError as error:
+            raise InputError(f"formula: {error}") from None
+        return found.reshape(both[0].shape)
+
+    def at_values(self, values: Mapping[str, float]) -> FormulaLaw:
+        """The same law with other values of its numbers, without their ranges."""
+        numbers = {name: float(values.get(name, number)) for name, number in self.numbers.items()}
+        return FormulaLaw(formula=self.formula, valid=self.valid, numbers=numbers)
+
+    def faults(self, at: Location, side: tuple[float, float, float], *, wind: bool) -> Iterator[Any]:
+        """What is wrong with it at a side of a surface.
+
+        Parameters
+        ----------
+        at : tuple
+            Path of the law.
+        side : tuple of float
+            Tilt of the normal into the air [deg], area [m2], density of the air [kg/m3].
+        wind : bool
+            Whether wind reaches the side.
+        """
+        found = _checked(self.formula, self.valid, self.given, side, wind=wind)
+        if found is not None:
+            key, line, column, *words = found
+            known = key in ("formula", "valid")
+            yield text_fault((*at, key), words, (line, column) if known else None)
+
+
+@lru_cache(maxsize=512)
+def _checked(
+    formula: str, valid: str | None, given: Given, side: tuple[float, float, float], *, wind: bool
+) -> tuple[str, int, int, str, str, str] | None:
+    return _engine.check_formula(formula, valid, list(given), wind, side)

@@ -1,0 +1,1 @@
+"""Materials: heat, phase change, moisture."""

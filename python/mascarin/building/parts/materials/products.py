@@ -1,0 +1,259 @@
+"""Materials taken from the library of products: ``ceiling_pcm: {product: RT25HC}``.
+
+The short form is expanded before anything is checked, each number with the source of the product. What the
+user gives as well replaces what the product has; a property that neither gives is an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from mascarin.building.base.number import Number, problem, shown
+from mascarin.errors import InputError
+from mascarin.materials.library import DIRECTIONS, PROPERTIES, Curve, Product, product, suggestion
+
+DEFAULT_CURVE: Final = "heating"
+"""Curve that a product melts by when the user names none."""
+
+
+def expand(raw: Any) -> Any:
+    """Expand a material that names a product; anything else stays as it is.
+
+    Parameters
+    ----------
+    raw : mapping or other
+        The material as it was given.
+
+    Returns
+    -------
+    mapping or other
+        The same with all properties. Numbers of the product are marked as derived, so that they are derived
+        again when the product is replaced.
+
+    Raises
+    ------
+    PydanticCustomError
+        There is no such product, another kind is given, or neither product nor user give a property.
+    """
+    if not isinstance(raw, Mapping) or raw.get("product") is None:
+        return raw
+    one = _named(raw["product"])
+    if raw.get("kind", "pcm") != "pcm":
+        raise problem(f"kind: {raw['kind']}", "kind: pcm, or none", f"{one.name} is a phase-change material.")
+    given = {key: value for key, value in raw.items() if value is not None}
+    expanded: dict[str, Any] = {"kind": "pcm"}
+    expanded |= {key: _noted(one.raw[key], one) for key in PROPERTIES if key in one.raw}
+    expanded |= {key: _over(expanded.get(key), value) for key, value in given.items()}
+    expanded["product"] = one.name
+    _complete(expanded, one)
+    if given.get("hysteresis") is not None:
+        return _with_hysteresis(expanded, given, one)
+    law = _law(given.get("law"), one)
+    if law is None:
+        raise problem(
+            f"no law; {one.name} has no curves",
+            "law: how it melts",
+            "Add 'law:', such as {kind: tanh, width: 1.0}.",
+        )
+    expanded["law"] = law
+    return _melting(one) | expanded if _by_melting_temperature(law) else expanded
+
+
+def _with_hysteresis(expanded: dict[str, Any], given: Mapping[str, Any], one: Product) -> dict[str, Any]:
+    """The material with the curves of the product as liquid fractions, which hysteresis needs."""
+    law = _heating_fractions(given.get("law"), one)
+    hysteresis = _cooling_fractions(given["hysteresis"], law, one)
+    numbers = _melting(one)
+    if _is_fractions(law):
+        numbers = {"latent_heat": _latent_heat(one, law)}
+    return numbers | expanded | {"law": law, "hysteresis": hysteresis}
+
+
+def _heating_fractions(given: Any, one: Product) -> Any:
+    """The heating curve: a law as given, else that of the product."""
+    named = given if isinstance(given, str) else given.get("curve") if isinstance(given, Mapping) else None
+    if named is not None and named != DEFAULT_CURVE:
+        raise problem(
+            f"law: {named} beside hysteresis",
+            f"law: {DEFAULT_CURVE}, or none; the cooling curve belongs below hysteresis",
+            "Remove 'law:'.",
+        )
+    is_law = isinstance(given, Mapping) and "kind" in given and named is None
+    if is_law or not (given is None or isinstance(given, str | Mapping)):
+        return given
+    more = {key: value for key, value in given.items() if key != "kind"} if isinstance(given, Mapping) else {}
+    if one.heating is not None:
+        return _fractions(one, one.heating, DEFAULT_CURVE) | more
+    own = _own_law(one)
+    if own is None or named is not None:
+        raise problem(
+            f"hysteresis; {one.name} has no heating curve",
+            "law: how it melts, by its liquid fraction",
+            "Add 'law:', such as {kind: tanh, width: 1.0}, and freezing_temperature below hysteresis.",
+        )
+    return own | more
+
+
+def _cooling_fractions(given: Any, law: Any, one: Product) -> Any:
+    """What is given of the hysteresis, with the cooling curve of the product where no other is given."""
+    if not isinstance(given, Mapping):
+        keys = ("model", "freezing_temperature", "law")
+        if not all(hasattr(given, key) for key in keys):
+            return given
+        given = {key: getattr(given, key) for key in keys if getattr(given, key) is not None}
+    shape = given.get("law")
+    named = shape if isinstance(shape, str) else shape.get("curve") if isinstance(shape, Mapping) else None
+    if named is not None and named != "cooling":
+        raise problem(f"hysteresis.law: {named}", "hysteresis.law: cooling, or none", "Remove this 'law:'.")
+    partial = isinstance(shape, Mapping) and ("kind" not in shape or named is not None)
+    if shape is not None and named is None and not partial:
+        return given
+    if shape is None and (given.get("freezing_temperature") is not None or not _is_fractions(law)):
+        return given  # the shape of the heating curve, about another temperature
+    if one.cooling is None:
+        raise problem(
+            f"hysteresis without a cooling curve; the source of {one.name} does not give it",
+            "hysteresis: {model: ..., law: {kind: fractions, ...}}, or another law with freezing_temperature",
+            "Add the cooling curve, or choose a product with both curves: 'mascarin materials' shows them.",
+        )
+    more = {key: value for key, value in shape.items() if key != "kind"} if partial else {}
+    return {**given, "law": _fractions(one, one.cooling, "cooling") | more}
+
+
+def _is_fractions(law: Any) -> bool:
+    kind = law.get("kind") if isinstance(law, Mapping) else getattr(law, "kind", None)
+    return kind == "fractions"
+
+
+def _fractions(one: Product, curve: Curve, name: str) -> dict[str, Any]:
+    return {
+        "kind": "fractions",
+        "curve": name,
+        "temperatures": _noted(list(curve.temperatures), one),
+        "fractions": _noted(list(curve.liquid_fraction), one),
+    }
+
+
+def _latent_heat(one: Product, law: Any) -> Number:
+    """Latent heat in the middle of the heating curve, to which a law of fractions refers.
+
+    That of the product is at its melting temperature; between the two lies a difference of sensible heat.
+    """
+    latent: Number = _noted(one.raw["latent_heat"], one)
+    heats, centre = one.pair("specific_heat"), one.melting_temperature
+    points = law.get("temperatures") if isinstance(law, Mapping) else law.temperatures
+    if heats is None or centre is None or heats[0] == heats[1] or not points:
+        return latent
+    middle = 0.5 * (float(points[0]) + float(points[-1]))
+    moved = float(latent) + (heats[1] - heats[0]) * (middle - centre)
+    note = f"at {middle:g} degC, from {float(latent):g} J/kg at {centre:g} degC; {latent.source}"
+    return Number(round(moved, 1), source=note, assumed=latent.assumed, derived=True)
+
+
+def _over(own: Any, given: Any) -> Any:
+    """A property as given; a mapping of one phase takes the other phase from the product."""
+    if own is None or not isinstance(given, Mapping) or "value" in given:
+        return given
+    solid, liquid = own if isinstance(own, list) else (own, own)
+    return {"solid": solid, "liquid": liquid} | dict(given)
+
+
+def _complete(expanded: Mapping[str, Any], one: Product) -> None:
+    gaps = [key for key in PROPERTIES if key not in expanded]
+    if gaps:
+        raise problem(
+            f"no {' and no '.join(gaps)}; the source of {one.name} does not give it",
+            ", ".join(f"{key}: a value from you" for key in gaps),
+            f"Write {gaps[0]}: beside product:.",
+        )
+
+
+def _named(name: Any) -> Product:
+    if not isinstance(name, str):
+        raise problem(f"product: {shown(name)}", "the name of a product", "'mascarin materials' lists them.")
+    try:
+        return product(name)
+    except InputError:
+        help_ = f"{suggestion(name)} 'mascarin materials' lists them.".strip()
+        raise problem(f"product: {name}", "a product of the library", help_) from None
+
+
+def _noted(raw: Any, one: Product, source: str | None = None) -> Any:
+    """Numbers of a product with their source, marked as derived."""
+    if isinstance(raw, list):
+        return [_noted(item, one, source) for item in raw]
+    notes = dict(raw) if isinstance(raw, Mapping) else {"value": raw}
+    span = notes.get("range")
+    return Number(
+        float(notes["value"]),
+        range=None if span is None else (float(span[0]), float(span[1])),
+        source=notes.get("source", source or one.source),
+        assumed=bool(notes.get("assumed", False)),
+        derived=True,
+    )
+
+
+def _law(given: Any, one: Product) -> Any:
+    """The law: as given, a curve of the product by its name, or the product's law; None where it has none."""
+    if isinstance(given, str):
+        return _table(one, _curve(given, one), given)
+    if isinstance(given, Mapping) and "kind" not in given:
+        curve = given.get("curve")
+        own = _own_law(one) if curve is None else _table(one, _curve(curve, one), curve)
+        return None if own is None else own | dict(given)
+    if isinstance(given, Mapping) and given.get("curve") is not None:
+        raise problem(
+            "curve beside kind",
+            "one of the two: the curve of the product, or a law",
+            "Remove 'kind:' or 'curve:'.",
+        )
+    return _own_law(one) if given is None else given
+
+
+def _curve(name: Any, one: Product) -> Curve:
+    curve = getattr(one, name) if name in DIRECTIONS else None
+    if curve is None:
+        known = [key for key in DIRECTIONS if getattr(one, key) is not None]
+        raise problem(
+            f"law: {name}",
+            f"law: {' or '.join(known) or '{kind: ...}'}, the curves known of {one.name}, or {{kind: ...}}",
+            "Choose a curve, or write a law.",
+        )
+    found: Curve = curve
+    return found
+
+
+def _own_law(one: Product) -> dict[str, Any] | None:
+    if one.heating is not None:
+        return _table(one, one.heating, DEFAULT_CURVE)
+    if "law" not in one.raw:
+        return None
+    numbers = {key: _noted(value, one) for key, value in one.raw["law"].items() if key != "kind"}
+    return {"kind": one.raw["law"]["kind"]} | numbers
+
+
+def _table(one: Product, curve: Curve, name: str) -> dict[str, Any]:
+    enthalpies = one.enthalpies(curve.temperatures, curve.liquid_fraction)
+    return {
+        "kind": "table",
+        "curve": name,
+        "temperatures": _noted(list(curve.temperatures), one),
+        "enthalpies": _noted(list(enthalpies), one),
+    }
+
+
+def _by_melting_temperature(law: Any) -> bool:
+    """Whether latent heat and melting temperature are given beside the law, not in it."""
+    kind = law.get("kind") if isinstance(law, Mapping) else getattr(law, "kind", None)
+    return kind != "table"
+
+
+def _melting(one: Product) -> dict[str, Any]:
+    known = {"latent_heat": one.number("latent_heat"), "melting_temperature": one.melting_temperature}
+    half = f"half of the heating curve; {one.source}"
+    return {
+        key: _noted(one.raw.get(key, value), one, half if key not in one.raw else None)
+        for key, value in known.items()
+        if value is not None
+    }

@@ -1,0 +1,1 @@
+"""Windows: glazing, frames, shades and blinds."""

@@ -1,0 +1,304 @@
+"""The site: position, wind profile, sky, ground."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, Field, model_validator
+
+from mascarin.building import quantities as q
+from mascarin.building.base.number import Number, Remark, problem
+from mascarin.building.base.part import Part, Shorthand, fault, refuse
+from mascarin.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import ModelWrapValidatorHandler
+
+ASHRAE_WIND = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
+MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
+CLARK = "Clark & Allen 1978, Proc. 2nd National Passive Solar Conference, Philadelphia"
+_LI = "Li, Jiang & Coimbra 2017, doi:10.1016/j.solener.2017.01.006"
+
+#: Exponent and thickness [m] of the boundary layer over a kind of terrain.
+TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0), "sea": (0.10, 210.0)}
+
+
+class Wind(Part):
+    """Power-law profile of the wind speed, from the mast to a surface with a height.
+
+    Examples
+    --------
+    >>> Wind(terrain="city")
+    Wind(terrain=city, mast_height=10 m, mast_exponent=0.14, mast_layer=270 m, exponent=0.33, layer=...)
+    """
+
+    terrain: Literal["open", "suburb", "city", "sea"] = Field(
+        "open", description="Terrain around the building: gives exponent and layer where they are not given"
+    )
+    mast_height: q.MastHeight = Number(10.0, source="WMO-No. 8: standard height of anemometers")
+    mast_exponent: q.WindExponent = Number(0.14, source=f"{ASHRAE_WIND}: open terrain")
+    mast_layer: q.BoundaryLayer = Number(270.0, source=f"{ASHRAE_WIND}: open terrain")
+    exponent: q.WindExponent | None = None
+    layer: q.BoundaryLayer | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_terrain(cls, raw: Any) -> Any:
+        if not isinstance(raw, dict) or str(raw.get("terrain", "open")) not in TERRAINS:
+            return raw
+        terrain = raw.get("terrain", "open")
+        exponent, layer = (
+            Number(value, source=f"{ASHRAE_WIND}: {terrain}", derived=True) for value in TERRAINS[terrain]
+        )
+        return {"exponent": exponent, "layer": layer} | raw
+
+
+def wind_factor(wind: Wind, height: float) -> float:
+    """Wind speed at a height of the site over that at the mast, as in the engine.
+
+    Parameters
+    ----------
+    wind : Wind
+        The profile.
+    height : float
+        Height above the ground. [m]
+
+    Returns
+    -------
+    float
+        ``(mast_layer/mast_height)^mast_exponent (height/layer)^exponent``; heights below 0.1 m count as
+        0.1 m. [-]
+
+    References
+    ----------
+    ASHRAE Handbook of Fundamentals 2017, ch. 24, eq. 4.
+
+    Examples
+    --------
+    >>> round(wind_factor(Wind(terrain="suburb"), 10.0), 3)
+    0.717
+    """
+    mast = float(wind.mast_layer / wind.mast_height) ** float(wind.mast_exponent)
+    return float(mast * (max(float(height), 0.1) / float(wind.layer or 1.0)) ** float(wind.exponent or 0.0))
+
+
+class MeasuredSky(Part):
+    """Measured horizontal infrared radiation of the climate, times a factor.
+
+    Examples
+    --------
+    >>> MeasuredSky(scale=1.02)
+    MeasuredSky(scale=1.02)
+    """
+
+    kind: Literal["measured"] = "measured"
+    scale: q.SkyScale = Number(1.0, source=Remark("the measurement without a correction"))
+
+
+class ClarkAllenSky(Part):
+    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K.
+
+    Examples
+    --------
+    >>> ClarkAllenSky()
+    ClarkAllenSky(a=0.787, b=0.764)
+    """
+
+    kind: Literal["clark_allen"] = "clark_allen"
+    a: q.SkyCoefficient = Number(0.787, source=CLARK)
+    b: q.SkyCoefficient = Number(0.764, source=CLARK)
+
+
+class MartinBerdahlSky(Part):
+    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC.
+
+    Examples
+    --------
+    >>> MartinBerdahlSky()
+    MartinBerdahlSky(a=0.711, b=0.56, c=0.73)
+    """
+
+    kind: Literal["martin_berdahl"] = "martin_berdahl"
+    a: q.SkyCoefficient = Number(0.711, source=MARTIN)
+    b: q.SkyCoefficient = Number(0.56, source=MARTIN)
+    c: q.SkyCoefficient = Number(0.73, source=MARTIN)
+
+
+class BruntSky(Part):
+    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa.
+
+    Examples
+    --------
+    >>> BruntSky()
+    BruntSky(a=0.618, b=0.056)
+    """
+
+    kind: Literal["brunt"] = "brunt"
+    a: q.SkyCoefficient = Number(0.618, source=_LI)
+    b: q.SkyCoefficient = Number(0.056, source=_LI)
+
+
+class OffsetSky(Part):
+    """Sky temperature at a constant difference below the air temperature.
+
+    Examples
+    --------
+    >>> OffsetSky(depression=9)
+    OffsetSky(depression=9 K)
+    """
+
+    kind: Literal["offset"] = "offset"
+    depression: q.SkyDepression = Number(
+        11.0, source="ISO 13790:2008: between tropics and subpolar zones", assumed=True
+    )
+
+
+Sky = Annotated[
+    MartinBerdahlSky | ClarkAllenSky | BruntSky | OffsetSky | MeasuredSky,
+    Field(discriminator="kind"),
+    Shorthand(word="kind"),
+]
+
+
+class CloudFactor(Part):
+    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths.
+
+    Examples
+    --------
+    >>> CloudFactor()
+    CloudFactor(c1=0.0224, c2=-0.0035, c3=0.00028)
+    """
+
+    kind: Literal["factor"] = "factor"
+    c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
+    c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)
+    c3: q.CloudCoefficient = Number(0.00028, source=CLARK)
+
+
+class CloudLayer(Part):
+    """Opaque layer: adds ``(1 - clear) N/10 emissivity exp(-base/8200 m)`` to the clear sky's emissivity.
+
+    Examples
+    --------
+    >>> CloudLayer(base=2000)
+    CloudLayer(emissivity=1, base=2000 m)
+    """
+
+    kind: Literal["layer"] = "layer"
+    emissivity: q.CloudEmissivity = Number(1.0, source=MARTIN)
+    base: q.CloudBase = Number(1200.0, source="a typical base of low clouds (WMO-No. 407)", assumed=True)
+
+
+Cloud = Annotated[CloudFactor | CloudLayer, Field(discriminator="kind"), Shorthand(word="kind")]
+
+
+def _timezone(text: str) -> str:
+    """Accept an IANA name or a fixed offset such as ``UTC+4`` or ``UTC-03:30``."""
+    if utc_offset_minutes(text) is not None:
+        return text
+    from zoneinfo import ZoneInfo
+
+    try:
+        ZoneInfo(text)
+    except (KeyError, ValueError, OSError):
+        raise problem(
+            f"'{text}'", "an IANA time zone such as Europe/Paris, or UTC+4", _nearest(text)
+        ) from None
+    return text
+
+
+def _nearest(text: str) -> str:
+    from zoneinfo import available_timezones
+
+    return did_you_mean(text, available_timezones()) or "The position of the sun needs a time zone."
+
+
+def utc_offset_minutes(text: str) -> int | None:
+    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; None for any other text."""
+    match = re.fullmatch(r"UTC(?:([+-])(\d{1,2})(?::(\d{2}))?)?", text)
+    if match is None:
+        return None
+    sign, hours, minutes = match.groups()
+    total = 60 * int(hours or 0) + int(minutes or 0)
+    return None if total > 14 * 60 or int(minutes or 0) > 59 else (-total if sign == "-" else total)
+
+
+class Site(Part):
+    """Site of the building: position, clock, wind, sky.
+
+    Examples
+    --------
+    >>> site = Site(latitude=48.1, longitude=11.6, altitude=520, timezone="Europe/Berlin")
+    >>> site.diffuse
+    'perez'
+    """
+
+    latitude: q.Latitude
+    longitude: q.Longitude
+    altitude: q.Altitude
+    air_density: q.AirDensity | None = None
+    air_specific_heat: q.AirSpecificHeat | None = None
+    timezone: Annotated[str, AfterValidator(_timezone)] = Field(
+        description="Time zone of the local clock: an IANA name such as Europe/Paris, or UTC+4"
+    )
+    ground_reflectance: q.GroundReflectance = Number(
+        0.2, source="Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9"
+    )
+    wind: Wind = Field(default_factory=lambda: Wind(), description="Wind profile")
+    sky: Sky = Field(
+        default_factory=lambda: MartinBerdahlSky(kind="martin_berdahl"),
+        description="Long-wave emission of the sky",
+    )
+    cloud: Cloud = Field(
+        default_factory=CloudLayer,
+        description="Effect of clouds on the sky's emissivity: as a factor, or as an opaque layer",
+    )
+    diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
+        "perez", description="Model of diffuse short-wave radiation on a tilted plane"
+    )
+    horizon: tuple[tuple[q.HorizonAzimuth, q.HorizonElevation], ...] = Field(
+        (),
+        description="Azimuth, rising, and elevation of terrain and far obstacles; interpolated between them, "
+        "none: free",
+    )
+    self_shading: bool = Field(True, description="Whether surfaces with vertices shade each other")
+
+    @model_validator(mode="after")
+    def _around(self) -> Site:
+        azimuths = [float(azimuth) for azimuth, _ in self.horizon]
+        for before, after in pairwise([*azimuths, 360.0]):
+            if self.horizon and after <= before:
+                refuse(
+                    fault(
+                        ("horizon",),
+                        f"azimuth {after:g} after {before:g}",
+                        "rising azimuths, clockwise from north, each once",
+                        "Sort the points by azimuth; write 0 in place of 360.",
+                    )
+                )
+        return self
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _clouds_of_the_sky(cls, raw: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Take the effect of clouds that belongs to the model of the clear sky, where none is given."""
+        if not isinstance(raw, Mapping):
+            return handler(raw)
+        cloud = raw.get("cloud")
+        if cloud is None:
+            site = handler({**raw, "cloud": {"kind": _cloud_kind(raw.get("sky"))}})
+            site.model_fields_set.discard("cloud")
+            return site
+        if isinstance(cloud, Mapping) and "kind" not in cloud:
+            kind = "layer" if {"emissivity", "base"} & set(cloud) else "factor"
+            raw = {**raw, "cloud": {"kind": kind, **cloud}}
+        return handler(raw)
+
+
+def _cloud_kind(sky: Any) -> str:
+    """The layer is by the authors of ``martin_berdahl``; the other models are used with the factor."""
+    kind = sky.get("kind") if isinstance(sky, Mapping) else getattr(sky, "kind", sky)
+    return "layer" if kind in (None, "martin_berdahl") else "factor"

@@ -1,0 +1,1 @@
+"""What designs are judged by: objectives, their reductions and the cooling of rooms."""

@@ -1,0 +1,1 @@
+"""Designs: variables, inputs, runs, ranking and results."""

@@ -1,0 +1,1 @@
+"""Surfaces, materials, windows and what shades them."""

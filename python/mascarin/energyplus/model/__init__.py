@@ -1,0 +1,1 @@
+"""The objects of a file, and what all steps of a conversion share."""

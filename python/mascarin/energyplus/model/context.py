@@ -1,0 +1,127 @@
+"""What the parts of a conversion share: the file, the findings, names, and the sections so far."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from mascarin.building.parts.description import Description
+from mascarin.energyplus.model.findings import Findings
+from mascarin.energyplus.model.handlers import reads
+from mascarin.energyplus.model.idf import IdfModel, IdfObject
+
+Section = dict[str, Any]
+#: Sections of a description, in its order: that of the written file.
+SECTIONS: Final = tuple(name for name in Description.model_fields if name != "name")
+
+
+@dataclass
+class Names:
+    """Names of Mascarin for names of EnergyPlus.
+
+    Attributes
+    ----------
+    by_original : dict of (str, str) to str
+        Name by section and name in the file, in small letters.
+    original : dict of str to dict of str to str
+        Name by name in the file, by section.
+    """
+
+    by_original: dict[tuple[str, str], str] = field(default_factory=dict)
+    original: dict[str, dict[str, str]] = field(default_factory=dict)
+    taken: set[tuple[str, str]] = field(default_factory=set)
+
+    def of(self, section: str, name: str) -> str:
+        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case."""
+        key = (section, name.strip().casefold())
+        if key not in self.by_original:
+            self.by_original[key] = self.new(section, name)
+            self.original.setdefault(section, {})[name.strip()] = self.by_original[key]
+        return self.by_original[key]
+
+    def new(self, section: str, name: str) -> str:
+        """A name like this one that no other part has."""
+        # Results of zones, surfaces, windows and sensors are named after them: one set of names.
+        room = "parts" if section in ("zones", "surfaces", "windows") else section
+        plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
+        plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
+        candidate, count = plain, 1
+        while (room, candidate.casefold()) in self.taken:
+            count += 1
+            candidate = f"{plain}_{count}"
+        self.taken.add((room, candidate.casefold()))
+        return candidate
+
+
+@dataclass
+class Context:
+    """A conversion in progress.
+
+    Attributes
+    ----------
+    model : IdfModel
+        The file.
+    findings : Findings
+        What is not carried over as it is.
+    names : Names
+        Names of the parts.
+    sections : dict of str to dict
+        The description, as far as it is made.
+    """
+
+    model: IdfModel
+    findings: Findings = field(default_factory=Findings)
+    names: Names = field(default_factory=Names)
+    sections: dict[str, Section] = field(default_factory=dict)
+
+    def section(self, name: str) -> Section:
+        """A section of the description.
+
+        Raises
+        ------
+        KeyError
+            A description has no such section: it would be lost.
+        """
+        if name not in SECTIONS:
+            raise KeyError(f"{name}: expected one of {', '.join(SECTIONS)}")
+        return self.sections.setdefault(name, {})
+
+    def ordered(self) -> Section:
+        """All sections that are not empty, in the order of the description."""
+        return {name: self.sections[name] for name in SECTIONS if self.sections.get(name)}
+
+    @reads("Zone")
+    def zone_items(self) -> list[IdfObject]:
+        """Zones of the file."""
+        return self.model.of("Zone")
+
+    @reads("Zone", "ZoneList", "Space", "SpaceList")
+    def zones_of(self, user: IdfObject, *keys: str) -> list[IdfObject]:
+        """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
+
+        Raises
+        ------
+        InputError
+            There is no such zone.
+        """
+        model, name_of_target = self.model, user.text(*keys)
+        if (zone := model.named(name_of_target, "Zone")) is not None:
+            return [zone]
+        if (zones := model.named(name_of_target, "ZoneList")) is not None:
+            return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
+        if (space := model.named(name_of_target, "Space")) is not None:
+            return [model.require(space, "zone_name", "Zone")]
+        if (spaces := model.named(name_of_target, "SpaceList")) is not None:
+            space_objects = [
+                model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")
+            ]
+            return [model.require(space, "zone_name", "Zone") for space in space_objects]
+        # Named so that the error lists the zones.
+        key = next((key for key in keys if user.text(key)), keys[0])
+        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)]
+
+
+def listed(item: IdfObject, wrapper: str) -> list[str]:
+    """Names in the groups of a list."""
+    return [str(value) for row in item.rows(wrapper) for value in row.values()]

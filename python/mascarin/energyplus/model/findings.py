@@ -1,0 +1,87 @@
+"""What a conversion carried over in another form or not at all, object by object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+from mascarin.energyplus.model.idf import IdfObject
+
+Level = Literal["left out", "approximated", "no effect"]
+
+#: Levels in the order in which they are listed.
+LEVELS: Final[tuple[Level, ...]] = ("left out", "approximated", "no effect")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One object, or one property of it, that is not carried over as it is.
+
+    Attributes
+    ----------
+    level : str
+        ``left out``: not carried over, the results change. ``approximated``: carried over in another form,
+        whose effect is stated. ``no effect``: not needed here.
+    kind, name : str
+        Class and name of the object; several names for objects of the same kind without effect.
+    line : int or None
+        Line in the file.
+    what : str
+        What was found.
+    effect : str
+        What this does to the results.
+    """
+
+    level: Level
+    kind: str
+    name: str
+    line: int | None
+    what: str
+    effect: str
+
+    def text(self) -> str:
+        """The finding on one line."""
+        position = "" if self.line is None else f"line {self.line}: "
+        name = f" '{self.name}'" if self.name else ""
+        return f"{position}{self.kind}{name}: {self.what}: {self.effect}"
+
+
+@dataclass
+class Findings:
+    """Findings in the order in which they were made, each once."""
+
+    unique: dict[Finding, None] = field(default_factory=dict)
+    _objects: set[tuple[str, str, int | None]] = field(default_factory=set)
+
+    def left_out(self, item: IdfObject, what: str, effect: str) -> None:
+        """Note an object or property that is not carried over and changes the results."""
+        self._add("left out", item, what, effect)
+
+    def approximated(self, item: IdfObject, what: str, effect: str) -> None:
+        """Note an object or property that is carried over in another form."""
+        self._add("approximated", item, what, effect)
+
+    def no_effect(self, items: Iterable[IdfObject], what: str, effect: str) -> None:
+        """Note objects of one class that are not needed."""
+        objects = list(items)
+        if len(objects) == 1:
+            self._add("no effect", objects[0], what, effect)
+        elif objects:
+            count = f"{len(objects)} objects"
+            self.unique[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
+
+    def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
+        self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
+        self._objects.add((item.kind, item.name, item.line))
+
+    def about(self, item: IdfObject) -> bool:
+        """Whether something is noted about an object."""
+        return (item.kind, item.name, item.line) in self._objects
+
+    def of(self, level: Level) -> list[Finding]:
+        """Findings of one level, by line."""
+        return sorted(
+            (finding for finding in self.unique if finding.level == level),
+            key=lambda finding: finding.line or 0,
+        )

@@ -1,0 +1,379 @@
+"""Schedules of EnergyPlus as years: compact, year/week/day, constant, file."""
+
+from __future__ import annotations
+
+import calendar
+import csv
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import date, timedelta
+from pathlib import Path
+from typing import Final
+
+from mascarin._io.regular import require_regular
+from mascarin._io.tables import csv_refused
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.field_checks import finite
+from mascarin.energyplus.model.handlers import reads
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
+from mascarin.tables.timezones import YEARS
+
+SCHEDULES: Final = (
+    "Schedule:Compact",
+    "Schedule:Constant",
+    "Schedule:Year",
+    "Schedule:File",
+    "Schedule:File:Shading",
+    "ExternalInterface:Schedule",
+)
+_WEEKS: Final = ("Schedule:Week:Daily", "Schedule:Week:Compact")
+_DAYS: Final = ("Schedule:Day:Hourly", "Schedule:Day:Interval", "Schedule:Day:List")
+_MONTHS: Final = {name.casefold(): k for k, name in enumerate(calendar.month_name) if name} | {
+    name.casefold(): k for k, name in enumerate(calendar.month_abbr) if name
+}
+_GROUPS: Final = {
+    "alldays": DAYS,
+    "weekdays": ("monday", "tuesday", "wednesday", "thursday", "friday"),
+    "weekends": ("saturday", "sunday"),
+    "holidays": ("holiday",),
+    **{day: (day,) for day in DAYS},
+    **dict.fromkeys(("summerdesignday", "winterdesignday", "customday1", "customday2"), ()),
+}
+#: Set points that never act, in place of heating or cooling that is not available [degC].
+NEVER_HEATS, NEVER_COOLS = -50.0, 80.0
+
+
+@reads(*SCHEDULES)
+def year(context: Context, user: IdfObject, *keys: str, default: float = 1.0) -> Year:
+    """Values of the schedule that a field names; the default all year where it names none.
+
+    Raises
+    ------
+    InputError
+        The schedule does not exist or cannot be read.
+    """
+    key = next((key for key in keys if user.text(key)), None)
+    if key is None:
+        return constant(default)
+    item = context.model.require(user, key, *SCHEDULES)
+    return _year(context, item)
+
+
+def _year(context: Context, item: IdfObject) -> Year:
+    if item.kind == "Schedule:Constant":
+        return constant(item.number("hourly_value") or 0.0)
+    if item.kind == "Schedule:Compact":
+        return _compact(context, item)
+    if item.kind == "Schedule:Year":
+        return _weeks(context, item)
+    if item.kind == "Schedule:File":
+        return _file(context, item)
+    context.findings.left_out(
+        item, "values from another program or file", "its first value, or 0, is used all year"
+    )
+    return constant(item.number("initial_value") or 0.0)
+
+
+def fraction(context: Context, name: str, values: Year) -> tuple[str | None, float]:
+    """Enter a schedule of a fraction.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    name : str
+        Name of the schedule, in words.
+    values : Year
+        Values, none below 0.
+
+    Returns
+    -------
+    tuple of (str or None, float)
+        Its name, None where the value is the same all year, and the factor by which it is to be multiplied:
+        fractions of Mascarin are at most 1.
+    """
+    constant_value = values.constant
+    if constant_value is not None:
+        return None, constant_value
+    most = max(1.0, *values.values)
+    return _entered(context, name, combined(lambda value: value / most, values), "fraction"), most
+
+
+def temperature(context: Context, name: str, values: Year) -> str | float:
+    """Enter a schedule of a temperature; the number where it is the same all year. [degC]"""
+    constant_value = values.constant
+    return constant_value if constant_value is not None else _entered(context, name, values, "temperature")
+
+
+def _entered(context: Context, name: str, values: Year, kind: str) -> str:
+    """Name of a schedule with these values; one that is there already, if it is equal."""
+    description = plain(values, kind, holidays(context))
+    held = context.section("schedules")
+    for existing_name, other in held.items():
+        if other == description:
+            return str(existing_name)
+    free = context.names.new("schedules", name)
+    held[free] = description
+    return free
+
+
+# --- the year that is simulated -----------------------------------------------------------------------------
+
+
+@reads("RunPeriod")
+def calendar_year(context: Context) -> int:
+    """Year without a 29 February whose days of the week are those of the run period."""
+    item = context.model.one("RunPeriod")
+    if item is None:
+        return 2017
+    begin_year = item.number("begin_year")
+    if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
+        raise item.error(
+            f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
+        )
+    if begin_year is not None and not calendar.isleap(int(begin_year)):
+        return int(begin_year)
+    month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
+    names = [name.casefold() for name in calendar.day_name]
+    word = item.word("day_of_week_for_start_day")
+    weekday = names.index(word) if word in names else 6
+    if begin_year is not None and word not in names:
+        weekday = day_of(item, int(begin_year), month, day).weekday()
+    years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
+    return next(candidate for candidate in years if day_of(item, candidate, month, day).weekday() == weekday)
+
+
+def day_of(item: IdfObject, in_year: int, month: int, day: int) -> date:
+    """A day of a year; 29 February counts as the 28th.
+
+    Raises
+    ------
+    InputError
+        There is no such day.
+    """
+    try:
+        return date(in_year, month, 28 if (month, day) == (2, 29) else day)
+    except (ValueError, OverflowError):
+        raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
+
+
+@reads("RunPeriodControl:SpecialDays")
+def holidays(context: Context) -> list[str]:
+    """Holidays of the file, as ``MM-DD``, in order."""
+    dates: set[str] = set()
+    for item in context.model.of("RunPeriodControl:SpecialDays"):
+        if item.word("special_day_type") not in ("holiday", ""):
+            continue
+        first = _date(item, item.text("start_date"), calendar_year(context))
+        for k in range(int(item.number("duration") or 1)):
+            dates.add(f"{first + timedelta(days=k):%m-%d}")
+    return sorted(dates)
+
+
+def _date(item: IdfObject, text: str, in_year: int) -> date:
+    """A date such as 12/25, December 25, 25 Dec, 4th Thursday in November, Last Monday in May."""
+    words = re.findall(r"[a-z]+|\d+", text.casefold())
+    numbers = [int(word) if len(word) < 9 else 0 for word in words if word.isdigit()]  # no day is 0
+    months = [_MONTHS[word] for word in words if word in _MONTHS]
+    weekday = next((k for k, name in enumerate(calendar.day_name) if name.casefold() in words), None)
+    try:
+        if weekday is not None and months:
+            days = [
+                date(in_year, months[0], d)
+                for d in range(1, calendar.monthrange(in_year, months[0])[1] + 1)
+                if date(in_year, months[0], d).weekday() == weekday
+            ]
+            return days[-1] if "last" in words else days[numbers[0] - 1]
+        if months:
+            return date(in_year, months[0], numbers[0])
+        return date(in_year, numbers[0], numbers[1])
+    except (IndexError, ValueError):
+        raise item.error(f"found a date '{text}'", "a day such as 12/25", "Correct the date") from None
+
+
+def _end(item: IdfObject, text: str) -> str:
+    """A last day as ``MM-DD``; 29 February counts as the 28th."""
+    cleaned = re.sub(r"\b0?2/29\b", "2/28", text)
+    return f"{_date(item, cleaned, 2017):%m-%d}"
+
+
+# --- classes of schedules -----------------------------------------------------------------------------------
+
+
+def _compact(context: Context, item: IdfObject) -> Year:
+    words = [str(row.get("field", "")).strip() for row in item.rows("data")]
+    if not words:
+        words = [str(value).strip() for key, value in item.fields.items() if key.startswith("field")]
+    seasons: list[tuple[str, Week]] = []
+    for end, days in _throughs(item, words):
+        seasons.append((end, _week(context, item, days)))
+    if not seasons or seasons[-1][0] != "12-31":
+        last = seasons[-1][0] if seasons else "no day"
+        raise item.error(f"values through {last}", "values through 12/31", "Add the rest of the year")
+    return year_of(seasons)
+
+
+def _throughs(item: IdfObject, words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
+    """Seasons of a compact schedule: last day, and days with the words that say which they are."""
+    end, who = "", ""
+    days: list[tuple[str, Day]] = []
+    points: list[tuple[int, float]] = []
+    last: int | None = None
+    for word in words:
+        head, _, tail = word.partition(":")
+        low = head.casefold().strip()
+        if low.startswith("through"):
+            if end:
+                yield end, _closed(item, days, who, points)
+            text = tail.strip() or low.removeprefix("through").strip()
+            end, days, who, points = _end(item, text), [], "", []
+        elif low.startswith("for"):
+            days = _closed(item, days, who, points) if who else days
+            who, points = (low.removeprefix("for") + " " + tail.casefold()).strip(), []
+        elif low.startswith("interpolate"):
+            continue
+        elif low.startswith("until"):
+            last = _minute(item, (low.removeprefix("until") + ":" + tail).strip(": "))
+        elif word:
+            points.append((last or 0, _value(item, word)))
+    if end:
+        yield end, _closed(item, days, who, points)
+
+
+def _value(item: IdfObject, word: str) -> float:
+    try:
+        return finite(word)
+    except ValueError:
+        raise item.error(f"found '{word}'", "a number after Until", "Correct the schedule") from None
+
+
+def _minute(item: IdfObject, text: str) -> int:
+    match = re.fullmatch(r"(\d{1,2}):(\d{2})(?::\d{2})?", text.replace(" ", ""))
+    if match is None or int(match[1]) * 60 + int(match[2]) > 1440:
+        raise item.error(f"found a time '{text}'", "00:01 to 24:00", "Correct the schedule")
+    return int(match[1]) * 60 + int(match[2])
+
+
+def _closed(
+    item: IdfObject, days: list[tuple[str, Day]], who: str, points: list[tuple[int, float]]
+) -> list[tuple[str, Day]]:
+    """Days with the one that has just ended; its points hold the minute *until* which a value is valid."""
+    ends = [minute for minute, _ in points]
+    if not points or ends != sorted(set(ends)) or ends[-1] != 1440:
+        raise item.error(
+            f"times until {', '.join(f'{m // 60}:{m % 60:02d}' for m in ends) or 'nothing'} for '{who}'",
+            "rising times until 24:00",
+            "Correct the schedule",
+        )
+    starts = [0, *ends[:-1]]
+    return [*days, (who, tuple(zip(starts, (value for _, value in points), strict=True)))]
+
+
+def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) -> Week:
+    """A day of each kind; the first entry that names it counts."""
+    day_of_kind: dict[str, Day] = {}
+    for who, day in days:
+        words = re.findall(r"[a-z0-9]+", who)
+        for word in words:
+            if word == "allotherdays":
+                names: Sequence[str] = DAYS
+            elif word in _GROUPS or f"{word}s" in _GROUPS:
+                names = _GROUPS.get(word, _GROUPS.get(f"{word}s", ()))
+            else:
+                raise item.error(
+                    f"found '{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it"
+                )
+            for name in names:
+                day_of_kind.setdefault(name, day)
+    missing = [name for name in DAYS[:7] if name not in day_of_kind]
+    if missing:
+        raise item.error(f"no values for {', '.join(missing)}", "values for every day", "Add AllOtherDays")
+    day_of_kind.setdefault("holiday", day_of_kind["sunday"])
+    return tuple(day_of_kind[name] for name in DAYS)
+
+
+@reads(*_WEEKS)
+def _weeks(context: Context, item: IdfObject) -> Year:
+    seasons = []
+    for row in item.rows("schedule_weeks"):
+        week = context.model.require(item, "schedule_week_name", *_WEEKS, name=str(row["schedule_week_name"]))
+        month, day = int(row.get("end_month", 12)), int(row.get("end_day", 31))
+        seasons.append((f"{month:02d}-{28 if (month, day) == (2, 29) else day:02d}", _week_of(context, week)))
+    if not seasons or seasons[-1][0] != "12-31":
+        raise item.error("weeks that end before 31 December", "weeks of a whole year", "Add the rest")
+    return year_of(sorted(seasons))
+
+
+@reads(*_DAYS)
+def _week_of(context: Context, item: IdfObject) -> Week:
+    if item.kind == "Schedule:Week:Daily":
+        keys = [f"{name}_schedule_day_name" for name in DAYS]
+        return tuple(_day(context.model.require(item, key, *_DAYS)) for key in keys)
+    days = []
+    for row in item.rows("data"):
+        who = re.sub(r"^for:?", "", str(row.get("daytype_list", "")).strip().casefold())
+        day_schedule = context.model.require(
+            item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name"))
+        )
+        days.append((who, _day(day_schedule)))
+    return _week(context, item, days)
+
+
+def _day(item: IdfObject) -> Day:
+    if item.kind == "Schedule:Day:Hourly":
+        return tuple((60 * k, item.number(f"hour_{k + 1}") or 0.0) for k in range(24))
+    if item.kind == "Schedule:Day:List":
+        minutes = int(item.number("minutes_per_item") or 60)
+        values = [_value(item, str(next(iter(row.values())))) for row in item.rows("extensions")]
+        return tuple((minutes * k, value) for k, value in enumerate(values[: 1440 // minutes]))
+    pairs = []
+    for row in item.rows("data"):
+        text = str(row.get("time", "24:00")).casefold().removeprefix("until").strip(": ")
+        pairs.append((_minute(item, text), _value(item, str(row.get("value_until_time", 0.0)))))
+    return _closed(item, [], item.name, pairs)[0][1]
+
+
+def _file(context: Context, item: IdfObject) -> Year:
+    """Values of a file: each day is a season of its own, unless it equals the one before."""
+    values = _column(context, item)
+    minutes = int(item.number("minutes_per_item") or 60)
+    count = 1440 // minutes
+    if len(values) == 366 * count:
+        del values[59 * count : 60 * count]
+    if len(values) != 365 * count:
+        raise item.error(
+            f"{len(values)} values", f"{365 * count}: a year by {minutes} minutes", "Correct file or rows"
+        )
+    first = date(2017, 1, 1)
+    seasons = []
+    for k in range(365):
+        day = tuple((minutes * j, value) for j, value in enumerate(values[k * count : (k + 1) * count]))
+        seasons.append((f"{first + timedelta(days=k):%m-%d}", (day,) * len(DAYS)))
+    return year_of(seasons)
+
+
+def _column(context: Context, item: IdfObject) -> list[float]:
+    named = Path(item.text("file_name").replace("\\", "/"))
+    folder = context.model.file.parent
+    path = next(
+        (candidate for candidate in (folder / named, folder / named.name) if candidate.is_file()), None
+    )
+    if path is None:
+        raise item.error(f"file_name: found no file '{named}'", f"a table in {folder}", "Put it there")
+    mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[
+        item.word("column_separator") or "comma"
+    ]
+    with (
+        csv_refused(str(path)),
+        require_regular(path).open(encoding="utf-8-sig", errors="replace", newline="") as lines,
+    ):
+        rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
+    column = int(item.needed("column_number")) - 1
+    rows = [row for row in rows[int(item.number("rows_to_skip_at_top") or 0) :] if row]
+    try:
+        return [finite(row[column]) for row in rows]
+    except (IndexError, ValueError) as error:
+        raise item.error(
+            f"{path.name}: {error}", f"numbers in column {column + 1}", "Correct the file"
+        ) from None

@@ -1,0 +1,1 @@
+"""Zones, their gains, air and plants."""

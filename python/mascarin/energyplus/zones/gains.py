@@ -1,0 +1,235 @@
+"""Internal heat gains: people, lights, equipment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import fraction, year
+from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.zones.zones import Zone
+
+_EQUIPMENT: Final = (
+    "ElectricEquipment",
+    "GasEquipment",
+    "HotWaterEquipment",
+    "SteamEquipment",
+    "OtherEquipment",
+)
+KINDS: Final = ("People", "Lights", *_EQUIPMENT)
+_ZONE_KEYS: Final = (
+    "zone_or_zonelist_or_space_or_spacelist_name",
+    "zone_or_zonelist_name",
+    "zone_name",
+)
+
+
+@dataclass(frozen=True)
+class Heat:
+    """Heat of one object in one zone.
+
+    Attributes
+    ----------
+    item : IdfObject
+        The object.
+    name : str
+        Its name in the zone.
+    power : Year
+        Sensible heat. [W]
+    radiative : float
+        Radiative fraction. [-]
+    """
+
+    item: IdfObject
+    name: str
+    power: Year
+    radiative: float
+
+
+@reads(*KINDS)
+def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, float]) -> None:
+    """Enter all internal gains.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    air : dict of str to float
+        Temperature of each at which the sensible heat of people is taken. [degC]
+
+    Raises
+    ------
+    InputError
+        A zone or schedule that does not exist.
+    """
+    by_zone: dict[str, list[Heat]] = {key: [] for key in zones}
+    for item in context.model.of("People"):
+        for zone in _zones(context, item, zones):
+            by_zone[zone.item.name.casefold()].append(
+                _people(context, item, zone, air[zone.item.name.casefold()])
+            )
+    for item in context.model.of("Lights"):
+        for zone in _zones(context, item, zones):
+            by_zone[zone.item.name.casefold()].append(_lights(context, item, zone, zones))
+    for item in context.model.of(*_EQUIPMENT):
+        if not any(item.text(key) for key in _ZONE_KEYS):
+            context.findings.no_effect([item], "equipment without a zone", "its heat is outside of the zones")
+            continue
+        for zone in _zones(context, item, zones):
+            by_zone[zone.item.name.casefold()].append(_equipment(context, item, zone, zones))
+    for key, heats in by_zone.items():
+        _enter(context, zones[key], heats)
+
+
+def _zones(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zone]:
+    named = (zones.get(zone.name.casefold()) for zone in context.zones_of(item, *_ZONE_KEYS))
+    return [zone for zone in named if zone is not None]
+
+
+def people_in(context: Context, zone: Zone, zones: dict[str, Zone]) -> float:
+    """Number of people in a zone at a schedule of 1."""
+    return sum(
+        _number_of_people(item, zone)
+        for item in context.model.of("People")
+        if zone in _zones(context, item, zones)
+    )
+
+
+def _number_of_people(item: IdfObject, zone: Zone) -> float:
+    method = item.word("number_of_people_calculation_method")
+    if method.startswith("people/"):
+        return item.needed("people_per_floor_area", "people_per_zone_floor_area") * zone.floor
+    if method.startswith("area/"):
+        return zone.floor / max(item.needed("floor_area_per_person", "zone_floor_area_per_person"), 1e-9)
+    return item.needed("number_of_people")
+
+
+def sensible(activity: float, air: float) -> float:
+    """Sensible heat of a person by the heat of its activity and the air temperature. [W]
+
+    A fit of the tables of the ASHRAE Handbook of Fundamentals, as in the EnergyPlus Engineering Reference
+    (internal gains, people).
+    """
+    m, t = activity, air
+    heat = (
+        6.461927 + 0.946892 * m + 0.0000255737 * m**2 + 7.139322 * t - 0.0627909 * t * m
+        + 0.0000589172 * t * m**2 - 0.198550 * t**2 + 0.000940018 * t**2 * m - 0.00000149532 * t**2 * m**2
+    )  # fmt: skip
+    return min(max(heat, 0.0), activity)
+
+
+def _people(context: Context, item: IdfObject, zone: Zone, air: float) -> Heat:
+    count = _number_of_people(item, zone)
+    present = year(context, item, "number_of_people_schedule_name")
+    activity = year(context, item, "activity_level_schedule_name", default=120.0)
+    share = item.number("sensible_heat_fraction")
+    if share is None:
+        power = combined(lambda presence, heat: count * presence * sensible(heat, air), present, activity)
+        context.findings.approximated(
+            item,
+            "sensible heat that EnergyPlus changes with the air temperature",
+            f"that at {air:.1f} degC is used, about 4 % less for each kelvin above it; moisture is left out",
+        )
+    else:
+        sensible_share = share
+        power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
+    return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
+
+
+def _design_level(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
+    method = item.word("design_level_calculation_method")
+    if method in ("watts/area", "power/area"):
+        keys = ("watts_per_floor_area", "watts_per_zone_floor_area", "power_per_floor_area")
+        return item.needed(*keys, "power_per_zone_floor_area") * zone.floor
+    if method in ("watts/person", "power/person"):
+        return item.needed("watts_per_person", "power_per_person") * people_in(context, zone, zones)
+    return item.needed("design_level", "lighting_level")
+
+
+def _lights(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
+    level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
+    taken = item.number("return_air_fraction") or 0.0
+    radiant, visible = (item.number(f"fraction_{part}") or 0.0 for part in ("radiant", "visible"))
+    if taken > 0.0:
+        context.findings.approximated(
+            item, f"{taken:.0%} of its heat in the return air", "this part does not enter the zone"
+        )
+    if visible > 0.0:
+        context.findings.approximated(
+            item, "visible radiation", "it is absorbed as long-wave radiation is: none leaves by the windows"
+        )
+    remaining_share = max(1.0 - taken, 1e-9)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min((radiant + visible) / remaining_share, 1.0))
+
+
+def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
+    level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
+    latent, radiant, lost = (item.number(f"fraction_{part}") or 0.0 for part in ("latent", "radiant", "lost"))
+    if latent > 0.0:
+        context.findings.approximated(
+            item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
+        )
+    remaining_share = max(1.0 - latent - lost, 0.0)
+    power = combined(lambda share: level * share * remaining_share, on)
+    return Heat(item, item.name, power, min(radiant / remaining_share, 1.0) if remaining_share > 0.0 else 0.0)
+
+
+def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
+    """Gains of a zone; heat that is taken away is subtracted from the others."""
+    if any(min(heat.power.values) < 0.0 for heat in heats):
+        heats = _netted(context, zone, heats)
+    gains: dict[str, dict[str, object]] = {}
+    for heat in heats:
+        schedule, most = fraction(context, f"{heat.name} power", _relative(heat.power))
+        power = most * _peak(heat.power)
+        if power == 0.0:
+            continue
+        name = context.names.of(f"gains of {zone.name}", heat.name)
+        gains[name] = {"power": round(power, 6)}
+        if heat.radiative > 0.0:
+            gains[name]["radiative"] = round(heat.radiative, 6)
+        if schedule is not None:
+            gains[name]["schedule"] = schedule
+    if gains:
+        context.section("zones")[zone.name]["gains"] = gains
+
+
+def _peak(power: Year) -> float:
+    return max(power.values)
+
+
+def _relative(power: Year) -> Year:
+    """A power over its largest value; 1 where it is constant."""
+    peak = _peak(power)
+    if power.constant is not None or peak <= 0.0:
+        return constant(1.0)
+    return combined(lambda value: value / peak, power)
+
+
+def _netted(context: Context, zone: Zone, heats: list[Heat]) -> list[Heat]:
+    """Sums of the convective and of the radiative heat of a zone, where both stay above zero."""
+    first = heats[0]
+    sums = []
+    for radiative, word in ((0.0, "convective"), (1.0, "radiative")):
+        shares = [heat.radiative if radiative else 1.0 - heat.radiative for heat in heats]
+        total = combined(
+            lambda *powers, shares=shares: sum(p * s for p, s in zip(powers, shares, strict=True)),
+            *(heat.power for heat in heats),
+        )
+        total = combined(lambda value: 0.0 if abs(value) < 1e-9 else value, total)
+        sums.append(Heat(first.item, f"net {word}", total, radiative))
+    if all(min(net_heat.power.values) >= 0.0 for net_heat in sums):
+        return sums
+    positive_heats = [heat for heat in heats if min(heat.power.values) >= 0.0]
+    for heat in heats:
+        if heat not in positive_heats:
+            context.findings.left_out(
+                heat.item, f"heat taken from zone '{zone.item.name}'", "the zone is warmer by this heat"
+            )
+    return positive_heats

@@ -1,0 +1,142 @@
+"""Zones: volumes, floor areas, heights, and the heat capacity of their air."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mascarin.building.parts.site import Wind, wind_factor
+from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.handlers import reads
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.errors import InputError
+
+#: Height of a zone of which neither volume nor closed surfaces are known [m].
+_USUAL_HEIGHT = 2.5
+
+
+@dataclass(frozen=True)
+class Zone:
+    """Sizes of a zone.
+
+    Attributes
+    ----------
+    item : IdfObject
+        The object.
+    name : str
+        Its name in the description.
+    volume, floor : float
+        Volume [m3] and floor area [m2].
+    outdoors, walls : float
+        Areas facing outdoors: all, and walls alone. [m2]
+    wind : float
+        Wind at the middle of the zone over that at the mast. [-]
+    """
+
+    item: IdfObject
+    name: str
+    volume: float
+    floor: float
+    outdoors: float
+    walls: float
+    wind: float
+
+
+def describe_zones(context: Context, surfaces: list[IdfSurface]) -> dict[str, Zone]:
+    """Enter all zones that have surfaces.
+
+    Returns
+    -------
+    dict of str to Zone
+        By the name in the file, in small letters.
+
+    Raises
+    ------
+    InputError
+        The file has no zones, or the volume of one is not known.
+    """
+    items = context.zone_items()
+    if not items:
+        raise InputError(f"{context.model.file}: found no Zone; expected at least one")
+    wind = Wind(**context.sections["site"]["wind"])
+    zones = {}
+    for item in items:
+        zone_surfaces = [surface for surface in surfaces if surface.zone is item]
+        facing = [
+            surface
+            for surface in surfaces
+            if surface.boundary == "zone" and surface.beyond.casefold() == item.name.casefold()
+        ]
+        masses = [mass for mass in context.model.of("InternalMass") if item in _zones_of_mass(context, mass)]
+        if not zone_surfaces and not facing and not masses:
+            context.findings.left_out(item, "a zone without surfaces", "it has no counterpart here")
+            continue
+        if (item.number("multiplier") or 1.0) > 1.0:
+            context.findings.approximated(
+                item,
+                f"a multiplier of {item.number('multiplier'):g}",
+                "temperatures and loads are those of one of the zones: multiply its loads",
+            )
+        name = context.names.of("zones", item.name)
+        sizes = _sizes(context, item, zone_surfaces, wind)
+        context.section("zones")[name] = {"volume": round(sizes.volume, 6)}
+        zones[item.name.casefold()] = sizes
+    _capacities(context)
+    return zones
+
+
+def _zones_of_mass(context: Context, mass: IdfObject) -> list[IdfObject]:
+    return context.zones_of(mass, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
+
+
+def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], wind: Wind) -> Zone:
+    floor = floor_area(item, zone_surfaces)
+    volume = item.number("volume") or 0.0
+    ceiling = item.number("ceiling_height") or 0.0
+    if volume <= 0.0:
+        volume = (
+            floor * ceiling
+            if ceiling > 0.0
+            else abs(g.signed_volume([surface.points for surface in zone_surfaces]))
+        )
+    if volume <= 0.01:
+        volume = floor * _USUAL_HEIGHT
+        if volume <= 0.0:
+            raise item.error("no volume", "a volume [m3], or surfaces that enclose it", "Give 'Volume'")
+        context.findings.approximated(
+            item, "an unknown height", f"{_USUAL_HEIGHT:g} m are used for its volume"
+        )
+    outer = [surface for surface in zone_surfaces if surface.boundary == "outdoors"]
+    heights = (
+        np.concatenate([surface.points[:, 2] for surface in zone_surfaces])
+        if zone_surfaces
+        else np.array([3.0])
+    )
+    middle = float(0.5 * (heights.min() + heights.max()))
+    return Zone(
+        item=item,
+        name=context.names.of("zones", item.name),
+        volume=volume,
+        floor=floor,
+        outdoors=sum(g.area_of(surface.points) for surface in outer),
+        walls=sum(g.area_of(surface.points) for surface in outer if surface.shape == "wall"),
+        wind=wind_factor(wind, middle),
+    )
+
+
+@reads("ZoneCapacitanceMultiplier:ResearchSpecial")
+def _capacities(context: Context) -> None:
+    """Multipliers of the heat capacity of the air."""
+    for item in context.model.of("ZoneCapacitanceMultiplier:ResearchSpecial"):
+        factor = item.number("temperature_capacity_multiplier") or 1.0
+        if factor == 1.0:
+            continue
+        named = item.text("zone_or_zonelist_name")
+        zones = context.zones_of(item, "zone_or_zonelist_name") if named else context.zone_items()
+        for zone in zones:
+            name = context.names.of("zones", zone.name)
+            if name in context.section("zones"):
+                context.section("zones")[name]["capacity_factor"] = factor

@@ -1,0 +1,1 @@
+"""Drawings of pages as SVG: charts, axes, buildings, carpets."""

@@ -1,0 +1,150 @@
+"""Which parameters have a slider, and which outputs a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.building.base.wildcards import is_pattern, matching
+from mascarin.errors import InputError, SolverError
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.building.parameters.parameter import Parameter
+    from mascarin.simulation.preparation.objectives import Array
+    from mascarin.simulation.simulation import Simulation
+
+#: Sliders without a choice, and the most that a page has.
+DEFAULT_SLIDERS: Final = 6
+MAX_SLIDERS: Final = 40
+#: Zones whose operative temperature is drawn without a choice.
+MAX_ZONES: Final = 6
+
+
+def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:
+    """Parameters by path, where ``*`` stands for any name or part of one.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    patterns : sequence of str
+        Paths.
+
+    Returns
+    -------
+    list of Parameter
+        Those that can vary, each once.
+
+    Raises
+    ------
+    InputError
+        Nothing matches, what matches cannot vary within a compiled run, or there are too many.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> [one.path for one in named(box(), ["surfaces.*.outside.absorptance"])][0]
+    'surfaces.facade.outside.absorptance'
+    """
+    by_path = {parameter.path: parameter for parameter in building.parameters()}
+    chosen: dict[str, Parameter] = {}
+    for pattern in patterns:
+        paths = _paths(building, pattern, by_path)
+        fixed = [by_path[path] for path in paths if by_path[path].structural]
+        if len(fixed) == len(paths):
+            raise InputError(
+                f"--parameters: {pattern}: found a structural number ({fixed[0].reason}), which cannot "
+                "follow a slider; expected one that varies within a compiled run. Give it with --set"
+            )
+        chosen |= {path: by_path[path] for path in paths if not by_path[path].structural}
+    if len(chosen) > MAX_SLIDERS:
+        raise InputError(
+            f"--parameters: found {len(chosen)} parameters; expected {MAX_SLIDERS} sliders at most. Narrow "
+            "the pattern"
+        )
+    return list(chosen.values())
+
+
+def _paths(building: Building, pattern: str, by_path: Mapping[str, Parameter]) -> list[str]:
+    """What a pattern matches; what is tied has one slider, that of the tie."""
+    if pattern in by_path or not is_pattern(pattern):  # the path of a tie has a star, too
+        return [building.parameter(pattern).path]
+    paths = list(matching(pattern, by_path))
+    tied = {member for path in paths for member in by_path[path].members}
+    return [path for path in paths if path not in tied]
+
+
+def strongest(building: Building, simulation: Simulation, most: int = DEFAULT_SLIDERS) -> list[Parameter]:
+    """Parameters whose ranges change the recorded temperatures most, by one run with derivatives.
+
+    Parameters
+    ----------
+    building : Building
+        The building as it is described.
+    simulation : Simulation
+        A compiled run that records temperatures.
+    most : int
+        How many.
+
+    Returns
+    -------
+    list of Parameter
+        The one with the largest effect first: derivative of the mean of all recorded temperatures times the
+        width of the range. Where there are no derivatives, those with the widest ranges.
+    """
+    everything = building.parameters()
+    without = {member for parameter in everything for member in parameter.members}
+    # The sky of the run may be that of the weather: a slider for its parameters could not be saved.
+    without |= {parameter.path for parameter in everything} - {
+        parameter.path for parameter in simulation.building.parameters()
+    }
+    varying = {
+        parameter.path: parameter
+        for parameter in everything
+        if parameter.varies and not parameter.structural and parameter.path not in without
+    }
+    try:
+        slopes = simulation.gradient(_mean_of_all).slopes
+        width = {
+            path: abs(slopes.get(path, 0.0)) * (parameter.high - parameter.low)
+            for path, parameter in varying.items()
+        }
+    except SolverError:
+        width = {path: _relative_width(parameter) for path, parameter in varying.items()}
+    order = sorted(varying, key=lambda path: -width[path])
+    return [varying[path] for path in order[:most] if np.isfinite(width[path])]
+
+
+def _mean_of_all(series: Mapping[str, Array]) -> tuple[float, Mapping[str, Array]]:
+    count = sum(len(values) for values in series.values())
+    total = sum(float(values.sum()) for values in series.values())
+    return total / count, {name: np.full(len(values), 1.0 / count) for name, values in series.items()}
+
+
+def _relative_width(parameter: Parameter) -> float:
+    return (parameter.high - parameter.low) / (abs(parameter.high) + abs(parameter.low))
+
+
+def curves(building: Building) -> list[str]:
+    """Outputs that are drawn without a choice: operative temperatures, then ideal loads, of the first zones.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> curves(box())
+    ['room.operative_temperature']
+    """
+    outputs = building.outputs()
+    operative = [output.name for output in outputs if output.kind == "operative_temperature"][:MAX_ZONES]
+    loads = [output.name for output in outputs if output.kind in ("heating_load", "cooling_load")]
+    zones = {name.rpartition(".")[0] for name in operative}
+    chosen = operative + [name for name in loads if name.rpartition(".")[0] in zones]
+    return chosen or [output.name for output in outputs if output.kind == "face_temperature"][: 2 * MAX_ZONES]

@@ -1,0 +1,1 @@
+"""The frame, style and policy of all pages."""

@@ -1,0 +1,34 @@
+"""Renders the templates of the report of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mascarin.pages.frame.cross_references import CrossReferences
+from mascarin.pages.frame.template import CURVES, environment, frame
+from mascarin.pages.study.data.series import Series
+from mascarin.pages.study.page import context, explorer
+
+
+def page(study: Mapping[str, Any], series: Series) -> str:
+    """Make the HTML of a report.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    series : Series
+        Curves.
+    """
+    references = CrossReferences()
+    template = environment(references).get_template("pages/study/page.html")
+    values = context(study, series) | frame(
+        styles=["pages/frame/vendor/uPlot.min.css"],
+        libraries=[CURVES],
+        scripts=["pages/frame/curves.js", "pages/study/report.js"],
+        data=explorer(study, series),
+    )
+    template.render(values)  # counts the tables and figures to which texts refer
+    references.restart()
+    return template.render(values)

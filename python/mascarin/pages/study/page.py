@@ -1,0 +1,308 @@
+"""The values of the whole page: head, sections, and data of the interactive curves."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from datetime import datetime
+from types import ModuleType
+from typing import Any, Final
+
+from mascarin._io import units
+from mascarin.figures import colors, text
+from mascarin.pages.study.data.labels import (
+    label_of,
+    main_model,
+    model_label,
+    period_label,
+    short_periods,
+    unit_of,
+)
+from mascarin.pages.study.data.series import Series
+from mascarin.pages.study.figures.comparison_data import model_looks
+from mascarin.pages.study.sections import (
+    carpets,
+    comparison,
+    criteria,
+    curves,
+    data,
+    energy,
+    error_sources,
+    model,
+    notes,
+    parameters,
+    phase_change,
+    reproduce,
+    residuals,
+    sensitivity,
+)
+
+#: In the order of the page.
+SECTIONS: Final[tuple[ModuleType, ...]] = (
+    criteria,
+    model,
+    data,
+    sensitivity,
+    parameters,
+    comparison,
+    curves,
+    carpets,
+    phase_change,
+    residuals,
+    error_sources,
+    energy,
+    notes,
+    reproduce,
+)
+
+
+def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+    """Everything the template needs.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    series : Series
+        Curves.
+    """
+    observed = study.get("observed", {})
+    return {
+        "title": study["title"],
+        "intro": study.get("intro", []),
+        "looks": _looks(study, series),
+        "observed": {"label": observed.get("label", "measured"), "note": observed.get("note", "")},
+        "facts": _facts(study),
+        "headline": headline(study, series),
+        "sections": _sections(study, series),
+        "version": study.get("mascarin_version", ""),
+        "created": _created(study.get("created")),
+        "day": _created(study.get("created")).partition(",")[0],
+    }
+
+
+def headline(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+    """Curves beside the introduction."""
+    shown = curves.headline(study, series)
+    if shown is None:
+        return None
+    return {
+        "title": f"{shown.title}, {period_label(study, short_periods(study)[-1]).lower()}",
+        "values": shown.values,
+        "errors": shown.errors,
+    }
+
+
+def _looks(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+    """What the legend of the curves of a sensor shows."""
+    model, color_of = main_model(study), model_looks(study)
+    main = model_label(study, model)
+    nominal = model_label(study, "nominal") if "nominal" in study.get("models", {}) else ""
+    return {
+        "main": {"label": main, "color": color_of.get(main, "")},
+        "nominal": {"label": nominal, "color": color_of[nominal]} if nominal and model != "nominal" else None,
+        "band": any(key.startswith("band/") for key in series.columns),
+        "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
+    }
+
+
+def _created(raw: str | None) -> str:
+    if not raw:
+        return ""
+    time = datetime.fromisoformat(raw)
+    return f"{text.day(time)}, {time:%H:%M}"
+
+
+def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Main results for the head of the page."""
+    facts: list[dict[str, str]] = []
+    criteria = study.get("criteria", [])
+    judged = [c for c in criteria if c.get("model", "fitted") == main_model(study)] or criteria
+    if judged:
+        met = sum(1 for c in judged if c.get("passed"))
+        kind = "pass" if met == len(judged) else "fail"
+        facts.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
+    facts += coverage_facts(study)
+    facts += _errors(study)
+    fitted = [p for p in study.get("parameters", {}).values() if "fitted" in p]
+    if fitted:
+        sensed = len({path for shares in study.get("sensitivity", {}).values() for path in shares})
+        note = f"of {sensed} analyzed" if sensed else "from the measurements"
+        facts.append(_fact("Calibrated parameters", str(len(fitted)), note))
+    closure = study.get("ledger", {}).get("closure")
+    if closure is not None:
+        facts.append(
+            _fact(
+                "Energy-balance residual",
+                text.significant(closure, 2),
+                "relative to the total heat exchanged",
+            )
+        )
+    return facts
+
+
+def _fact(name: str, value: str, note: str, kind: str = "") -> dict[str, str]:
+    return {"name": name, "value": value, "note": note, "kind": kind}
+
+
+def coverage_facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Part of the values of the last period that lies inside the prediction bands.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    """
+    bands = study.get("band", {})
+    for period in reversed(list(study.get("periods", {}))):
+        held = {
+            sensor: (float(share), _values(study, sensor, period))
+            for sensor, entry in bands.items()
+            if (share := entry.get("held", {}).get(period)) is not None
+        }
+        count = sum(n for _, n in held.values())
+        if not count:
+            continue
+        asked = {float(bands[sensor].get("confidence", 0.95)) for sensor in held}
+        lowest = min(held, key=lambda sensor: held[sensor][0])
+        note = f"asked: {_percents(asked)}; {period_label(study, period).lower()}, all sensors"
+        if len(held) > 1:
+            note += f"; lowest: {label_of(study, lowest)}, {text.percent(held[lowest][0], 0)}"
+        share = sum(part * n for part, n in held.values()) / count
+        return [_fact("Coverage of the prediction bands", text.percent(share, 0), note)]
+    return []
+
+
+def _percents(shares: Collection[float]) -> str:
+    return " and ".join(f"{100.0 * share:g}\u00a0%" for share in sorted(shares))
+
+
+def _values(study: Mapping[str, Any], sensor: str, period: str) -> int:
+    """Number of compared values."""
+    metrics = study.get("sensors", {}).get(sensor, {}).get(period, {})
+    return int(metrics.get(main_model(study), {}).get("n", 0))
+
+
+def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Standard deviation of the error over the sensors in the last period with metrics, for each unit."""
+    model = main_model(study)
+    sensors = study.get("sensors", {})
+    for period in reversed(list(study.get("periods", {}))):
+        by_unit: dict[str, list[float]] = {}
+        for sensor, periods in sensors.items():
+            sd = periods.get(period, {}).get(model, {}).get("sd")
+            if sd is not None:
+                by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(sd))
+        label = period_label(study, period).lower()
+        if by_unit:
+            return [
+                _fact(
+                    f"Error of the {model_label(study, model)} model",
+                    f"{_span(values)}\u00a0{unit}".strip(),
+                    f"standard deviation, {label}",
+                )
+                for unit, values in by_unit.items()
+            ]
+    return []
+
+
+def _span(values: Sequence[float]) -> str:
+    low, high = text.fixed(min(values)), text.fixed(max(values))
+    return low if low == high else f"{low}–{high}"
+
+
+def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
+    """The sections with content, numbered in their order."""
+    sections: list[dict[str, Any]] = []
+    for module in SECTIONS:
+        content = module.content(study, series)
+        if content:
+            key = module.__name__.rpartition(".")[2]
+            number = len(sections) + 1
+            tables = [_further_table(t) for t in _tables(study) if t.get("section", "comparison") == key]
+            sections.append(
+                {
+                    "id": key.replace("_", "-"),
+                    "template": f"pages/study/sections/{key}.html",
+                    "title": module.TITLE,
+                    "number": number,
+                    "content": content,
+                    "tables": tables,
+                }
+            )
+    return sections
+
+
+def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """All further tables: those by themselves, and those of the diagnosis and of the choice of days."""
+    section_tables = [study.get(key, {}).get("table") for key in ("days", "diagnosis")]
+    return [*study.get("tables", []), *(table for table in section_tables if table)]
+
+
+def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:
+    columns = table.get("columns", [])
+    rows = _cells(table)
+    return {
+        "key": "further-" + "-".join(str(table.get("title", "")).lower().split()),
+        "numeric": [any(row[k]["numeric"] for row in rows if k < len(row)) for k in range(len(columns))],
+        "title": table.get("title", ""),
+        "caption": table.get("caption", ""),
+        "columns": columns,
+        "rows": rows,
+    }
+
+
+def _cells(table: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+    """Cells of a table: numbers with the digits of their uncertainty, else those of a column alike."""
+    columns, rows = list(table.get("columns", [])), table.get("rows", [])
+    sizes = dict(table.get("uncertainty", {}))
+    sizes |= {other: other for other in sizes.values()}
+    shown = []
+    for k, name in enumerate(columns):
+        values = [row[k] if k < len(row) else None for row in rows]
+        if name in sizes:
+            size = [row[columns.index(sizes[name])] for row in rows]
+            words = [text.with_uncertainty(v, s) for v, s in zip(values, size, strict=True)]
+        elif name in table.get("significant", ()):
+            words = [text.significant(value, 2) for value in values]
+        else:
+            words = text.alike([{True: "yes", False: "no"}[v] if isinstance(v, bool) else v for v in values])
+        shown.append([_cell(word, value) for word, value in zip(words, values, strict=True)])
+    return [list(row) for row in zip(*shown, strict=True)]
+
+
+def _cell(words: str, value: Any) -> dict[str, Any]:
+    return {"text": words, "numeric": isinstance(value, int | float) and not isinstance(value, bool)}
+
+
+def explorer(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+    """Give what the interactive curves need, ready for JSON."""
+    return {
+        "series": _shown_units(series.to_dict()),
+        "observed": study.get("observed", {}).get("label", "measured"),
+        "models": {key: model_label(study, key) for key in study.get("models", {})},
+        "colors": colors.models(study.get("models", {})),
+        "main": main_model(study),
+        "sensors": {
+            key: {
+                "label": label_of(study, key),
+                "unit": units.shown(unit_of(study, key)),
+                "difference": units.difference(unit_of(study, key)),
+                "uncertainty": info.get("uncertainty", 0.0),
+            }
+            for key, info in study.get("sensor_info", {}).items()
+        },
+        "spans": _spans(study),
+    }
+
+
+def _shown_units(raw: dict[str, Any]) -> dict[str, Any]:
+    columns = {key: {**column, "unit": units.shown(column["unit"])} for key, column in raw["columns"].items()}
+    return {**raw, "columns": columns}
+
+
+def _spans(study: Mapping[str, Any]) -> list[Sequence[str]]:
+    """Short periods to be tinted behind the curves."""
+    return [
+        (period_label(study, period), *study["periods"][period]["spans"][0])
+        for period in short_periods(study)
+    ]

@@ -1,0 +1,1 @@
+"""Pages of suites of cases: Standard 140."""

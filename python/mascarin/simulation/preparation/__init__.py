@@ -1,0 +1,1 @@
+"""From a building, a climate and options to arrays that the engine runs."""

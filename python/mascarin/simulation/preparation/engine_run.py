@@ -1,0 +1,472 @@
+"""A run as plain arrays: all that the engine needs, without the description, the weather or pandas."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin import _engine
+from mascarin._io import memory
+from mascarin.engine_errors import plan_of, translated
+from mascarin.simulation.preparation.options import require_precision
+from mascarin.simulation.records.blocks import InMemory, rows_of
+from mascarin.simulation.records.recorded_outputs import Readings
+from mascarin.tables.timezones import parse_timezone
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.progress import Report
+    from mascarin.simulation.preparation.options import Precision
+
+    Array = npt.NDArray[np.float64]
+
+#: Memory that a run with derivatives in reverse may keep before it calculates parts again. [B]
+MEMORY: Final = 256 * 2**20
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A member of an ensemble that did not finish.
+
+    Parameters
+    ----------
+    member : int
+        Its row.
+    reason : str
+        Message of the engine.
+
+    Examples
+    --------
+    >>> Failure(2, "step 4 did not converge").member
+    2
+    """
+
+    member: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleRun:
+    """Results of an ensemble. ``records, residuals, failures = run`` takes the first three.
+
+    Parameters
+    ----------
+    records : ndarray, shape (M, rows, outputs)
+        NaN for a member that failed.
+    residuals : ndarray, shape (M,)
+        Relative energy-balance residual of each member. [-]
+    failures : list of Failure
+        Members that failed, and why.
+    outside : ndarray, shape (M,)
+        How far temperatures of each member are outside of their causes, see `Judgement`; NaN for one that
+        failed. [K]
+
+    Examples
+    --------
+    >>> records, residuals, failures = EnsembleRun(np.zeros((1, 2, 1)), np.zeros(1), [], np.zeros(1))
+    >>> failures
+    []
+    """
+
+    records: Array
+    residuals: Array
+    failures: list[Failure]
+    outside: Array
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.records, self.residuals, self.failures))
+
+    def __getitem__(self, index: int) -> Any:
+        return (self.records, self.residuals, self.failures)[index]
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledRun:
+    """A building in a climate, compiled for the engine: text and arrays that can be pickled or saved.
+
+    Methods take parameter vectors; `Simulation` takes values by path.
+
+    Parameters
+    ----------
+    description : str
+        The building as the engine reads it, JSON.
+    forcing : ndarray, shape (steps, stages, channels)
+        Weather, measured boundaries and schedules. [unit of each channel]
+    paths : tuple of str, length P
+        Path of each parameter.
+    values : ndarray, shape (P,)
+        Parameter vector of the building. [unit of each]
+    settings : dict
+        Step [s], scheme, start and repeated period, as the engine reads them.
+    readings : Readings
+        What is recorded, and how the outputs follow from it.
+    start : float
+        Start, in seconds since 1970-01-01 UTC. [s]
+    timezone : str
+        Time zone of the climate, for messages.
+
+    Examples
+    --------
+    >>> import pickle
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> simulation = mc.Simulation(box(), box_climate(), step="1h", outputs=["room.air_temperature"])
+    >>> compiled = pickle.loads(pickle.dumps(simulation.compiled))
+    >>> records, _ = compiled.run(compiled.values)
+    >>> bool((records == simulation.run().records).all())
+    True
+    """
+
+    description: str
+    forcing: Array
+    paths: tuple[str, ...]
+    values: Array
+    settings: Mapping[str, Any]
+    readings: Readings
+    start: float
+    timezone: str
+
+    @cached_property
+    def plan(self) -> _engine.Plan:
+        """The engine's form of the description; made when it is first used, also after unpickling."""
+        return plan_of(self.description)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: value for key, value in self.__dict__.items() if key != "plan"}
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the description."""
+        return hashlib.sha256(self.description.encode()).hexdigest()
+
+    def options(
+        self, readings: Readings | None = None, record_from: int = 0, record_every: int = 1
+    ) -> dict[str, Any]:
+        """Options of a run as the engine reads them.
+
+        Parameters
+        ----------
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        """
+        return {
+            **self.settings,
+            "outputs": (readings or self.readings).outputs,
+            "record_from": record_from,
+            "record_every": record_every,
+        }
+
+    def run(
+        self, vector: Array, readings: Readings | None = None, *, progress: Report | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Run once.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        progress : callable, optional
+            Called with the number of steps done and their total; with 0 while a first period is repeated.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            Outputs. [unit of each]
+        raw : dict
+            Energy ledger [J] and counters of the solver.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        recorded = readings or self.readings
+        memory = InMemory(self._rows(0, 1), len(recorded.columns))
+        raw = self.run_into(vector, memory.take, recorded, keeps_rows=True, progress=progress)
+        return memory.records, raw
+
+    def run_into(
+        self,
+        vector: Array,
+        take: Callable[[Array], object],
+        readings: Readings | None = None,
+        *,
+        keeps_rows: bool = False,
+        progress: Report | None = None,
+    ) -> dict[str, Any]:
+        """Run once, and hand the outputs over in blocks of rows while the run goes on.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        take : callable
+            Called with the next rows, shape (n, outputs); what it raises ends the run.
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        keeps_rows : bool
+            Whether the rows stay in memory: blocks are smaller then.
+        progress : callable, optional
+            Called with the number of steps done and their total; with 0 while a first period is repeated.
+
+        Returns
+        -------
+        dict
+            Energy ledger [J] and counters of the solver.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        recorded = readings or self.readings
+        with translated(self.dated):
+            if progress is not None:
+                progress(0, len(self.forcing))  # the time left counts from here
+            raw: dict[str, Any] = self.plan.simulate_into(
+                vector,
+                self.forcing,
+                self.options(recorded),
+                rows_of(len(recorded.columns), keeps_rows=keeps_rows),
+                lambda rows: take(recorded.values(rows)),
+                _of_total(progress, len(self.forcing)),
+            )
+        return raw
+
+    def ensemble(
+        self,
+        vectors: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        precision: Precision = "double",
+        progress: Report | None = None,
+    ) -> EnsembleRun:
+        """Run many parameter vectors, several at a time in lanes and threads.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (M, P)
+            One parameter vector a row. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        precision : str
+            ``double`` or ``single``; in single precision, members whose energy balance does not close within
+            1e-4 are run again in double precision.
+        progress : callable, optional
+            Called with the number of members done and their total.
+
+        Returns
+        -------
+        EnsembleRun
+            Records, energy-balance residuals, failures, and how far temperatures are outside of their causes.
+
+        Raises
+        ------
+        InputError
+            A precision that does not exist, or does not go with the scheme.
+        """
+        require_precision(precision, str(self.settings["scheme"]))
+        options = self.options(None, record_from, record_every)
+        rows = self._rows(record_from, record_every)
+        # Weather, sun and shadows of each stage are kept for all members.
+        stages = float(np.prod(self.forcing.shape[:2])) * self.plan.stage_bytes
+        self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
+        with translated(self.dated):
+            raw, residuals, outside, failed = self.plan.ensemble(
+                vectors, self.forcing, options, _of_total(progress, len(vectors)), precision == "single"
+            )
+        failures = [Failure(member, self.dated(reason)) for member, reason in failed]
+        return EnsembleRun(self.readings.values(raw), residuals, failures, outside)
+
+    def jacobian(
+        self,
+        directions: Sequence[Sequence[tuple[int, float]]],
+        vector: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        progress: Report | None = None,
+    ) -> tuple[Array, Array]:
+        """Run once with the derivatives of every output by some parameters, in forward mode.
+
+        Parameters
+        ----------
+        directions : sequence of sequence of (int, float)
+            For each derivative the positions of the parameters in the vector that change together, and how
+            much each changes.
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        progress : callable, optional
+            Called with the number of parameters done and their total.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            Outputs. [unit of each]
+        slopes : ndarray, shape (directions, rows, outputs)
+            Derivatives. [unit of the output / unit of the parameter]
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        options = self.options(None, record_from, record_every)
+        report = _of_total(progress, len(directions))
+        rows, lanes = self._rows(record_from, record_every), len(directions) + 1
+        self._require_room(lanes, rows, f"derivatives by {len(directions)} parameters", "take fewer")
+        with translated(self.dated):
+            raw, slopes = self.plan.jacobian(
+                vector, [list(direction) for direction in directions], self.forcing, options, report
+            )
+        return self.readings.values(raw), self.readings.values(slopes)
+
+    def trajectory(
+        self, vector: Array, *, record_from: int = 0, record_every: int = 1, memory: int = MEMORY
+    ) -> Trajectory:
+        """Run once and keep what the derivatives in reverse mode need.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        memory : int
+            About how much may be kept: beyond it parts of the run are calculated again. [B]
+
+        Returns
+        -------
+        Trajectory
+            Its records, and the derivatives of quantities made of them by all parameters.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        options = self.options(None, record_from, record_every)
+        with translated(self.dated):
+            run = _engine.Trajectory(self.plan, vector, self.forcing, options, memory)
+        return Trajectory(run, run.run()["records"], self.readings)
+
+    def _rows(self, record_from: int, record_every: int) -> int:
+        return max(len(self.forcing) - record_from, 0) // max(record_every, 1) + 1
+
+    def _require_room(self, times: int, rows: int, what: str, advice: str, more: float = 0.0) -> None:
+        """Refuse results that memory does not hold, with `more` bytes; the engine would end the process."""
+        columns = len(self.readings.columns)
+        # As the engine records them, and as outputs.
+        memory.require(
+            2.0 * 8.0 * times * rows * columns + more,
+            f"{what}, {rows} records and {columns} outputs",
+            f"{advice}, record fewer outputs, or take a longer step or a shorter period",
+        )
+
+    def dated(self, message: str) -> str:
+        """Add the local time to a message of the engine that names a step.
+
+        Parameters
+        ----------
+        message : str
+            The message.
+        """
+
+        def stamped(match: re.Match[str]) -> str:
+            step = min(int(match[1]), len(self.forcing) - 1)
+            begin = datetime.fromtimestamp(0, UTC) + timedelta(
+                seconds=self.start + step * self.settings["dt"]
+            )
+            local = begin.astimezone(parse_timezone(self.timezone))
+            return f"step {step} from {local:%Y-%m-%d %H:%M:%S}"
+
+        return re.sub(r"step (\d+)", stamped, message, count=1)
+
+    def header(self) -> dict[str, Any]:
+        """All but the arrays, as plain values for JSON."""
+        return {
+            "description": self.description,
+            "paths": list(self.paths),
+            "settings": dict(self.settings),
+            "outputs": self.readings.outputs,
+            "columns": list(self.readings.columns),
+            "start": self.start,
+            "timezone": self.timezone,
+        }
+
+    @classmethod
+    def read(cls, header: Mapping[str, Any], forcing: Array, values: Array) -> CompiledRun:
+        """Make a compiled run again from its `header` and arrays.
+
+        Parameters
+        ----------
+        header : mapping
+            What `header` returned.
+        forcing : ndarray, shape (steps, stages, channels)
+            Weather, measured boundaries and schedules. [unit of each channel]
+        values : ndarray, shape (P,)
+            Parameter vector of the building. [unit of each]
+        """
+        return cls(
+            description=header["description"],
+            forcing=forcing,
+            paths=tuple(header["paths"]),
+            values=values,
+            settings=header["settings"],
+            readings=Readings(header["outputs"], tuple(header["columns"])),
+            start=header["start"],
+            timezone=header["timezone"],
+        )
+
+
+class Trajectory:
+    """A run that keeps what its derivatives in reverse mode need; see `CompiledRun.trajectory`.
+
+    Attributes
+    ----------
+    records : ndarray, shape (rows, outputs)
+        Outputs of the run.
+    """
+
+    def __init__(self, run: _engine.Trajectory, raw: Array, readings: Readings) -> None:
+        self._run = run
+        self._raw = raw
+        self._readings = readings
+        self.records = readings.values(raw)
+
+    def pull(self, weights: Array) -> Array:
+        """Derivatives of a quantity by all parameters, from its derivatives by all records.
+
+        Parameters
+        ----------
+        weights : ndarray, shape (rows, outputs)
+            Derivative of the quantity by each record.
+
+        Returns
+        -------
+        ndarray, shape (P,)
+            Derivative of the quantity by each parameter, in the order of the parameter vector.
+        """
+        return self._run.pull(np.ascontiguousarray(self._readings.weights(self._raw, weights)))
+
+
+def _of_total(progress: Report | None, total: int) -> Callable[[int], object] | None:
+    """The engine's form of a progress callback: with the number done alone."""
+    if progress is None:
+        return None
+    return lambda done: progress(done, total)

@@ -1,0 +1,308 @@
+"""From a building and a climate to what the engine needs: period, outputs, forcing and start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin._io.arguments import mapping_of, require_type
+from mascarin.building import Building
+from mascarin.building.engine_input.series_users import courses
+from mascarin.building.outputs.output import named
+from mascarin.building.parts.envelope.convection import measured_column
+from mascarin.errors import InputError
+from mascarin.simulation.checks.flow_balance import require_balanced_flows
+from mascarin.simulation.checks.wind_check import require_wind
+from mascarin.simulation.preparation.initial import MeasuredStart, resolved
+from mascarin.simulation.preparation.initial import read as read_initial
+from mascarin.simulation.preparation.initial_state import Ambient, GivenStart
+from mascarin.simulation.preparation.sky import with_sky_of
+from mascarin.simulation.records.times import Times
+from mascarin.tables.times import stamps_of
+from mascarin.tables.timezones import seconds_at
+from mascarin.weather import (
+    CHANNELS,
+    COEFFICIENTS,
+    IRRADIANCES,
+    TEMPERATURES,
+    Climate,
+    Measurements,
+    parse_timezone,
+    scheduled,
+)
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import EngineDescription, Output
+    from mascarin.simulation.preparation.initial_state import Profile
+    from mascarin.simulation.preparation.options import Scheme, TimeLike
+
+    Array = npt.NDArray[np.float64]
+
+__all__ = [
+    "changed_parameters",
+    "chosen_outputs",
+    "forcing_of",
+    "in_climate",
+    "limits_of_columns",
+    "period",
+    "read_initial",
+    "require_inputs",
+    "settings_of",
+    "span",
+    "start_of",
+]
+
+#: Largest change of any temperature between two repetitions of the first period. [K]
+REPEATED_WITHIN: Final = 0.01
+#: Repetitions after which the first period counts as not converged.
+MAX_REPETITIONS: Final = 1000
+
+
+def require_inputs(building: object, climate: object, measurements: object = None) -> None:
+    """Refuse what is no building, no climate or no measurements, before anything is read from them.
+
+    Raises
+    ------
+    InputError
+        Something else was given; the text names what makes it.
+    """
+    require_type(
+        "building", building, Building, "a mascarin.Building; Building.from_yaml and from_dict read one"
+    )
+    require_type(
+        "climate",
+        climate,
+        Climate,
+        "a mascarin.Climate; Climate.from_epw, from_tmy, from_table and from_pvlib read one",
+    )
+    if measurements is not None:
+        require_type(
+            "measurements",
+            measurements,
+            Measurements,
+            "mascarin.Measurements; Measurements.from_table reads them",
+        )
+
+
+def in_climate(
+    building: Building,
+    climate: Climate,
+    *,
+    measurements: Measurements | None = None,
+    parameters: Mapping[str, float] | None = None,
+    varied: Iterable[str] = (),
+) -> Building:
+    """The building as it is simulated in a climate; every run, sweep, analysis and study begins here.
+
+    Parameters
+    ----------
+    building : Building
+        The building as described.
+    climate : Climate
+        Its weather.
+    measurements : Measurements, optional
+        Measured boundaries and sensors.
+    parameters : mapping of str to float, optional
+        Other values, by path. [unit of each]
+    varied : iterable of str
+        Paths of the parameters that vary.
+
+    Returns
+    -------
+    Building
+        With the other values, and with the infrared radiation of the weather unless a model of the sky is
+        given or varies.
+
+    Raises
+    ------
+    InputError
+        Something is of another type, or a parameter cannot have its value.
+    """
+    require_inputs(building, climate, measurements)
+    return with_sky_of(_with_parameters(building, parameters), climate, varied)
+
+
+def _with_parameters(building: Building, parameters: Mapping[str, float] | None) -> Building:
+    """The building with other values of some parameters.
+
+    Raises
+    ------
+    InputError
+        Unknown path, something that is no number, or a value that the parameter cannot have.
+    """
+    if not parameters:
+        return building
+    for path, value in mapping_of("parameters", parameters, "values by path").items():
+        if isinstance(value, str | bool) or not np.isscalar(value):
+            unit = building.parameter(path).unit or "its unit"
+            raise InputError(
+                f"parameters: {path}: found {value!r}, expected a number in {unit}. Replace a whole "
+                "part with Building.replace()"
+            )
+    return building.with_values(parameters)
+
+
+def changed_parameters(
+    before: Building, after: Building, parameters: Mapping[str, float] | None
+) -> dict[str, float]:
+    """Parameters that `in_climate` changed, by whole path. [unit of each]"""
+    old = {before.parameter(path).path: before.parameter(path).value for path in parameters or {}}
+    new = {path: after.parameter(path).value for path in old}
+    return {path: float(value) for path, value in new.items() if value != old[path]}
+
+
+def period(
+    climate: Climate, start: TimeLike | None, end: TimeLike | None
+) -> tuple[pd.Timestamp, pd.Timestamp]:
+    """Start and end in local time; by default those of the climate."""
+    first, last = stamps_of(np.array(span(climate, start, end)), climate.grid.zone)
+    return first, last
+
+
+def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tuple[float, float]:
+    """Start and end, by default those of the climate, in seconds since 1970-01-01 UTC. [s]"""
+    grid = climate.grid
+    first = grid.start if start is None else seconds_at(start, grid.zone, "start")
+    last = grid.end if end is None else seconds_at(end, grid.zone, "end")
+    if last <= first:
+        begin, finish = stamps_of(np.array([first, last]), grid.zone)
+        raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")
+    return first, last
+
+
+def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Output]:
+    """Outputs by name, or the usual ones."""
+    if names is not None:
+        return named(building, names)
+    return [output for output in building.outputs() if output.usual]
+
+
+def forcing_of(
+    building: Building,
+    climate: Climate,
+    description: EngineDescription,
+    *,
+    times: Times,
+    scheme: Scheme,
+    measurements: Measurements | None,
+) -> Array:
+    """Climate, measured columns and schedules at every stage, shape (steps, stages, channels).
+
+    Raises
+    ------
+    InputError
+        A channel that the building needs has no values.
+    """
+    names = description.schedules
+    columns = description.channels[: len(description.channels) - len(names)]
+    weather = climate.forcing(
+        building.site,
+        times.start,
+        times.end,
+        times.step,
+        scheme,
+        columns,
+        measurements,
+        limits=limits_of_columns(building),
+    )
+    if names:
+        profiles = scheduled(
+            climate,
+            courses(building),
+            parse_timezone(building.site.timezone),
+            times.start,
+            times.end,
+            times.step,
+            scheme,
+            measurements,
+        )
+        forcing = np.concatenate([weather, profiles], axis=-1)
+    else:
+        forcing = np.ascontiguousarray(weather, dtype=np.float64)
+    _require_numbers(forcing, description.channels, building)
+    require_balanced_flows(building, forcing, description.channels, (times.start, times.step))
+    require_wind(building, climate, forcing)
+    return forcing
+
+
+def start_of(
+    initial: float | GivenStart | MeasuredStart | None,
+    building: Building,
+    description: EngineDescription,
+    forcing: Array,
+    start: datetime,
+) -> float | Profile | None:
+    """Temperature or temperatures at the start; None to repeat the first period."""
+    if initial is None or isinstance(initial, float):
+        return initial
+    # The weather of the first stage is also used at the start.
+    now = dict(zip((*CHANNELS, *description.channels), forcing[0, 0].tolist(), strict=True))
+    ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
+    return resolved(initial, building, description.nodes, ambient, start)
+
+
+def settings_of(
+    initial: float | Profile | None,
+    forcing: Array,
+    *,
+    step_seconds: float,
+    scheme: Scheme,
+    first_period: float,
+) -> dict[str, Any]:
+    """Step, scheme, start and repeated period, as the engine reads them."""
+    steps = min(max(round(first_period / step_seconds), 1), len(forcing))
+    temperatures: float | dict[str, list[float]]
+    if initial is None:
+        # The temperature that the repetition starts from changes only its length.
+        temperatures = float(forcing[:, -1, 0].mean())
+    elif isinstance(initial, float):
+        temperatures = initial
+    else:
+        temperatures = {key: list(getattr(initial, key)) for key in ("cells", "faces", "air")}
+    return {
+        "dt": step_seconds,
+        "scheme": scheme,
+        "initial": temperatures,
+        "warmup_steps": steps if initial is None else 0,
+        "warmup_tolerance": REPEATED_WITHIN,
+        "warmup_max_cycles": MAX_REPETITIONS,
+    }
+
+
+def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
+    """Limits of the measured columns that act on a building, by what each is used for."""
+    sides = [side for surface in building.surfaces.values() for side in surface.sides]
+    temperatures = {side.measured: TEMPERATURES for side in sides if isinstance(side.measured, str)}
+    panes = [side for window in building.windows.values() for side in (window.outside, window.inside)]
+    measured = (side.irradiance for side in [*sides, *panes])
+    irradiances = {column: IRRADIANCES for column in measured if column is not None}
+    films = [measured_column(side.convection) for side in [*sides, *panes]]
+    return temperatures | irradiances | {film: COEFFICIENTS for film in films if film is not None}
+
+
+def _require_numbers(forcing: Array, channels: Sequence[str], building: Building) -> None:
+    """Channels that the engine reads must hold numbers; some may be absent."""
+    names = (*CHANNELS, *channels)
+    absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
+    if building.site.sky.kind in ("offset", "measured") and building.humidity is None:
+        absent.add("dew_point")
+    bad = [bool(np.isnan(forcing[..., k]).any()) for k in range(len(names))]
+    missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
+    if "dew_point" in missing and building.humidity is not None:
+        raise InputError(
+            "climate: found no dew point or relative humidity of the outdoor air, expected one of them: the "
+            "building has a section 'humidity:'. Give the column (dew_point or relative_humidity), or remove "
+            "'humidity:' from the building"
+        )
+    if missing:
+        raise InputError(
+            f"climate: no values for {', '.join(missing)}, which this building needs (sky model "
+            f"'{building.site.sky.kind}'). Give the column, or choose another sky model, for example "
+            "site.sky: {kind: offset}"
+        )

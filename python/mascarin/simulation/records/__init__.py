@@ -1,0 +1,1 @@
+"""The series of a run: times, blocks of rows, files, and what they were made from."""

@@ -1,0 +1,94 @@
+"""What is known of a run when it has finished, beside its series; and a run whose series are in a file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from mascarin.building import Output
+    from mascarin.simulation.checks.energy import EnergyLedger
+    from mascarin.simulation.checks.judgement import Judgement
+    from mascarin.simulation.checks.vapour import VapourLedger
+    from mascarin.simulation.records.provenance import Provenance
+    from mascarin.simulation.records.times import Times
+
+_FORMAT: Final = 1
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What is known of a run when it has finished.
+
+    Parameters
+    ----------
+    energy : EnergyLedger
+        The energy balance.
+    provenance : Provenance
+        Version, inputs and options.
+    warnings : tuple of str
+        Warnings about the run.
+    vapour : VapourLedger or None
+        The vapour balance of a building with humidity.
+    judgement : Judgement or None
+        Temperatures against their causes; None for a run of an earlier version.
+    """
+
+    energy: EnergyLedger
+    provenance: Provenance
+    warnings: tuple[str, ...] = ()
+    vapour: VapourLedger | None = None
+    judgement: Judgement | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether the energy balance closes and every temperature has a cause."""
+        return self.energy.closes and (self.judgement is None or self.judgement.sound)
+
+    def attributes(self, outputs: Sequence[Output], timezone: str) -> dict[str, Any]:
+        """Version, provenance, energy balance and outputs, as files hold them.
+
+        Parameters
+        ----------
+        outputs : sequence of Output
+            What was recorded.
+        timezone : str
+            Zone of the local clock.
+        """
+        return {
+            "mascarin_version": self.provenance.version,
+            "mascarin_format": _FORMAT,
+            "timezone": timezone,
+            "provenance": json.dumps(self.provenance.to_dict()),
+            "energy": json.dumps(self.energy.to_dict()),
+            **({} if self.vapour is None else {"vapour": json.dumps(self.vapour.to_dict())}),
+            **({} if self.judgement is None else {"judgement": json.dumps(self.judgement.to_dict())}),
+            "warnings": json.dumps(list(self.warnings)),
+            "outputs": json.dumps([asdict(output) for output in outputs]),
+        }
+
+
+@dataclass(frozen=True)
+class StoredRun:
+    """A run whose series were written to a file while it went on; `Results.open` reads them.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    outputs : sequence of Output
+        What was recorded.
+    times : Times
+        Times of the records.
+    finished : Finished
+        Energy balance, provenance and warnings.
+    """
+
+    path: Path
+    outputs: Sequence[Output]
+    times: Times
+    finished: Finished
