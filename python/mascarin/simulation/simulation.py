@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.initial import Initial
     from mascarin.simulation.objectives import Gradient, Objective
     from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -433,7 +434,7 @@ class Simulation(VectorRuns):
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
-    def warnings_at(self, vector: Array) -> tuple[str, ...]:
+    def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:
         """Warnings of a run with a parameter vector, of which nothing else is kept.
 
         Parameters

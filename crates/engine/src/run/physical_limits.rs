@@ -8,6 +8,7 @@
 //! have acted on the building since (outdoor air, sky, imposed temperatures, supplied air). Sun, gains and heating raise the upper bound to
 //! what the building has reached while they act; cooling lowers the lower bound likewise. In exact arithmetic conduction, convection,
 //! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see `OVERSHOOT`.
+//! Each step is judged by what acts in it alone, too: `run/step_causes.rs`.
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Imposed};
 use crate::building::ids::SurfaceId;
@@ -18,6 +19,7 @@ use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::constants::KELVIN;
 use crate::physics::solar::greatest_irradiance;
 use crate::run::action::Action;
+use crate::run::step_causes::StepCauses;
 use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -51,6 +53,8 @@ pub struct Outlier {
     pub temperature: f64,
     /// The bound that it lies beyond [degC], without overshoot.
     pub bound: f64,
+    /// Range of what acts [K].
+    pub range: f64,
 }
 
 /// Follows a run and judges each of its steps.
@@ -62,7 +66,9 @@ pub(crate) struct PhysicalLimits<S: Real> {
     supplied: S::Mask,
     /// Part of the range of the causes that the scheme may overshoot [-].
     overshoot: f64,
-    /// How far temperatures were outside of their causes by more than the scheme's overshoot [K].
+    /// Judges each step by what acts in it.
+    steps: StepCauses<S>,
+    /// How far temperatures were outside of their causes by more than is allowed [K].
     pub(crate) excess: S,
     /// Where that was, in a run of one member.
     pub(crate) outlier: Option<Outlier>,
@@ -72,8 +78,10 @@ impl<S: Real> PhysicalLimits<S> {
     /// Begins with the state that a run starts from.
     pub(crate) fn new(state: &State<S>, scheme: Scheme) -> Self {
         let overshoot = if scheme.weights().len() > 1 { OVERSHOOT } else { 0.0 };
+        let range = [lowest(state), highest(state)];
         Self {
-            bounds: [lowest(state), highest(state)],
+            bounds: range,
+            steps: StepCauses::new(range, scheme),
             supplied: S::Mask::splat(true),
             overshoot,
             excess: S::zero(),
@@ -111,7 +119,7 @@ impl<S: Real> PhysicalLimits<S> {
             }
             stepper.give_up(impossible);
         }
-        self.compare_with_causes(stepper, state, rows, coldest, step);
+        self.compare_with_causes(stepper, state, rows, (coldest, action, step));
         Ok(())
     }
 
@@ -122,27 +130,34 @@ impl<S: Real> PhysicalLimits<S> {
         stepper: &Stepper<'_, S>,
         state: &State<S>,
         rows: [&[f64]; 2],
-        coldest: S,
-        step: usize,
+        (coldest, action, step): (S, Action, usize),
     ) {
         self.widen(stepper, rows);
+        let hottest = highest(state);
         let [heated, cooled] = supplied(stepper, state);
+        let of_step = self.steps.judge(
+            stepper,
+            state,
+            rows,
+            ([coldest, hottest], [heated, cooled], action != Action::Balance),
+        );
         self.bounds[0] = S::select(cooled, self.bounds[0].min(coldest), self.bounds[0]);
         let slack = (self.bounds[1] - self.bounds[0]).scale(self.overshoot) + S::constant(ROUNDING.of::<S>());
         let mut excess = (self.bounds[0] - slack) - coldest;
         // What follows changes the lanes that are not heated only, so that a lane does not depend on the others.
         if (!heated).any() {
-            let hottest = highest(state);
             // The heat that was supplied in the step before is still on its way.
             let settling = self.supplied & !heated;
             self.bounds[1] = S::select(settling, self.bounds[1].max(hottest), self.bounds[1]);
             excess = S::select(heated, excess, excess.max(hottest - (self.bounds[1] + slack)));
         }
         self.supplied = heated;
-        if const { S::LANES == 1 } && excess.lane(0) > self.excess.lane(0).max(0.0) {
-            self.name_outlier(stepper.model.plan, state, step);
+        let farthest = excess.max(of_step.excess);
+        if const { S::LANES == 1 } && farthest.lane(0) > self.excess.lane(0).max(0.0) {
+            let bounds = if excess.lane(0) < farthest.lane(0) { of_step.causes } else { self.bounds };
+            self.name_outlier(stepper.model.plan, state, bounds.map(|bound| bound.lane(0)), step);
         }
-        self.excess = self.excess.max(excess);
+        self.excess = self.excess.max(farthest);
     }
 
     /// Widens the bounds by the temperatures around the building in the stages of the step.
@@ -185,13 +200,12 @@ impl<S: Real> PhysicalLimits<S> {
     /// Notes the temperature that is farthest outside of its causes so far.
     #[cold]
     #[inline(never)]
-    fn name_outlier(&mut self, plan: &Plan, state: &State<S>, step: usize) {
-        let [low, high] = self.bounds.map(|bound| bound.lane(0));
+    fn name_outlier(&mut self, plan: &Plan, state: &State<S>, [low, high]: [f64; 2], step: usize) {
         let (cold, coldest) = extreme(plan, state, |a, b| a < b);
         let (hot, hottest) = extreme(plan, state, |a, b| a > b);
         let (place, temperature, bound) =
             if low - coldest > hottest - high { (cold, coldest, low) } else { (hot, hottest, high) };
-        self.outlier = Some(Outlier { step, place, temperature, bound });
+        self.outlier = Some(Outlier { step, place, temperature, bound, range: high - low });
     }
 }
 
