@@ -120,7 +120,7 @@ def test_a_step_beyond_its_causes_is_said_with_the_step_that_removes_it(
     logger.write_text("time,air,humidity,wind,global,diffuse\n" + "\n".join(rows) + "\n")
     columns = ["air_temperature=air", "relative_humidity=humidity", "wind_speed=wind",
                "global_horizontal=global", "diffuse_horizontal=diffuse"]  # fmt: skip
-    words = ["run", str(room), "--weather", str(logger), "--timezone", "UTC", "--first-period", "1h"]
+    words = ["run", str(room), "--weather", str(logger), "--timezone", "UTC", "--initial", "20"]
     words += [word for column in columns for word in ("--column", column)]
 
     def told(step: str, *more: str) -> tuple[int, str]:

@@ -75,8 +75,8 @@ def sensitivity(
     """Run the sensitivity analysis of a study.
 
     Varies every parameter that has a range, on the days of the calibration. After an interruption the same
-    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: its
-    energy balance does not close, or a temperature has no cause.
+    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: a
+    balance of it does not close, or a temperature has no cause.
 
     Parameters
     ----------

@@ -100,8 +100,8 @@ class Judgement:
         beyond = abs(self.temperature - self.bound)
         text = (
             f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} all that acts on it "
-            f"(the {cause} is {self.bound:.1f} degC), by {beyond:.2g} K: do not use these results. Take a step of "
-            f"{_shorter(step_seconds, beyond, self.span):g} min"
+            f"(the {cause} is {self.bound:.1f} degC), by {beyond:.2g} K: do not use these results. Take a "
+            f"step of {_shorter(step_seconds, beyond, self.span):g} min"
             f"{'' if scheme == _MONOTONE else f', or the scheme {_MONOTONE}'}"
         )
         return [RunWarning(text, Kind.CAUSE)]

@@ -395,7 +395,7 @@ class Simulation(VectorRuns):
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
-        parts = {"building": self.building_warnings, "judged": judged}
+        step, about = self.step_seconds, self.building_warnings
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -412,7 +412,9 @@ class Simulation(VectorRuns):
                 halved_steps=int(raw["halvings"]),
                 reversals=int(raw["reversals"]),
             ),
-            warnings=run_warnings.collected(energy, vapour, watch, step_seconds=self.step_seconds, **parts),
+            warnings=run_warnings.collected(
+                energy, vapour, watch, step_seconds=step, building=about, judged=judged
+            ),
             vapour=vapour,
             judgement=judgement,
         )

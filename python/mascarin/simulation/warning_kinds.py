@@ -64,9 +64,9 @@ class RunWarning(str):
         line.kind = kind
         return line
 
-    def __getnewargs__(self) -> tuple[str, Kind]:
+    def __reduce__(self) -> tuple[type[RunWarning], tuple[str, Kind]]:
         """Text and kind, for a copy in another process."""
-        return str(self), self.kind
+        return type(self), (str(self), self.kind)
 
     @property
     def unsound(self) -> bool:

@@ -15,7 +15,8 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::channel;
-use crate::number::real::{ByPrecision, Mask, Real};
+use crate::number::real::{ByPrecision, Chunk, ChunkTask, Mask, Real};
+use crate::number::simd::WIDTH;
 use crate::physics::constants::KELVIN;
 use crate::physics::solar::greatest_irradiance;
 use crate::run::action::Action;
@@ -78,7 +79,7 @@ impl<S: Real> PhysicalLimits<S> {
     /// Begins with the state that a run starts from.
     pub(crate) fn new(state: &State<S>, scheme: Scheme) -> Self {
         let overshoot = if scheme.weights().len() > 1 { OVERSHOOT } else { 0.0 };
-        let range = [lowest(state), highest(state)];
+        let range = extremes(state);
         Self {
             bounds: range,
             steps: StepCauses::new(range, scheme),
@@ -102,7 +103,7 @@ impl<S: Real> PhysicalLimits<S> {
         rows: [&[f64]; 2],
         (action, step): (Action, usize),
     ) -> Result<(), EngineError> {
-        let (coldest, row) = (lowest(state), rows[1]);
+        let ([coldest, hottest], row) = (extremes(state), rows[1]);
         let mut impossible = coldest.lt(S::constant(-KELVIN));
         for &vapour in &state.vapour[..state.vapour.len().min(state.air.len())] {
             impossible = impossible | vapour.lt(S::constant(NO_VAPOUR.of::<S>()));
@@ -119,7 +120,7 @@ impl<S: Real> PhysicalLimits<S> {
             }
             stepper.give_up(impossible);
         }
-        self.compare_with_causes(stepper, state, rows, (coldest, action, step));
+        self.compare_with_causes(stepper, state, rows, ([coldest, hottest], action, step));
         Ok(())
     }
 
@@ -130,10 +131,9 @@ impl<S: Real> PhysicalLimits<S> {
         stepper: &Stepper<'_, S>,
         state: &State<S>,
         rows: [&[f64]; 2],
-        (coldest, action, step): (S, Action, usize),
+        ([coldest, hottest], action, step): ([S; 2], Action, usize),
     ) {
         self.widen(stepper, rows);
-        let hottest = highest(state);
         let [heated, cooled] = supplied(stepper, state);
         let of_step = self.steps.judge(
             stepper,
@@ -284,14 +284,42 @@ fn temperatures<S: Real>(state: &State<S>) -> impl Iterator<Item = S> {
     state.cells.iter().chain(state.surfaces.iter()).chain(&state.air).copied()
 }
 
+/// Lowest and highest temperature of a state [degC].
 #[inline(always)]
-fn lowest<S: Real>(state: &State<S>) -> S {
-    temperatures(state).fold(S::constant(f64::INFINITY), S::min)
+fn extremes<S: Real>(state: &State<S>) -> [S; 2] {
+    S::vectorised(
+        #[inline(always)]
+        || S::in_chunks(Extremes([&state.cells, &state.surfaces, &state.air])),
+    )
 }
 
-#[inline(always)]
-fn highest<S: Real>(state: &State<S>) -> S {
-    temperatures(state).fold(S::constant(f64::NEG_INFINITY), S::max)
+/// Lowest and highest of some numbers, those of a register at once.
+struct Extremes<'s, S>([&'s [S]; 3]);
+
+impl<S: Real> ChunkTask<S> for Extremes<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) -> [S; 2] {
+        let ends = [f64::INFINITY, f64::NEG_INFINITY].map(S::constant);
+        let ([mut low, mut high], mut registers) = (ends, ends.map(V::filled));
+        for part in self.0 {
+            let chunks = part.chunks_exact(S::CHUNK);
+            for &number in chunks.remainder() {
+                (low, high) = (low.min(number), high.max(number));
+            }
+            for chunk in chunks {
+                let numbers = V::load(chunk);
+                registers = [registers[0].min(numbers), registers[1].max(numbers)];
+            }
+        }
+        let mut places = [[S::zero(); WIDTH]; 2];
+        registers[0].store(&mut places[0]);
+        registers[1].store(&mut places[1]);
+        for (&least, &most) in places[0].iter().zip(&places[1]).take(S::CHUNK) {
+            (low, high) = (low.min(least), high.max(most));
+        }
+        [low, high]
+    }
 }
 
 /// Lanes where sun, gains or heating warm the building in the last stage of a step, and lanes where it is cooled.
