@@ -102,15 +102,15 @@ def of_kind(kind: Kind, lines: Iterable[str]) -> list[RunWarning]:
     return [line if isinstance(line, RunWarning) else RunWarning(line, kind) for line in lines]
 
 
-def kinds_of(lines: Iterable[RunWarning]) -> list[str]:
+def kinds_of(lines: Iterable[str]) -> list[str]:
     """The kinds of warnings, for a file that has their texts beside them.
 
     Parameters
     ----------
-    lines : iterable of RunWarning
+    lines : iterable of str
         The warnings.
     """
-    return [line.kind.value for line in lines]
+    return [line.kind.value for line in of_kind(Kind.UNKNOWN, lines)]
 
 
 def with_kinds(lines: Sequence[str], kinds: Sequence[str] | None) -> list[RunWarning]:
