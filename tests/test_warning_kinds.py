@@ -118,7 +118,7 @@ def test_a_step_beyond_its_causes_is_said_with_the_step_that_removes_it(
     times = np.arange(24 * 60)
     rows = [f"2001-01-01 {k // 60:02d}:{k % 60:02d},{20.0 if k < 360 else 0.0},60,1,0,0" for k in times]
     logger.write_text("time,air,humidity,wind,global,diffuse\n" + "\n".join(rows) + "\n")
-    columns = ["air_temperature=air", "relative_humidity=humidity", "wind_speed=wind",
+    columns = ["wind_direction=none", "air_temperature=air", "relative_humidity=humidity", "wind_speed=wind",
                "global_horizontal=global", "diffuse_horizontal=diffuse"]  # fmt: skip
     words = ["run", str(room), "--weather", str(logger), "--timezone", "UTC", "--initial", "20"]
     words += [word for column in columns for word in ("--column", column)]
@@ -144,7 +144,7 @@ def test_the_step_that_is_named_has_no_overshoot() -> None:
     def factor(z: float) -> float:
         return (1.0 - (1.0 - 2.0 * diagonal) * z) / (1.0 + diagonal * z) ** 2
 
-    for z in (3.0, 5.0, 8.2, 12.0, 40.0, 200.0):
+    for z in (3.0, 5.0, 8.2, 12.0, 40.0, 150.0):
         beyond = -20.0 * factor(z)
         judged = Judgement(beyond - 0.5, "roof", "step 4", -beyond, 0.0, 20.0)
         (line,) = judged.warnings(3600.0, "sdirk2")
