@@ -38,6 +38,7 @@ from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.single_precision import Difference
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 from mascarin.study import kept
 from mascarin.study.findings import PredictionIntervals
 from mascarin.study.storage import Workspace
@@ -194,7 +195,7 @@ def results() -> Results:
         outputs=outputs, times=Times(0.0, 3600.0 * 47, 3600.0, parse_timezone("UTC+1")), records=records,
         energy=EnergyLedger(dict.fromkeys(FLOWS, 1.0), 1.0, 2.0, 1e-12),
         provenance=Provenance("box", "ab", {"file": "x"}, 3600.0, "sdirk2", "repeat", {}, 5),
-        warnings=("warm",), vapour=None,
+        warnings=(RunWarning("warm", Kind.LATENT),), vapour=None,
     )  # fmt: skip
 
 

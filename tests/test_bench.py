@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import importlib.util
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +20,53 @@ from mascarin.simulation.simulation import Simulation
 @pytest.fixture
 def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(repository / "bench"))
+
+
+#: Attributes of the package and of numpy and pandas, which the benches use.
+PACKAGES = ("mascarin", "mc", "np", "pd")
+
+
+def _attributes(tree: ast.AST) -> Iterator[tuple[str, ...]]:
+    """Names with dots that begin with a package: `mc.Climate.from_epw` as its parts."""
+    for node in ast.walk(tree):
+        parts: list[str] = []
+        while isinstance(node, ast.Attribute):
+            parts.insert(0, node.attr)
+            node = node.value
+        if parts and isinstance(node, ast.Name) and node.id in PACKAGES:
+            yield (node.id, *parts)
+
+
+@pytest.mark.usefixtures("bench")
+def test_benches_use_names_that_exist(repository: Path) -> None:
+    """Each script is imported, imports inside its functions as well, and names of packages are looked up."""
+    missing = []
+    for file in sorted((repository / "bench").glob("*.py")):
+        module = importlib.import_module(file.stem)
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("mascarin"):
+                source = importlib.import_module(str(node.module))
+                missing += [
+                    f"{file.name}: {node.module}.{alias.name}"
+                    for alias in node.names
+                    if not (hasattr(source, alias.name) or _is_module(f"{node.module}.{alias.name}"))
+                ]
+        for first, *parts in _attributes(tree):
+            value = getattr(module, first, None)
+            for part in parts if value is not None else ():
+                if not hasattr(value, part):
+                    missing.append(f"{file.name}: {first}.{'.'.join(parts)}")
+                    break
+                value = getattr(value, part)
+    assert not missing, missing
+
+
+def _is_module(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 @pytest.mark.usefixtures("bench")

@@ -34,7 +34,7 @@ UNJUDGED: Final = {
     "outputs": "makes no run",
     "cite": "makes no run",
 }
-OUTLIER: Final = (5, "surface roof (inside)", -41.3, -2.0)
+OUTLIER: Final = (5, "surface roof (inside)", -41.3, -2.0, 22.0)
 WORDS: Final = ("do not use these results", "do not use their results")
 
 

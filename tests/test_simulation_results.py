@@ -19,6 +19,7 @@ from mascarin.errors import InputError
 from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 from mascarin.weather import Climate
 from simulation_samples import LINEAR, hours, measured, read
 
@@ -122,7 +123,7 @@ def test_netcdf_and_back(run: Results, tmp_path: Path) -> None:
 
 def test_results_read_back_are_equal(run: Results, tmp_path: Path) -> None:
     file = tmp_path / "run.nc"
-    full = replace(run, warnings=("surfaces.north, layer pcm: stayed solid",))
+    full = replace(run, warnings=(RunWarning("surfaces.north, layer pcm: stayed solid", Kind.LATENT),))
     full.to_netcdf(file)
     back = Results.open(file)
     assert back == full

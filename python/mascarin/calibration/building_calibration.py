@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.simulation.preparation.initial import Initial
+    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.weather import Climate
 
 CONSTANT: Final = ("stuck", "forward_filled")
@@ -192,12 +193,12 @@ def calibrate(
     return replace(fit, nominal_building=chosen, times=observation.times, warnings=notes)
 
 
-def _said_of_the_run(simulation: Simulation, fit: Calibration) -> list[str]:
+def _said_of_the_run(simulation: Simulation, fit: Calibration) -> list[RunWarning]:
     """Warnings of the run at the estimates."""
     estimates = dict(fit.values)
     vectors = simulation.varied(list(estimates), np.array([[*estimates.values()]]))
     said = of_nominal(simulation, vectors[0])
-    return [f"the run at the estimates: {line}" for line in said]
+    return [line.after("the run at the estimates") for line in said]
 
 
 def _beginning(

@@ -30,7 +30,7 @@ def design(
 
     Runs all designs in all climates, compares the best over samples of what is uncertain, and writes
     tables and a report. After an interruption the same command continues and gives the same files. Ends with
-    exit code 1 where a run failed or is not sound: its energy balance does not close, or a temperature has
+    exit code 1 where a run failed or is not sound: a balance of it does not close, or a temperature has
     no cause.
 
     Parameters

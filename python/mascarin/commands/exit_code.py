@@ -11,15 +11,21 @@ and the search goes on without it. What counts is the run at the estimates.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mascarin.simulation.warning_kinds import RunWarning
 
 
-def exit_code(*, warnings: Iterable[str] = (), sound: bool = True, failed: int = 0, missed: int = 0) -> int:
+def exit_code(
+    *, warnings: Iterable[RunWarning] = (), sound: bool = True, failed: int = 0, missed: int = 0
+) -> int:
     """0, or 1 where a result is not to be used as it is.
 
     Parameters
     ----------
-    warnings : iterable of str
-        Warnings of runs, as the command has printed them.
+    warnings : iterable of RunWarning
+        Warnings of runs; their kinds count.
     sound : bool
         Whether all runs are sound, where the command has them.
     failed : int
@@ -32,6 +38,5 @@ def exit_code(*, warnings: Iterable[str] = (), sound: bool = True, failed: int =
     >>> exit_code(sound=True), exit_code(failed=1), exit_code(missed=2)
     (0, 1, 1)
     """
-    from mascarin.simulation.run_warnings import says_unsound
-
-    return 1 if says_unsound(warnings) or not sound or failed or missed else 0
+    unsound = any(line.unsound for line in warnings)
+    return 1 if unsound or not sound or failed or missed else 0

@@ -71,7 +71,7 @@ def run(
     """Simulate a building with a weather file.
 
     Writes the time series to a file, or prints minimum, mean and maximum of each and the energy balance.
-    Ends with exit code 1 where the energy balance does not close or a temperature has no cause.
+    Ends with exit code 1 where a balance does not close or a temperature has no cause.
 
     Parameters
     ----------

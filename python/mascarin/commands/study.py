@@ -15,6 +15,7 @@ from mascarin.commands.inputs import AsJson, Outside
 from mascarin.commands.output import number, print_json, print_table
 
 if TYPE_CHECKING:
+    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.study import Study, StudyResults
 
 
@@ -55,7 +56,7 @@ def study(
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
     if results.sensitivity is not None:
-        lines += [f"sensitivity analysis: {line}" for line in results.sensitivity.warnings]
+        lines += [line.after("sensitivity analysis") for line in results.sensitivity.warnings]
     _print_warnings(lines)
     _print_summary(opened, results, out)
     verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
@@ -74,8 +75,8 @@ def sensitivity(
     """Run the sensitivity analysis of a study.
 
     Varies every parameter that has a range, on the days of the calibration. After an interruption the same
-    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: its
-    energy balance does not close, or a temperature has no cause.
+    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: a
+    balance of it does not close, or a temperature has no cause.
 
     Parameters
     ----------
@@ -230,7 +231,9 @@ def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]
     return [verdict for verdict in content["criteria"] if verdict["model"] == model]
 
 
-def _exit_code(verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[str], *, sound: bool = True) -> int:
+def _exit_code(
+    verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[RunWarning], *, sound: bool = True
+) -> int:
     """Print the criteria that are missed; return the exit code."""
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:

@@ -68,7 +68,7 @@ def sweep(
     """Simulate a building with many parameter values.
 
     Each row of the samples is one member of the ensemble. After an interruption the same command continues.
-    Ends with exit code 1 where a member failed or is not sound: its energy balance does not close, or a
+    Ends with exit code 1 where a member failed or is not sound: a balance of it does not close, or a
     temperature has no cause.
 
     Parameters

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from mascarin._io import own_files
 from mascarin.errors import InputError
+from mascarin.simulation.warning_kinds import with_kinds
 
 _TYPES: Final[dict[str, type | tuple[type, ...]]] = {
     "mascarin_version": str,
@@ -31,10 +32,11 @@ _TYPES: Final[dict[str, type | tuple[type, ...]]] = {
     "complete": bool,
     "single_precision": dict,
     "warnings": list,
+    "warning_kinds": list,
 }
 #: Keys that former versions did not write, or that are written at the end.
-_FURTHER: Final = ("sample_units", "precision", "single_precision", "warnings")
-_LISTS: Final = ("paths", "outputs", "objectives", "time", "warnings")
+_FURTHER: Final = ("sample_units", "precision", "single_precision", "warnings", "warning_kinds")
+_LISTS: Final = ("paths", "outputs", "objectives", "time", "warnings", "warning_kinds")
 _DIFFERENCE: Final[dict[str, type | tuple[type, ...]]] = {
     "unit": str, "rms": (int, float), "largest": (int, float), "members": int,
 }  # fmt: skip
@@ -78,6 +80,10 @@ def _check(manifest: dict[str, Any]) -> None:
     for key in _LISTS:
         if not all(isinstance(text, str) for text in manifest.get(key, [])):
             raise own_files.DamagedError(f"{key}: found something else than texts")
+    try:
+        with_kinds(manifest.get("warnings", ()), manifest.get("warning_kinds"))
+    except ValueError as error:
+        raise own_files.DamagedError(f"warning_kinds: {error}") from None
     for key in ("kept", "sample_units"):
         if not all(isinstance(text, str) for text in manifest.get(key, {}).values()):
             raise own_files.DamagedError(f"{key}: found something else than texts")

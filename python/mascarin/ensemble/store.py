@@ -28,6 +28,7 @@ from mascarin.simulation.checks.judgement import JUDGED, OUTSIDE, all_sound
 from mascarin.simulation.records.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
+from mascarin.simulation.warning_kinds import RunWarning, kinds_of, with_kinds
 from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ _GROUP: Final = 2**20
 #: Columns by which members are judged: residual [-], temperatures and error by the time step [K].
 _JUDGED: Final = (*JUDGED, _STEP_ERROR)
 #: Entries of a manifest that are written at the end.
-_AT_END: Final = ("complete", "single_precision", "warnings")
+_AT_END: Final = ("complete", "single_precision", "warnings", "warning_kinds")
 #: Entries of a manifest that must be equal to continue an ensemble.
 _SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept", "precision")
 
@@ -247,14 +248,16 @@ class Store:
         own_files.write(target, target.name, content.getvalue())
         self._whole[target.name] = True
 
-    def finish(self, single_precision: Sequence[Difference] = (), warnings: Sequence[str] = ()) -> None:
+    def finish(
+        self, single_precision: Sequence[Difference] = (), warnings: Sequence[RunWarning] = ()
+    ) -> None:
         """Join the chunks to one file and mark the store as complete.
 
         Parameters
         ----------
         single_precision : sequence of Difference
             How far the results of some members are from double precision, for the manifest.
-        warnings : sequence of str
+        warnings : sequence of RunWarning
             Warnings of a run with the values of the building, for the manifest.
         """
         if self.complete:
@@ -266,6 +269,7 @@ class Store:
                 difference.name: difference.to_dict() for difference in single_precision
             }
         self.manifest["warnings"] = list(warnings)
+        self.manifest["warning_kinds"] = kinds_of(warnings)
         self.manifest["complete"] = True
         atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
         shutil.rmtree(self.path / "pieces", ignore_errors=True)
@@ -319,7 +323,7 @@ class Store:
                 raise KeyError("closure")
             return frame.sort_values("member").set_index("member")
 
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[RunWarning]:
         """Warnings about members, and of a run with the values of the building; see `mascarin.sweep`."""
         table = self._frame()
         return self._said([table[name].to_numpy() for name in _JUDGED], 0)
@@ -328,10 +332,11 @@ class Store:
         """Whether the energy balance of every member closes and every temperature has a cause."""
         return all_sound(self.to_dataframe(), self.precision)
 
-    def _said(self, judged: Sequence[Any], first: int) -> list[str]:
+    def _said(self, judged: Sequence[Any], first: int) -> list[RunWarning]:
         options: Any = {"step_seconds": float(self.manifest["step_seconds"]), "precision": self.precision}
         members = of_members(*judged, first=first, **options)
-        return [*members, *self.manifest.get("warnings", ())]
+        base = with_kinds(self.manifest.get("warnings", ()), self.manifest.get("warning_kinds"))
+        return [*members, *base]
 
     def single_precision(self) -> list[str]:
         """How far some members are from double precision, and how many were run in it; nothing in double."""

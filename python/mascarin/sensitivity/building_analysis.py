@@ -25,6 +25,7 @@ from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -245,9 +246,9 @@ def _run_all(
     stride: int,
     precision: Precision,
     progress: ProgressOption,
-) -> list[str]:
+) -> list[RunWarning]:
     """Carry out the runs of a plan; lines about members that are not sound, and about single precision."""
-    remarks: list[str] = []
+    remarks: list[RunWarning] = []
     residuals, outside = np.full(len(runs), np.nan), np.full(len(runs), np.nan)
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
@@ -263,13 +264,14 @@ def _run_all(
 
 def _single_precision(
     simulation: Simulation, paths: Sequence[str], samples: Array, single: Array, stride: int
-) -> list[str]:
+) -> list[RunWarning]:
     """How far outputs of some runs in single precision are from those in double precision: a line each."""
     some = members_to_check(len(samples))
     double = run_samples(simulation, paths, samples[some], 0, record_every=stride).records
     outputs = simulation.outputs
     names, units = [output.name for output in outputs], [output.unit for output in outputs]
-    return [f"single precision: {line}" for line in differences(names, units, single[some], double)]
+    lines = differences(names, units, single[some], double)
+    return [RunWarning(f"single precision: {line}", Kind.METHOD) for line in lines]
 
 
 def run_samples(

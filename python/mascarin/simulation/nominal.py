@@ -11,6 +11,7 @@ import numpy as np
 from mascarin.errors import SolverError
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.simulation import Simulation
+from mascarin.simulation.warning_kinds import Kind, RunWarning, of_kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 SHORT: Final = 30 * 86400.0
 
 
-def of_nominal(simulation: Simulation, vector: Array | None = None) -> tuple[str, ...]:
+def of_nominal(simulation: Simulation, vector: Array | None = None) -> tuple[RunWarning, ...]:
     """Warnings of one run with the values of the building, of which nothing is kept.
 
     An ensemble, a calibration or a search makes this run beside its own, so that it has the warnings of a
@@ -36,17 +37,18 @@ def of_nominal(simulation: Simulation, vector: Array | None = None) -> tuple[str
 
     Returns
     -------
-    tuple of str
+    tuple of RunWarning
         As `Results.warnings`; that the run failed is one of them.
     """
     try:
         return simulation.warnings_at(simulation.values if vector is None else vector)
     except SolverError as error:
         failed = f"a run with the values of the building failed, so that it could not be checked: {error}"
-        return (failed, *simulation.building_warnings)
+        building = of_kind(Kind.BUILDING, simulation.building_warnings)
+        return (RunWarning(failed, Kind.FAILURE), *building)
 
 
-def of_short_run(simulation: Simulation, seconds: float = SHORT) -> tuple[str, ...]:
+def of_short_run(simulation: Simulation, seconds: float = SHORT) -> tuple[RunWarning, ...]:
     """Warnings of a run over the beginning of the period, for what is run elsewhere.
 
     Parameters

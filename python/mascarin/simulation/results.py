@@ -21,6 +21,7 @@ from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.resample import means, state_means
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.run_summary import Finished
+from mascarin.simulation.warning_kinds import RunWarning, with_kinds
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -60,9 +61,9 @@ class Results(Mapping[str, "xr.DataArray"]):
         The energy balance.
     provenance : Provenance
         Version, inputs and options.
-    warnings : tuple of str
-        An energy balance that does not close; temperatures without a cause; phase-change layers that neither
-        melted nor froze; a time step that is too long.
+    warnings : tuple of RunWarning
+        Texts with their `kind`: a balance of heat or vapour that does not close; temperatures without a
+        cause; phase-change layers that neither melted nor froze; a time step that is too long.
     vapour : VapourLedger or None
         The vapour balance of a building with humidity.
     judgement : Judgement or None
@@ -84,13 +85,13 @@ class Results(Mapping[str, "xr.DataArray"]):
     records: Array
     energy: EnergyLedger
     provenance: Provenance
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning, ...] = ()
     vapour: VapourLedger | None = None
     judgement: Judgement | None = None
 
     @property
     def sound(self) -> bool:
-        """Whether the energy balance closes and every temperature has a cause; see `warnings`."""
+        """Whether the balances of heat and vapour close and temperatures have causes; see `warnings`."""
         return self._finished.sound
 
     @property
@@ -380,7 +381,7 @@ class Results(Mapping[str, "xr.DataArray"]):
                 records=records,
                 energy=EnergyLedger.from_dict(json_of(attributes["energy"])),
                 provenance=Provenance.from_dict(json_of(attributes["provenance"])),
-                warnings=tuple(map(str, json_of(attributes["warnings"]))),
+                warnings=tuple(_warnings(attributes)),
                 vapour=VapourLedger.from_json(attributes.get("vapour")),
                 judgement=Judgement.from_json(attributes.get("judgement")),
             )
@@ -500,3 +501,10 @@ def _output(fields: Mapping[str, Any]) -> Output:
 
     require(fields, {"name": str, "unit": str, "kind": str, "aliases": list})
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})
+
+
+def _warnings(attributes: Mapping[str, Any]) -> list[RunWarning]:
+    """Warnings of a file, with their kinds where it has them."""
+    lines = [str(line) for line in json_of(attributes["warnings"])]
+    kinds = attributes.get("warning_kinds")
+    return with_kinds(lines, None if kinds is None else json_of(kinds))

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from mascarin.simulation.warning_kinds import RunWarning, kinds_of
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -30,7 +32,7 @@ class Finished:
         The energy balance.
     provenance : Provenance
         Version, inputs and options.
-    warnings : tuple of str
+    warnings : tuple of RunWarning
         Warnings about the run.
     vapour : VapourLedger or None
         The vapour balance of a building with humidity.
@@ -40,14 +42,15 @@ class Finished:
 
     energy: EnergyLedger
     provenance: Provenance
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning, ...] = ()
     vapour: VapourLedger | None = None
     judgement: Judgement | None = None
 
     @property
     def sound(self) -> bool:
-        """Whether the energy balance closes and every temperature has a cause."""
-        return self.energy.closes and (self.judgement is None or self.judgement.sound)
+        """Whether the balances of heat and vapour close and every temperature has a cause."""
+        closed = self.energy.closes and (self.vapour is None or self.vapour.closes)
+        return closed and (self.judgement is None or self.judgement.sound)
 
     def attributes(self, outputs: Sequence[Output], timezone: str) -> dict[str, Any]:
         """Version, provenance, energy balance and outputs, as files hold them.
@@ -68,6 +71,7 @@ class Finished:
             **({} if self.vapour is None else {"vapour": json.dumps(self.vapour.to_dict())}),
             **({} if self.judgement is None else {"judgement": json.dumps(self.judgement.to_dict())}),
             "warnings": json.dumps(list(self.warnings)),
+            "warning_kinds": json.dumps(kinds_of(self.warnings)),
             "outputs": json.dumps([asdict(output) for output in outputs]),
         }
 

@@ -6,15 +6,15 @@ then gives its warnings.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mascarin.simulation.checks.formula_laws import range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.checks.step_check import LARGE
+from mascarin.simulation.warning_kinds import Kind, RunWarning, of_kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -26,13 +26,6 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Words of the warnings of `EnergyLedger`, `Judgement`, `ensemble_warnings` and `of_nominal` that say that a
-#: run is not sound or has failed. Warnings travel as texts: through files, kept results and other processes.
-_UNSOUND: Final = re.compile(
-    r"energy balance (does|of \d+ of \d+ members does) not close|do not use (these|their) results|"
-    r"a run with the values of the building failed"
-)
-
 
 def collected(
     energy: EnergyLedger,
@@ -41,8 +34,8 @@ def collected(
     *,
     step_seconds: float,
     building: Sequence[str] = (),
-    judged: Iterable[str] = (),
-) -> tuple[str, ...]:
+    judged: Iterable[RunWarning] = (),
+) -> tuple[RunWarning, ...]:
     """All warnings of one run.
 
     Parameters
@@ -57,18 +50,18 @@ def collected(
         Time step. [s]
     building : sequence of str
         Warnings about the building, which every run of it has.
-    judged : iterable of str
+    judged : iterable of RunWarning
         Further warnings, of checks that the engine makes of a run.
 
     Returns
     -------
-    tuple of str
+    tuple of RunWarning
         The balances, further checks, layers that do not melt, steps too long for the air of a zone; last
         those about the building.
     """
     lines = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
-    lines += [*watch.melting.warnings(), *watch.bends.warnings(step_seconds)]
-    return tuple(dict.fromkeys((*lines, *building)))
+    lines += [*of_kind(Kind.LATENT, watch.melting.warnings()), *watch.bends.warnings(step_seconds)]
+    return tuple(dict.fromkeys((*lines, *of_kind(Kind.BUILDING, building))))
 
 
 def of_engine(
@@ -77,7 +70,7 @@ def of_engine(
     dated: Callable[[str], str],
     step_seconds: float,
     scheme: str,
-) -> list[str]:
+) -> list[RunWarning]:
     """Warnings of checks that the engine makes of a run.
 
     Parameters
@@ -95,10 +88,10 @@ def of_engine(
 
     Returns
     -------
-    list of str
+    list of RunWarning
         A temperature without a cause, laws that were used where they do not hold.
     """
-    return [*judgement.warnings(step_seconds, scheme), *range_warnings(raw, dated)]
+    return [*judgement.warnings(step_seconds, scheme), *of_kind(Kind.VALIDITY, range_warnings(raw, dated))]
 
 
 def of_members(
@@ -109,7 +102,7 @@ def of_members(
     step_seconds: float,
     first: int = 0,
     precision: str = "double",
-) -> list[str]:
+) -> list[RunWarning]:
     """Warnings about members of an ensemble, each for all members that it holds for.
 
     Parameters
@@ -129,7 +122,7 @@ def of_members(
 
     Returns
     -------
-    list of str
+    list of RunWarning
         One line for each kind of warning.
 
     Examples
@@ -141,32 +134,15 @@ def of_members(
     late = np.flatnonzero(step_errors >= LARGE)
     if late.size:
         worst = int(np.nanargmax(step_errors))
-        lines.append(
+        text = (
             f"{late.size} of {len(step_errors)} members: the time step of {step_seconds / 60.0:g} min is too "
             f"long for the air of a zone, whose temperature is wrong by about {step_errors[worst]:.1g} K "
             f"(root mean square) in member {first + worst}: take a shorter step"
         )
+        lines.append(RunWarning(text, Kind.STEP))
     return lines
 
 
-def says_unsound(warnings: Iterable[str]) -> bool:
-    """Whether a warning says that a run is not sound or has failed.
-
-    Parameters
-    ----------
-    warnings : iterable of str
-        Warnings of runs, of members of ensembles, or of the run with the values of the building.
-
-    Examples
-    --------
-    >>> says_unsound(["roof: 70.0 degC ...: do not use these results. Take a step of 15 min"])
-    True
-    >>> says_unsound(["roof: the layer pcm stayed solid"])
-    False
-    """
-    return any(_UNSOUND.search(line) for line in warnings)
-
-
-def of_base(warnings: Sequence[str]) -> list[str]:
+def of_base(warnings: Sequence[RunWarning]) -> list[RunWarning]:
     """Warnings of a run with the values of the building, as an ensemble says them."""
-    return [f"with the values of the building: {text}" for text in warnings]
+    return [line.after("with the values of the building") for line in warnings]

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.preparation.initial import Initial
     from mascarin.simulation.preparation.objectives import Gradient, Objective
     from mascarin.simulation.preparation.options import Scheme, TimeLike
+    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -405,7 +406,7 @@ class Simulation(VectorRuns):
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
-        parts = {"building": self.building_warnings, "judged": judged}
+        step, about = self.step_seconds, self.building_warnings
         return Finished(
             energy=energy,
             provenance=Provenance(
@@ -422,7 +423,9 @@ class Simulation(VectorRuns):
                 halved_steps=int(raw["halvings"]),
                 reversals=int(raw["reversals"]),
             ),
-            warnings=run_warnings.collected(energy, vapour, watch, step_seconds=self.step_seconds, **parts),
+            warnings=run_warnings.collected(
+                energy, vapour, watch, step_seconds=step, building=about, judged=judged
+            ),
             vapour=vapour,
             judgement=judgement,
         )
@@ -444,7 +447,7 @@ class Simulation(VectorRuns):
         sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
-    def warnings_at(self, vector: Array) -> tuple[str, ...]:
+    def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:
         """Warnings of a run with a parameter vector, of which nothing else is kept.
 
         Parameters

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io import own_files
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -171,6 +172,8 @@ def _encoded(value: Any, arrays: dict[str, Any], known: Sequence[object]) -> Any
     if isinstance(value, tuple | list):
         word = "tuple" if isinstance(value, tuple) else "list"
         return {word: [_encoded(one, arrays, known) for one in value]}
+    if isinstance(value, RunWarning):
+        return {"warning": str(value), "kind": value.kind.value}
     if value is None or isinstance(value, str | bool | int | float):
         return {"value": value}
     raise TypeError(f"cannot keep {type(value).__name__}")
@@ -197,6 +200,8 @@ def _decoded(tree: Any, arrays: Mapping[str, Any], known: Sequence[object]) -> A
             return tuple(_decoded(one, arrays, known) for one in items)
         case {"list": list(items)}:
             return [_decoded(one, arrays, known) for one in items]
+        case {"warning": str(text), "kind": str(kind)}:
+            return RunWarning(text, Kind(kind))
         case {"value": None | str() | bool() | int() | float() as value}:
             return value
     raise ValueError("it holds something else than what is kept")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mascarin.design.variants.inputs import DesignInputs
     from mascarin.design.variants.ranking import Ranking
     from mascarin.design.variants.variables import Design
+    from mascarin.simulation.warning_kinds import RunWarning
 
     Array = npt.NDArray[np.float64]
 
@@ -52,7 +53,7 @@ class DesignResults:
         By climate, and over `ALL`; designs are places in `best`.
     reference : mapping of str to mapping of str to float
         Objectives of the reference, by climate.
-    warnings : tuple of str
+    warnings : tuple of RunWarning
         Warnings about the runs, with their climate; see `mascarin.sweep`.
     """
 
@@ -63,7 +64,7 @@ class DesignResults:
     sampled: pd.DataFrame
     rankings: Mapping[str, Ranking]
     reference: Mapping[str, Mapping[str, float]]
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning, ...] = ()
 
     @property
     def ranked_by(self) -> str:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from mascarin.design.evaluation.objectives import AnyObjective
     from mascarin.design.variants.inputs import DesignInputs, Site
     from mascarin.design.variants.variables import Design
+    from mascarin.simulation.warning_kinds import RunWarning
 
 #: Folder of the stores.
 FOLDER: Final = "runs"
@@ -84,7 +85,7 @@ class Runs:
     expected: int = 0
     done: int = 0
     used: set[str] = field(default_factory=set)
-    warnings: dict[str, None] = field(default_factory=dict)
+    warnings: dict[RunWarning, None] = field(default_factory=dict)
 
     def values(
         self,
@@ -256,7 +257,7 @@ class Runs:
         )
         self.done = before + count
         self.report(self.done, max(self.expected, self.done))
-        self.warnings |= dict.fromkeys(f"{site.name}: {line}" for line in store.warnings())
+        self.warnings |= dict.fromkeys(line.after(site.name) for line in store.warnings())
         table = store.to_dataframe()
         arrays: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
         return arrays | {

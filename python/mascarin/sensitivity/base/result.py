@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from mascarin.simulation.warning_kinds import RunWarning
+
 Floats = NDArray[np.float64]
 
 FIRST_ORDER: Final = "first-order index S1"
@@ -61,7 +63,7 @@ class Sensitivity:
         Number of simulations used. [-]
     seed : int
         Seed of the random numbers.
-    warnings : tuple of str
+    warnings : tuple of RunWarning
         Remarks, such as an output that no parameter changes.
     measure : str
         What `index` is, in words.
@@ -99,7 +101,7 @@ class Sensitivity:
     confidence: float
     runs: int
     seed: int
-    warnings: tuple[str, ...] = field(default=())
+    warnings: tuple[RunWarning, ...] = field(default=())
     measure: str = FIRST_ORDER
     total: Floats | None = None
     total_low: Floats | None = None

@@ -14,6 +14,7 @@ from mascarin.sensitivity.base.result import Sensitivity
 from mascarin.sensitivity.base.runs import Collector
 from mascarin.sensitivity.salib.estimators import ESTIMATORS, Part, components
 from mascarin.sensitivity.salib.plans import SalibPlan
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 SQUARES: Final = (
     "part of the squared elementary effects: equal to the first-order index where the model is linear, a "
@@ -151,7 +152,7 @@ class SalibCollector(Collector[SalibPlan, Sensitivity]):
             "runs": len(plan),
             "seed": plan.seed,
             "warnings": tuple(
-                f"'{output}' does not depend on any of the varied parameters"
+                RunWarning(f"'{output}' does not depend on any of the varied parameters", Kind.METHOD)
                 for output, none in zip(self.outputs, constant, strict=True)
                 if none
             ),

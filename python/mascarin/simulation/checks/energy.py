@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
+from mascarin.simulation.warning_kinds import Kind, RunWarning
+
 if TYPE_CHECKING:
     import numpy.typing as npt
 
@@ -38,7 +40,7 @@ CLOSED_SINGLE: Final = 1e-4
 """The same in single precision: members that are above it have been run again in double precision. [-]"""
 
 
-def balance_warnings(residuals: Array, first: int = 0, precision: str = "double") -> list[str]:
+def balance_warnings(residuals: Array, first: int = 0, precision: str = "double") -> list[RunWarning]:
     """One line where the energy balance of a member of an ensemble does not close, else nothing.
 
     Parameters
@@ -52,7 +54,7 @@ def balance_warnings(residuals: Array, first: int = 0, precision: str = "double"
 
     Returns
     -------
-    list of str
+    list of RunWarning
         How many members do not close, and the worst of them.
 
     Examples
@@ -65,13 +67,14 @@ def balance_warnings(residuals: Array, first: int = 0, precision: str = "double"
     if not open_ones.size:
         return []
     worst = int(np.nanargmax(residuals))
-    return [
+    text = (
         f"the energy balance of {len(open_ones)} of {len(residuals)} members does not close: the heat stored "
         "and the heat that flowed in differ by more than "
         f"{closed:g} of all heat exchanged, most in member {first + worst} ({residuals[worst]:.1e}). Their "
         "temperatures may be wrong by as much or more: use another time-stepping scheme "
         "('apparent-capacity' never closes) or a shorter step"
-    ]
+    )
+    return [RunWarning(text, Kind.ENERGY_BALANCE)]
 
 
 @dataclass(frozen=True)
@@ -117,16 +120,17 @@ class EnergyLedger:
         """Whether the heat stored is the heat that flowed in: a residual of 1e-10 at most."""
         return self.relative_residual <= CLOSED
 
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[RunWarning]:
         """One line where the energy balance does not close, else nothing."""
         if self.closes:
             return []
-        return [
+        text = (
             "the energy balance does not close: the heat stored and the heat that flowed in differ by "
             f"{self.relative_residual:.1e} of all heat exchanged, expected {CLOSED:g} at most. Temperatures "
             "may be wrong by as much or more: use another time-stepping scheme ('apparent-capacity' never "
             "closes) or a shorter step"
-        ]
+        )
+        return [RunWarning(text, Kind.ENERGY_BALANCE)]
 
     @classmethod
     def read(cls, raw: Mapping[str, Any]) -> Self:

@@ -11,14 +11,20 @@ import numpy as np
 from mascarin._io.own_files import json_of
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     Array = npt.NDArray[np.float64]
 
-#: The step that is recommended, as a part of the step that was taken. [-]
+#: The longest step that is recommended, as a part of the step that was taken. [-]
 _SHORTER: Final = 0.25
+#: SDIRK2: its diagonal coefficient, the step over the time constant of a part up to which the part does not
+#: overshoot, and the largest overshoot of a part, over the jump that it follows; see docs/robustness.md. [-]
+_DIAGONAL: Final = 1.0 - 0.5**0.5
+_MONOTONE_UP_TO: Final = 1.0 + 2.0**0.5
+_LARGEST: Final = 0.5 * (2.0**0.5 - 1.0)
 #: The scheme that does not overshoot.
 _MONOTONE: Final = "backward-euler"
 
@@ -31,7 +37,7 @@ class Judgement:
     ----------
     outside : float
         How far a temperature was below the lowest, or above the highest, of the start and of all temperatures
-        that acted on the building, beyond what the scheme may overshoot; zero in a sound run. [K]
+        that acted on the building, beyond what is allowed; zero in a sound run. [K]
     place : str
         Part of the building where that was largest; empty in a sound run.
     when : str
@@ -40,6 +46,8 @@ class Judgement:
         The temperature there. [degC]
     bound : float
         The lowest or highest of its causes. [degC]
+    span : float
+        From the lowest to the highest of its causes. [K]
 
     Examples
     --------
@@ -52,6 +60,7 @@ class Judgement:
     when: str = ""
     temperature: float = 0.0
     bound: float = 0.0
+    span: float = 0.0
 
     @property
     def sound(self) -> bool:
@@ -65,16 +74,17 @@ class Judgement:
         Parameters
         ----------
         raw : mapping
-            ``outside`` [K] and ``outlier``: step, place, temperature and bound [degC], or None.
+            ``outside`` [K] and ``outlier``: step, place, temperature and bound [degC], range of the
+            causes [K], or None.
         dated : callable
             Adds the time to a text that names a step.
         """
         if raw["outlier"] is None:
             return cls()
-        step, place, temperature, bound = raw["outlier"]
-        return cls(float(raw["outside"]), place, dated(f"step {step}"), float(temperature), float(bound))
+        step, place, *numbers = raw["outlier"]
+        return cls(float(raw["outside"]), place, dated(f"step {step}"), *map(float, numbers))
 
-    def warnings(self, step_seconds: float, scheme: str) -> list[str]:
+    def warnings(self, step_seconds: float, scheme: str) -> list[RunWarning]:
         """One line where a temperature has no cause, else nothing.
 
         Parameters
@@ -87,12 +97,14 @@ class Judgement:
         if self.sound:
             return []
         side, cause = ("below", "lowest") if self.temperature < self.bound else ("above", "highest")
-        return [
+        beyond = abs(self.temperature - self.bound)
+        text = (
             f"{self.place}: {self.temperature:.1f} degC in {self.when} lies {side} all that acts on it "
-            f"(the {cause} is {self.bound:.1f} degC), by {self.outside:.2g} K more than the time-stepping "
-            "scheme can overshoot: do not use these results. Take a step of "
-            f"{_shorter(step_seconds):g} min{'' if scheme == _MONOTONE else f', or the scheme {_MONOTONE}'}"
-        ]
+            f"(the {cause} is {self.bound:.1f} degC), by {beyond:.2g} K: do not use these results. Take a "
+            f"step of {_shorter(step_seconds, beyond, self.span):g} min"
+            f"{'' if scheme == _MONOTONE else f', or the scheme {_MONOTONE}'}"
+        )
+        return [RunWarning(text, Kind.CAUSE)]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -111,7 +123,9 @@ class Judgement:
             return None
         values = json_of(text)
         outside, temperature, bound = (float(values[key]) for key in ("outside", "temperature", "bound"))
-        return cls(outside, str(values["place"]), str(values["when"]), temperature, bound)
+        # Files of versions before this number have none.
+        span = float(values.get("span", 0.0))
+        return cls(outside, str(values["place"]), str(values["when"]), temperature, bound, span)
 
 
 JUDGED: Final = ("closure", "outside")
@@ -122,7 +136,7 @@ OUTSIDE: Final = {"units": "K", "long_name": "temperatures beyond their causes"}
 
 def ensemble_warnings(
     residuals: Array, outside: Array, first: int = 0, precision: str = "double"
-) -> list[str]:
+) -> list[RunWarning]:
     """What is not sound in the members of an ensemble: a line for each kind, or nothing.
 
     Parameters
@@ -146,13 +160,13 @@ def ensemble_warnings(
     if not members.size:
         return lines
     worst = int(np.nanargmax(outside))
-    return [
-        *lines,
+    text = (
         f"{members.size} of {len(outside)} members: temperatures lie outside of everything that acts on the "
-        f"building, by {outside[worst]:.2g} K more than the time-stepping scheme can overshoot (member "
-        f"{first + worst}): do not use their results. Take a quarter of the step, or the scheme "
-        "backward-euler",
-    ]
+        f"building, by {outside[worst]:.2g} K more than is allowed (member {first + worst}): do not use "
+        "their results. Take a shorter step, which a run of this member alone names, or the scheme "
+        "backward-euler"
+    )
+    return [*lines, RunWarning(text, Kind.CAUSE)]
 
 
 def all_sound(table: Mapping[str, Any] | Any, precision: str = "double") -> bool:
@@ -174,6 +188,17 @@ def all_sound(table: Mapping[str, Any] | Any, precision: str = "double") -> bool
     return not ensemble_warnings(closure, outside, precision=precision)
 
 
-def _shorter(step_seconds: float) -> float:
-    minutes = step_seconds / 60.0 * _SHORTER
+def _shorter(step_seconds: float, beyond: float, span: float) -> float:
+    """The step without overshoot [min], for a part that went beyond its causes, which have a span [K].
+
+    Of the two time constants of a part that overshoot this much, the shorter one counts.
+    """
+    part = _SHORTER
+    if span > 0.0:
+        # |R(z)| = ((sqrt 2 - 1) z - 1)/(1 + g z)^2 of the step over the time constant, z, solved for z.
+        share = min(beyond / span, _LARGEST)
+        linear = 2.0 * (_LARGEST - _DIAGONAL * share)
+        root = max(linear**2 - 4.0 * _DIAGONAL**2 * share * (1.0 + share), 0.0) ** 0.5
+        part = min(part, _MONOTONE_UP_TO * 2.0 * _DIAGONAL**2 * share / (linear + root))
+    minutes = step_seconds / 60.0 * part
     return next((float(step) for step in STEPS if step <= minutes), minutes)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.simulation.warning_kinds import Kind, RunWarning
+
 if TYPE_CHECKING:
     import numpy.typing as npt
 
@@ -124,7 +126,7 @@ class Bends:
         """Estimate of the error of each series by the time step, root mean square. [K]"""
         return np.asarray(self._share * np.sqrt(self._sum[0] / max(self._count, 1)))
 
-    def warnings(self, step_seconds: float) -> Iterator[str]:
+    def warnings(self, step_seconds: float) -> Iterator[RunWarning]:
         """Warnings about zones whose air changes too fast for the step, with the step to take.
 
         Parameters
@@ -138,8 +140,9 @@ class Bends:
             # Hourly weather bends the series at every hour: the error falls with the step, not its square.
             minutes = step_seconds / 60.0 * LARGE / error
             better = next((step for step in STEPS if step <= minutes), STEPS[-1])
-            yield (
+            text = (
                 f"zones.{name}: the time step of {step_seconds / 60.0:g} min is too long for its air, which "
                 f"reacts faster: its temperature is wrong by about {error:.1g} K (root mean square); take a "
                 f"step of {better} min"
             )
+            yield RunWarning(text, Kind.STEP)

@@ -9,6 +9,7 @@ from typing import Any, Final, Self
 
 from mascarin.simulation.checks.energy import CLOSED
 from mascarin.simulation.checks.step_check import STEPS
+from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 VAPOUR_FLOWS: Final = ("outdoor_air", "interzone", "gains", "humidifying", "drying", "condensation")
 """Flows of vapour into the zones; drying and condensation take vapour away and are negative."""
@@ -62,7 +63,7 @@ class VapourLedger:
         """Whether the vapour stored is the vapour that flowed in: a residual of 1e-10 at most."""
         return self.relative_residual <= CLOSED
 
-    def warnings(self, step_seconds: float) -> list[str]:
+    def warnings(self, step_seconds: float) -> list[RunWarning]:
         """One line each where the balance does not close, saturated air lost vapour, the step is too long.
 
         Parameters
@@ -70,30 +71,33 @@ class VapourLedger:
         step_seconds : float
             Time step. [s]
         """
-        messages = []
+        messages: list[RunWarning] = []
         if self.corrected and self.fastest > 0.0 and step_seconds > SHORTEST:
             longest = min(MOST_EXCHANGES / self.fastest, 0.99 * step_seconds) / 60.0
             better = next((step for step in STEPS if step <= longest), STEPS[-1])
             within = 1.0 / self.fastest / 60.0
-            messages.append(
+            text = (
                 f"the time step of {step_seconds / 60.0:g} min is too long for the vapour of the air, which "
                 f"was exchanged within {within:.2g} min in {self.corrected} steps: its humidity was kept "
                 "between that of the air and of the surfaces that drive it, and is less accurate there; "
                 f"take a step of {better} min"
             )
+            messages.append(RunWarning(text, Kind.STEP))
         if not self.closes:
-            messages.append(
+            text = (
                 "the vapour balance does not close: the vapour stored and the vapour that flowed in differ "
                 f"by {self.relative_residual:.1e} of all vapour exchanged, expected {CLOSED:g} at most. "
                 "Humidities may be wrong by as much or more: take a shorter step"
             )
+            messages.append(RunWarning(text, Kind.VAPOUR_BALANCE))
         lost = -self.into["condensation"]
         if lost > 0.01 * self.exchanged:
-            messages.append(
+            text = (
                 f"the air of zones was saturated: {lost:.3g} kg of vapour condensed, "
                 f"{100 * lost / self.exchanged:.0f} % of all vapour exchanged. It is taken away, and its "
                 "heat is not given to the room. Check the sources of vapour and the ventilation"
             )
+            messages.append(RunWarning(text, Kind.SATURATION))
         return messages
 
     @classmethod

@@ -15,6 +15,8 @@ from mascarin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.simulation.warning_kinds import RunWarning
+
 Array = npt.NDArray[np.float64]
 
 #: From the series of each output, shape (T,), a value and its derivative by each of them, shape (T,).
@@ -97,7 +99,7 @@ class Gradient:
         Unit of each parameter.
     ranges : dict of str to tuple of float
         Range of each parameter.
-    warnings : tuple of str
+    warnings : tuple of RunWarning
         Warnings of the run.
 
     Examples
@@ -112,7 +114,7 @@ class Gradient:
     slopes: dict[str, float]
     units: dict[str, str]
     ranges: dict[str, tuple[float, float]]
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[RunWarning, ...] = ()
 
     def to_dataframe(self) -> pd.DataFrame:
         """Derivatives, units, and derivatives times ranges by parameter, the largest effect first."""

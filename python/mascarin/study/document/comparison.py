@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mascarin.study.findings import scores_of
 
 if TYPE_CHECKING:
+    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.study.findings import ModelRun
     from mascarin.validation.criteria import Verdict
 
@@ -52,13 +53,13 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
     }
 
 
-def run_warnings(models: Mapping[str, ModelRun]) -> list[str]:
+def run_warnings(models: Mapping[str, ModelRun]) -> list[RunWarning]:
     """Warnings of the runs of models, each once, with the models that have it."""
-    models_by_line: dict[str, list[str]] = {}
+    models_by_line: dict[RunWarning, list[str]] = {}
     for name, run in models.items():
         for line in run.results.warnings:
             models_by_line.setdefault(line, []).append(name)
-    return [f"{', '.join(names)}: {line}" for line, names in models_by_line.items()]
+    return [line.after(", ".join(names)) for line, names in models_by_line.items()]
 
 
 def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:
