@@ -208,7 +208,8 @@ def test_results_can_be_pickled(run: Results) -> None:
 
 
 def test_results_are_described_in_a_few_lines(run: Results) -> None:
-    text = repr(replace(run, warnings=tuple(f"warning {k}" for k in range(30))))
+    lines = [RunWarning(f"warning {k}", Kind.STEP) for k in range(30)]
+    text = repr(replace(run, warnings=tuple(lines)))
     assert len(text.splitlines()) == 15
     assert max(len(line) for line in text.splitlines()) <= 100
     assert "Results of 'linear'" in text
