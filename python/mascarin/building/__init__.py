@@ -36,6 +36,7 @@ from mascarin.building.glazing import (
     SimpleGlazing,
 )
 from mascarin.building.ground_floor import on_ground
+from mascarin.building.history_laws import Supercooling
 from mascarin.building.humidity import (
     CoolingCoil,
     Humidistat,
@@ -201,6 +202,7 @@ __all__ = [
     "SmoothStepLaw",
     "Solid",
     "SunShares",
+    "Supercooling",
     "Surface",
     "SurfaceHumidity",
     "TableLaw",

@@ -18,6 +18,7 @@ from mascarin.errors import InputError
 from mascarin.simulation.flow_balance import require_balanced_flows
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
+from mascarin.simulation.limits import require_scheme
 from mascarin.simulation.sky import with_sky_of
 from mascarin.simulation.times import Times
 from mascarin.simulation.wind import require_wind
@@ -199,6 +200,7 @@ def forcing_of(
     InputError
         A channel that the building needs has no values.
     """
+    require_scheme(building, scheme)
     names = description.schedules
     columns = description.channels[: len(description.channels) - len(names)]
     weather = climate.forcing(

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, fields_of
 from mascarin.building.formula_curve import FormulaCurve
+from mascarin.building.history_laws import OneCurveLaw
 from mascarin.building.material import Material, PhaseChangeMaterial
 from mascarin.building.part import Part
 from mascarin.building.phase_change import (
@@ -53,14 +54,14 @@ def _law(material: PhaseChangeMaterial, ids: Ids) -> Json:
     hysteresis = material.hysteresis
     if hysteresis is None:
         return {"kind": "melting", "latent_heat": latent_heat, "curve": heating}
+    history = {"kind": "history", "latent_heat": latent_heat, "model": hysteresis.model}
+    if isinstance(hysteresis, OneCurveLaw):
+        named = fields_of(hysteresis, ids, "hysteresis.")
+        numbers = [{"name": name, "value": number} for name, number in named.items()]
+        return history | {"curves": [heating], "numbers": numbers}
     shape, prefix = (law, "law.") if hysteresis.law is None else (hysteresis.law, "hysteresis.law.")
-    return {
-        "kind": "hysteresis",
-        "latent_heat": latent_heat,
-        "model": hysteresis.model,
-        "heating": heating,
-        "cooling": _melting_curve(shape, ids, prefix, "hysteresis.freezing_temperature"),
-    }
+    cooling = _melting_curve(shape, ids, prefix, "hysteresis.freezing_temperature")
+    return history | {"curves": [heating, cooling], "numbers": []}
 
 
 def _melting_curve(law: Part, ids: Ids, prefix: str, centre: str) -> Json:
