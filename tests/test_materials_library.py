@@ -108,7 +108,7 @@ def test_the_salt_hydrate_may_supercool() -> None:
     )
     assert salt.latent_heat == 190800
     assert salt.one_curve is not None
-    assert salt.one_curve.coldest_liquid(salt) == 17.0
+    assert salt.one_curve.coldest_liquid(salt.reference) == 17.0
     again = PhaseChangeMaterial(**salt.written())
     assert again == salt
     assert PhaseChangeMaterial.from_product("CaCl2-6H2O").hysteresis is None

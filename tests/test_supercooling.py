@@ -272,9 +272,9 @@ def test_a_material_keeps_what_is_written() -> None:
     salt = material(hysteresis={"model": "supercooling", "degree": 8, "time_constant": 600})
     assert isinstance(salt.hysteresis, Supercooling)
     assert salt.written()["hysteresis"] == {"model": "supercooling", "degree": 8, "time_constant": 600}
-    assert salt.hysteresis.coldest_liquid(salt) == 21.0
+    assert salt.hysteresis.coldest_liquid(29.0) == 21.0
     assert salt.cooling is None
-    assert "down to 21.00 degC, crystallises with a time constant of 600 s" in salt.hysteresis.said(salt)
+    assert "down to 21.00 degC, crystallises with a time constant of 600 s" in salt.hysteresis.said(29.0)
 
 
 @pytest.mark.parametrize(

@@ -341,7 +341,7 @@ def _melting(building: Description) -> Iterator[str]:
         if material.two_curves is not None and material.cooling is not None:
             yield f"material {name}: {_two_curves(material, material.two_curves.model, *material.cooling)}"
         if material.one_curve is not None:
-            yield f"material {name}: {material.one_curve.said(material)}"
+            yield f"material {name}: {material.one_curve.said(material.reference)}"
 
 
 def _two_curves(material: PhaseChangeMaterial, model: str, cooling: FractionLaw, centre: float) -> str:

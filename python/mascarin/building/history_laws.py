@@ -6,7 +6,7 @@ lines in the ``mod.rs`` beside it; the guide is ``docs/engine.md``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Discriminator, Tag, model_validator
 
@@ -14,9 +14,6 @@ from mascarin.building import quantities as q
 from mascarin.building.number import problem
 from mascarin.building.part import Part
 from mascarin.building.phase_change import Hysteresis
-
-if TYPE_CHECKING:
-    from mascarin.building.melting import Melting
 
 
 class OneCurveLaw(Part):
@@ -28,13 +25,13 @@ class OneCurveLaw(Part):
     excluded_schemes: ClassVar[tuple[str, ...]] = ()
     model: str
 
-    def said(self, material: Melting) -> str:
-        """What ``check`` says of the law in a material."""
+    def said(self, melting: float) -> str:
+        """What ``check`` says of the law in a material with a melting temperature [degC]."""
         raise TypeError("each law describes itself")
 
-    def coldest_liquid(self, material: Melting) -> float:
-        """Lowest temperature at which the material may be wholly liquid [degC]."""
-        return material.melting[0]
+    def coldest_liquid(self, melting: float) -> float:
+        """Lowest temperature at which a material with a melting temperature may be wholly liquid [degC]."""
+        return melting
 
 
 class Supercooling(OneCurveLaw):
@@ -76,27 +73,29 @@ class Supercooling(OneCurveLaw):
             )
         return self
 
-    def said(self, material: Melting) -> str:
-        """What ``check`` says of the law in a material."""
+    def said(self, melting: float) -> str:
+        """What ``check`` says of the law in a material with a melting temperature [degC]."""
         if self.rate is None:
             speed = f"with a time constant of {self.time_constant:g} s"
         else:
             speed = f"by {self.rate:g} of what is liquid per second and kelvin of undercooling"
-        liquid = self.coldest_liquid(material)
+        liquid = self.coldest_liquid(melting)
         return f"supercooling, wholly molten it stays liquid down to {liquid:.2f} degC, crystallises {speed}"
 
-    def coldest_liquid(self, material: Melting) -> float:
-        """Temperature at which it nucleates [degC]."""
-        return material.reference - float(self.degree)
+    def coldest_liquid(self, melting: float) -> float:
+        """Temperature at which a material with a melting temperature nucleates [degC]."""
+        return melting - float(self.degree)
 
 
 def _kind(raw: Any) -> str:
     model = raw.get("model") if isinstance(raw, dict) else getattr(raw, "model", None)
-    return model if model in _ONE_CURVE else "hysteresis"
+    return model if isinstance(model, str) and model in _ONE_CURVE else "hysteresis"
 
 
 HistoryLaw = Annotated[
-    Annotated[Hysteresis, Tag("hysteresis")] | Annotated[Supercooling, Tag("supercooling")],
+    Annotated[Hysteresis, Tag("hysteresis")]
+    # Laws with one curve: each has its name as the tag.
+    | Annotated[Supercooling, Tag("supercooling")],
     Discriminator(_kind),
 ]
 _ONE_CURVE: Final = frozenset(str(law.model_fields["model"].default) for law in OneCurveLaw.__subclasses__())

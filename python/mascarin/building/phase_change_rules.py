@@ -207,7 +207,7 @@ def no_heat_of_crystallisation(material: Melting) -> list[InitErrorDetails]:
     """A supercooled liquid so cold that it would set no heat free: ``L + (c_l - c_s)(T - Tr)`` below zero."""
     if material.one_curve is None or material.latent_heat is None:
         return []
-    coldest = material.one_curve.coldest_liquid(material)
+    coldest = material.one_curve.coldest_liquid(material.reference)
     solid, liquid = (phase(material.specific_heat, one) for one in _PHASES)
     heat = material.latent_heat + (liquid - solid) * (coldest - material.reference)
     if heat > 0.0:

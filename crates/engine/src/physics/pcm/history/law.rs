@@ -63,10 +63,10 @@ impl<S: Real> PcmHistory<S> {
 }
 
 /// The numbers and curves that a law is made of.
-pub(in crate::physics::pcm) struct Ingredients<'v, S> {
-    pub(in crate::physics::pcm) values: &'v Values<'v, S>,
-    pub(in crate::physics::pcm) curves: Vec<Curve<S>>,
-    pub(in crate::physics::pcm) numbers: &'v [FormulaNumber],
+pub(crate) struct Ingredients<'v, S> {
+    pub(crate) values: &'v Values<'v, S>,
+    pub(crate) curves: Vec<Curve<S>>,
+    pub(crate) numbers: &'v [FormulaNumber],
 }
 
 impl<S: Real> Ingredients<'_, S> {
@@ -93,7 +93,7 @@ pub struct StageStart<S> {
 }
 
 /// A law with a state of its own.
-pub(in crate::physics::pcm) trait HistoryLaw<S: Real>: Sized {
+pub(crate) trait HistoryLaw<S: Real>: Sized {
     /// Numbers that it cannot do without, and others that it may have.
     const NUMBERS: &'static [&'static str];
     const OPTIONAL: &'static [&'static str] = &[];

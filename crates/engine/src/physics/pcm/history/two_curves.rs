@@ -9,7 +9,7 @@ use crate::number::real::Real;
 use crate::physics::pcm::curve::{Curve, limit_at};
 
 /// A temperature beyond all others, for one that is not known [degC].
-pub(in crate::physics::pcm) const FAR: f64 = 1e100;
+pub(crate) const FAR: f64 = 1e100;
 
 /// A curve for melting and one for freezing.
 #[derive(Debug, Clone)]
