@@ -274,6 +274,12 @@ MELTING = [
         "two curves",
     ),
     (
+        "{kind: smooth_step, width: 0.7}\n    hysteresis: "
+        "{model: supercooling, degree: 4, time_constant: 300}",
+        "{kind: linear, width: 0.6}\n    hysteresis: {model: supercooling, degree: 6, rate: 1e-4}",
+        "fractions",
+    ),
+    (
         '{formula: "1/(1 + exp(-(T - Tm)/w))", w: {value: 1, unit: K}, range: [-8, 8]}',
         "{kind: linear, width: 1.0}",
         "fractions",

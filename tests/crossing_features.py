@@ -109,6 +109,11 @@ def _hysteresis(tree: Json) -> None:
     _ceiling(tree, _WAX | {"hysteresis": {"model": "curve_switch", "freezing_temperature": 27}})
 
 
+def _supercooling(tree: Json) -> None:
+    law = {"model": "supercooling", "degree": 2, "time_constant": 600}
+    _ceiling(tree, _WAX | {"hysteresis": law})
+
+
 def _humidity(tree: Json) -> None:
     _loads(tree)
     tree["humidity"] = {
@@ -208,6 +213,7 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "products": _products,
     "own curves": _curves,
     "hysteresis": _hysteresis,
+    "supercooling": _supercooling,
     "humidity": _humidity,
     "vents": _vents,
     "controls": _controls,

@@ -153,6 +153,9 @@ def melting(draw: Draw) -> Json:
             material["hysteresis"] = {"model": _model(draw), "law": lower}
         return material
     material |= {"law": closed_law(draw), "melting_temperature": draw.noted(middle, 1.0)}
+    if draw.chance(0.2):
+        material["hysteresis"] = _supercooling(draw)
+        return material
     if draw.chance(0.45):
         apart = draw.number(0.05, 4.0)
         material["hysteresis"] = {"model": _model(draw), "freezing_temperature": four(middle - apart)}
@@ -163,6 +166,11 @@ def melting(draw: Draw) -> Json:
                 "law": {"kind": draw.of("linear", "smooth_step"), "width": draw.number(0.5, 1.8)},
             }
     return material
+
+
+def _supercooling(draw: Draw) -> Json:
+    kinetics = draw.of({"time_constant": draw.log(1.0, 1e4)}, {"rate": draw.log(1e-6, 1e-2)})
+    return {"model": "supercooling", "degree": draw.number(0.5, 12.0), **kinetics}
 
 
 def _model(draw: Draw) -> str:

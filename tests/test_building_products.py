@@ -140,7 +140,7 @@ def test_hysteresis_takes_both_curves_of_a_product() -> None:
     for t, x in zip(one.cooling.temperatures, one.cooling.liquid_fraction, strict=True):
         assert law.fraction(t - centre) == pytest.approx(x, abs=1e-12)
     assert taken.parameter("materials.pcm.hysteresis.law.temperature_shift").varies
-    assert '"kind":"hysteresis"' in taken.to_engine().json.replace(" ", "")
+    assert '"kind":"history"' in taken.to_engine().json.replace(" ", "")
     assert material.written() == {"product": "RT25HC", "hysteresis": {"model": "curve_switch"}}
     assert PhaseChangeMaterial(**material.written()) == material
     other = taken.replace({"materials.pcm.product": "RT24HC"}).materials["pcm"]

@@ -33,6 +33,7 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
     ("products", "linear model"): "phase change",
     ("own curves", "linear model"): "phase change",
     ("hysteresis", "linear model"): "phase change",
+    ("supercooling", "linear model"): "phase change",
     ("humidity", "linear model"): "heating or cooling",
     ("vents", "linear model"): "vent casement is not linear",
     ("controls", "linear model"): "vent casement is not linear",

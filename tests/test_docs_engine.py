@@ -113,10 +113,22 @@ def package(copy: Path) -> Path:
     return copy / "python"
 
 
-def test_the_output_is_in_runs_derivatives_units_and_pages(package: Path, tmp_path: Path) -> None:
+def test_a_melting_law_with_a_state_takes_three_files() -> None:
+    steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a melting law with a state")
+    assert {step[2] for step in steps} == {
+        "crates/engine/src/physics/pcm/history/delay.rs",
+        "crates/engine/src/physics/pcm/history/mod.rs",
+        "python/mascarin/building/parts/materials/history_laws.py",
+    }
+
+
+@pytest.mark.parametrize("script", ["guide_output.py", "guide_melting.py"])
+def test_what_is_added_is_in_runs_derivatives_units_and_pages(
+    package: Path, tmp_path: Path, script: str
+) -> None:
     paths = [package, ROOT / "docs" / "site", ROOT / "tests"]
     done = subprocess.run(
-        [sys.executable, str(ROOT / "tests" / "guide_output.py"), str(tmp_path)],
+        [sys.executable, str(ROOT / "tests" / script), str(tmp_path)],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))},
         cwd=tmp_path,
         capture_output=True,

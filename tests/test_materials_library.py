@@ -8,9 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mascarin.building import PhaseChangeMaterial
 from mascarin.errors import InputError
 from mascarin.materials import Product, product, products, search
-from mascarin.materials.library import KINDS, PROPERTIES, capacities, curves, enthalpy_curves, suggestion
+from mascarin.materials.library import (
+    COLLECTION,
+    KINDS,
+    PROPERTIES,
+    capacities,
+    curves,
+    enthalpy_curves,
+    suggestion,
+)
 from mascarin.materials.plots import plot
 
 #: What the collection calls a product, where it is more than maker and name.
@@ -27,7 +36,7 @@ def name_there(one: Product, known: dict[str, dict[str, str]]) -> str:
 
 
 def from_collection() -> list[Product]:
-    return [one for one in products().values() if one.name != "Energain"]
+    return [one for one in products().values() if COLLECTION in one.source]
 
 
 def test_there_are_enough_products_with_sources() -> None:
@@ -91,6 +100,18 @@ def test_enthalpy_includes_latent_and_sensible_heat() -> None:
     assert sum(c * (b - a) for (_, c), (a, b) in zip(middles, pairwise(temperatures), strict=True)) == (
         pytest.approx(enthalpies[-1], rel=1e-9)
     )
+
+
+def test_the_salt_hydrate_may_supercool() -> None:
+    salt = PhaseChangeMaterial.from_product(
+        "CaCl2-6H2O", hysteresis={"model": "supercooling", "degree": 12, "time_constant": 900}
+    )
+    assert salt.latent_heat == 190800
+    assert salt.one_curve is not None
+    assert salt.one_curve.coldest_liquid(salt.reference) == 17.0
+    again = PhaseChangeMaterial(**salt.written())
+    assert again == salt
+    assert PhaseChangeMaterial.from_product("CaCl2-6H2O").hysteresis is None
 
 
 def test_energain_is_that_of_the_paper() -> None:

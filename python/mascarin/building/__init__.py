@@ -88,6 +88,7 @@ from mascarin.building.parts.envelope.surface import (
     Surface,
 )
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
+from mascarin.building.parts.materials.history_laws import Supercooling
 from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance, Solid
 from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
@@ -209,6 +210,7 @@ __all__ = [
     "SmoothStepLaw",
     "Solid",
     "SunShares",
+    "Supercooling",
     "Surface",
     "SurfaceHumidity",
     "TableLaw",

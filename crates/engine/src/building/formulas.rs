@@ -6,6 +6,7 @@ use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
 use crate::input::description::{Convection, Description, Facing, Material, MeltingCurve, PcmLaw, Side};
 use crate::physics::convection::formula_text::FormulaText;
+use crate::physics::pcm::history;
 use crate::physics::pcm::text::FractionText;
 
 /// The law of each surface that is written as text.
@@ -26,13 +27,18 @@ pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<For
     Ok(texts.into_iter().map(|(_, text)| text).collect())
 }
 
-/// Refuses melting curves whose text cannot be read.
+/// Refuses laws of melting that do not exist or lack numbers, and melting curves whose text cannot be read.
 pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError> {
     for (index, material) in description.materials.iter().enumerate() {
         let Material::Pcm { law, .. } = material else { continue };
         let curves: Vec<&MeltingCurve> = match law {
             PcmLaw::Melting { curve, .. } => vec![curve],
-            PcmLaw::Hysteresis { heating, cooling, .. } => vec![heating, cooling],
+            PcmLaw::History { model, curves, numbers, .. } => {
+                history::check(model, curves.len(), numbers).map_err(|text| {
+                    EngineError::Description(format!("material {index}, law of melting: {text}"))
+                })?;
+                curves.iter().collect()
+            }
             PcmLaw::Tabulated { .. } => Vec::new(),
         };
         for curve in curves {

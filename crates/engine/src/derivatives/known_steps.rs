@@ -126,6 +126,8 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                     for (place, solved) in self.follower.stage_places(length).zip(known.stages) {
                         if place.stage > 0 {
                             self.follower.store_first_stage(state);
+                        } else {
+                            self.follower.begin_first_stage(state, length);
                         }
                         self.follower.conditions_of_stage(state, weather, known.part, place.stage);
                         self.stage(state, place, (solved, first + place.stage));

@@ -136,7 +136,7 @@ walk!(Material by variant {
 });
 walk!(PcmLaw by variant {
     Melting { latent_heat, curve } plain {},
-    Hysteresis { latent_heat, heating, cooling } plain { model },
+    History { latent_heat, curves, numbers } plain { model },
     Tabulated { temperature_shift, enthalpy_scale } plain { temperatures, points, melting_range },
 });
 walk!(MeltingCurve by variant {

@@ -9,7 +9,7 @@ use crate::linear::product::{PlainMatrix, SameKind};
 use crate::linear::tridiagonal::Tridiagonal;
 use crate::linear::wall_linearisation::PhaseChange;
 use crate::number::real::Real;
-use crate::physics::pcm::PcmMemory;
+use crate::physics::pcm::PcmHistory;
 
 pub use crate::linear::tridiagonal::{Condensed, Link, Response};
 pub use crate::linear::wall_linearisation::{Iterate, Start, Storage, StorageRule};
@@ -182,7 +182,7 @@ impl<S: Real> WallSystem<S> {
     pub(crate) fn remainder(
         &self,
         wall: &WallCoefficients<S>,
-        memory: &[PcmMemory<S>],
+        memory: &[PcmHistory<S>],
         surfaces: [S; 2],
     ) -> S {
         self.phase_change.remainder(

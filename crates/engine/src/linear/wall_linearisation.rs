@@ -13,7 +13,7 @@ use core::ops::Range;
 use crate::building::coefficients::{Matter, WallCoefficients};
 use crate::linear::tridiagonal::Link;
 use crate::number::real::{ByPrecision, Real};
-use crate::physics::pcm::{PcmCoefficients, PcmMemory, PcmPoint};
+use crate::physics::pcm::{PcmCoefficients, PcmHistory, PcmPoint};
 
 /// Enthalpy of a cell near the current iterate, `offset + capacity (T - reference)` [J/m3].
 ///
@@ -86,7 +86,7 @@ pub struct Start<'a, S> {
     pub enthalpy: &'a [S],
 
     /// Memory of the hysteresis of each cell.
-    pub memory: &'a [PcmMemory<S>],
+    pub memory: &'a [PcmHistory<S>],
 }
 
 /// The parts of a wall that depend on temperature, and their properties at the iterate.
@@ -359,7 +359,7 @@ impl<S: Real> PhaseChange<S> {
     pub(super) fn remainder(
         &self,
         wall: &WallCoefficients<S>,
-        memory: &[PcmMemory<S>],
+        memory: &[PcmHistory<S>],
         (storage, rate): (&[Storage<S>], &[S]),
         flux: impl Fn(usize) -> S,
     ) -> S {
@@ -401,7 +401,7 @@ fn split_tangent<S: Real>(
     law: &PcmCoefficients<S>,
     temperature: S,
     outer: S,
-    memory: &PcmMemory<S>,
+    memory: &PcmHistory<S>,
 ) -> (S, S) {
     let (convex, convex_slope) = law.rising(temperature, memory);
     let (all, (outer_convex, outer_slope)) = (law.at(outer, memory), law.rising(outer, memory));

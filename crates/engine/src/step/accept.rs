@@ -7,19 +7,28 @@ use crate::linear::wall::{StorageRule, WallSystem};
 use crate::number::real::Real;
 use crate::physics::pcm::reversed;
 use crate::step::scheme::Scheme;
+use crate::step::stage_histories::StageHistories;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
 impl<S: Real> Stepper<'_, S> {
-    /// Takes the last stage as the new state.
+    /// Takes the last stage of a step of a length [s] as the new state.
     #[inline(always)]
-    pub(super) fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
-        let Self { model, scheme, solver, .. } = &mut *self;
+    pub(super) fn accept(
+        &mut self,
+        state: &mut State<S>,
+        energy: &Power<S>,
+        length: f64,
+        ledger: &mut Ledger<S>,
+    ) {
+        let Self { model, scheme, solver, histories, .. } = &mut *self;
         let mut stored = solver.system.step_maps.finish(&solver.solution.surfaces, &mut state.cells);
         let reached = Reached {
             walls: &solver.system.walls,
             cells: &solver.solution.cells,
             first_fraction: &solver.start.first_fraction,
+            histories,
+            length,
         };
         let mut in_walls = S::zero();
         let reversals = accept_nonlinear(
@@ -56,6 +65,10 @@ pub(super) struct Reached<'r, S> {
     pub(super) cells: &'r [S],
     /// Liquid fractions of the cells at the first stage of the step [-].
     pub(super) first_fraction: &'r [S],
+    /// Histories of the cells in the last stage.
+    pub(super) histories: &'r StageHistories<S>,
+    /// Length of the step [s].
+    pub(super) length: f64,
 }
 
 /// Cells of the nonlinear walls at the end of the last stage, and their memory; how many cells have melted and frozen in the step.
@@ -81,20 +94,20 @@ pub(super) fn accept_nonlinear<S: Real>(
                 let law = &numbers.pcm[law];
                 let mut fraction = chain.fraction_at_solution(i);
                 // Where the history matters: the point itself.
-                if law.remembers() || apparent {
-                    let point = law.at(temperature, &state.memory[k]);
+                if law.has_history() || apparent {
+                    let point = law.at(temperature, &reached.histories.within(state)[k]);
                     fraction = point.liquid_fraction;
                     if apparent {
                         // What the material stores, which differs from what the scheme has counted.
                         enthalpy = point.enthalpy;
                     }
                 }
-                if law.remembers() && stages > 1 {
+                if law.has_history() && stages > 1 {
                     let start = state.memory[k].liquid_fraction;
                     let turned = reversed(start, reached.first_fraction[k], fraction);
                     reversals += S::select(turned, S::one(), S::zero());
                 }
-                state.memory[k] = law.next(&state.memory[k], temperature, fraction);
+                state.memory[k] = law.next(&state.memory[k], temperature, fraction, reached.length);
             }
             store([numbers.area, cell.thickness], [state.enthalpy[k], enthalpy]);
             state.enthalpy[k] = enthalpy;

@@ -36,7 +36,8 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(never)]
     pub(super) fn record_residual(&mut self, state: &State<S>, length: f64, index: usize) {
         let (model, conditions, tableau) = (&self.model, &self.weather.conditions, self.scheme.tableau());
-        let stage = Stage { model, conditions, state, tableau, length, place: (0, index + 1) };
+        let histories = self.histories.within(state);
+        let stage = Stage { model, conditions, state, histories, tableau, length, place: (0, index + 1) };
         if let Some(residuals) = &mut self.residuals {
             residuals.record(&self.solver, &self.flows, &stage, tableau.ratio);
         }

@@ -24,6 +24,7 @@ use crate::step::linearisation::Linearisation;
 use crate::step::readings::Readings;
 use crate::step::scheme::{Scheme, Tableau};
 use crate::step::stage::{Stage, StageStart};
+use crate::step::stage_histories::StageHistories;
 use crate::step::stage_solutions::KnownPart;
 use crate::step::stage_weather::StageWeather;
 use crate::step::state::{Initial, State};
@@ -69,6 +70,7 @@ pub(crate) struct Follower<'a, S: Real> {
     mean_load: Vec<S>,
     vapour: Option<Box<VapourBalances<'a, S>>>,
     vents: Option<Box<VentNetwork<'a, S>>>,
+    histories: StageHistories<S>,
 }
 
 impl<'a, S: Real> Follower<'a, S> {
@@ -91,6 +93,7 @@ impl<'a, S: Real> Follower<'a, S> {
             mean_load: vec![S::zero(); plan.zones.len()],
             vapour: VapourBalances::new(&model, stages).map(Box::new),
             vents: plan.vents.as_ref().map(|network| Box::new(VentNetwork::new(network))),
+            histories: StageHistories::new(&model),
             model,
         }
     }
@@ -172,6 +175,12 @@ impl<'a, S: Real> Follower<'a, S> {
         self.linearisation.extrapolate_gaps(0, &state.cells);
     }
 
+    /// Begins the first stage of a part of a length [s].
+    #[inline(always)]
+    pub(crate) fn begin_first_stage(&mut self, state: &State<S>, length: f64) {
+        self.histories.begin(&self.model, state, self.scheme.tableau(), length);
+    }
+
     /// The weather of a stage.
     #[inline(always)]
     pub(crate) fn conditions_of_stage(
@@ -195,6 +204,7 @@ impl<'a, S: Real> Follower<'a, S> {
     #[inline(always)]
     pub(crate) fn begin_balance(&mut self, state: &mut State<S>, now: &Instant<'_>) {
         self.begin_part(state);
+        self.begin_first_stage(state, 0.0);
         self.conditions_now(now);
         control_vents(&self.model, state, now.row, 0.0);
         self.drive_vents(state);
@@ -225,12 +235,13 @@ impl<'a, S: Real> Follower<'a, S> {
         place: StagePlace,
         known: &Unknowns<f64>,
     ) {
-        let Self { model, scheme, weather, linearisation, walls, iterate, .. } = self;
+        let Self { model, scheme, weather, linearisation, walls, iterate, histories, .. } = self;
         let conditions = &weather.conditions;
         let stage = Stage {
             model,
             conditions,
             state,
+            histories: histories.within(state),
             tableau: scheme.tableau(),
             length: place.length,
             place: (0, place.stage + 1),
@@ -305,7 +316,8 @@ impl<'a, S: Real> Follower<'a, S> {
     /// Enthalpies and liquid fractions at the end of the first stage, for the second.
     #[inline(always)]
     pub(crate) fn store_first_stage(&mut self, state: &State<S>) {
-        let Self { model, scheme, linearisation, walls, start, iterate, solution, .. } = self;
+        let Self { model, scheme, linearisation, walls, start, iterate, solution, histories, .. } = self;
+        histories.begin_second(model, state, scheme.tableau(), &solution.cells);
         for &w in &model.parts.nonlinear_walls {
             let (wall, chain) = (&model.plan.walls[w], &walls[w]);
             for (i, storage) in chain.storage.iter().enumerate() {
@@ -323,8 +335,14 @@ impl<'a, S: Real> Follower<'a, S> {
     /// The last stage becomes the new state at the end of a part of a length [s].
     #[inline(always)]
     pub(crate) fn end_part(&mut self, state: &mut State<S>, part: Part, length: f64) {
-        let Self { model, scheme, walls, start, solution, mean_load, vapour, .. } = self;
-        let reached = Reached { walls, cells: &solution.cells, first_fraction: &start.first_fraction };
+        let Self { model, scheme, walls, start, solution, mean_load, vapour, histories, .. } = self;
+        let reached = Reached {
+            walls,
+            cells: &solution.cells,
+            first_fraction: &start.first_fraction,
+            histories,
+            length,
+        };
         accept_nonlinear(
             model,
             *scheme,

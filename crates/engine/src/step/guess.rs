@@ -6,7 +6,7 @@ use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::linear::unknowns::{Temperatures, Unknowns, line};
 use crate::number::real::Real;
-use crate::physics::pcm::PcmMemory;
+use crate::physics::pcm::PcmHistory;
 use crate::step::state::State;
 
 /// What initial guesses are made from beside the state: the start of the step before.
@@ -125,7 +125,7 @@ impl<S: Real> Unknowns<S> {
         model: &Model<'_, S>,
         [from, to]: &[Temperatures<'_, S>; 2],
         ratio: f64,
-        memory: &[PcmMemory<S>],
+        memory: &[PcmHistory<S>],
     ) {
         for &surface in &model.parts.linearised {
             self.surfaces[surface] = line(from.surfaces[surface], to.surfaces[surface], ratio);

@@ -31,7 +31,7 @@ impl<S: Real> StageSolver<'_, S> {
         for (&w, cells) in model.parts.nonlinear_walls.iter().zip(&model.parts.nonlinear_cells) {
             let numbers = &model.coefficients.walls[w];
             let moves = self.iterate.cells[cells.clone()].iter_mut().zip(&self.solution.cells[cells.clone()]);
-            let laws = numbers.cells.iter().zip(&stage.state.memory[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&stage.histories[cells.clone()]);
             for ((old, &new), (cell, memory)) in moves.zip(laws) {
                 let target = match cell.matter {
                     Matter::Pcm(law) if limits && iteration >= STRAIGHT => {

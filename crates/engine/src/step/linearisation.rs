@@ -74,7 +74,7 @@ impl<S: Real> Linearisation<S> {
         let start = Start {
             cells: &state.cells[cells.clone()],
             enthalpy: &state.enthalpy[cells.clone()],
-            memory: &state.memory[cells],
+            memory: &stage.histories[cells],
         };
         if let Some(glass) = &numbers.glass {
             let links = &mut chain.links;

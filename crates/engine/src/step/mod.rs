@@ -22,6 +22,7 @@ mod residual;
 mod residual_tests;
 pub(crate) mod scheme;
 mod stage;
+mod stage_histories;
 pub(crate) mod stage_solutions;
 mod stage_weather;
 pub mod state;

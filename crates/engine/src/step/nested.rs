@@ -9,10 +9,9 @@ use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 use crate::physics::constants::KELVIN;
-use crate::physics::pcm::PcmMemory;
+use crate::physics::pcm::PcmHistory;
 use crate::step::newton::{MAX_ITERATIONS, StageSolver, TOLERANCE};
 use crate::step::stage::Stage;
-use crate::step::state::State;
 
 /// Iterations in all before a stage is given up.
 const MAX_NESTED: usize = 10 * MAX_ITERATIONS;
@@ -26,8 +25,8 @@ impl<S: Real> StageSolver<'_, S> {
     #[inline(never)]
     pub(super) fn solve_nested(&mut self, stage: &Stage<'_, S>) -> bool {
         let model = stage.model;
-        let state = State { memory: complete_memory(model, stage.state), ..stage.state.clone() };
-        let stage = &Stage { state: &state, ..*stage };
+        let (state, histories) = (stage.state, complete_histories(model, stage.histories));
+        let stage = &Stage { histories: &histories, ..*stage };
         let enough = S::constant(TOLERANCE.of::<S>());
         let mut outer =
             Unknowns { cells: state.cells.clone(), surfaces: state.surfaces.clone(), air: state.air.clone() };
@@ -66,16 +65,16 @@ impl<S: Real> StageSolver<'_, S> {
     }
 }
 
-/// Memory with all that the split of the enthalpy into convex functions needs.
-fn complete_memory<S: Real>(model: &Model<'_, S>, state: &State<S>) -> Vec<PcmMemory<S>> {
-    let mut memory = state.memory.clone();
+/// Histories with all that the split of the enthalpy into convex functions needs.
+fn complete_histories<S: Real>(model: &Model<'_, S>, histories: &[PcmHistory<S>]) -> Vec<PcmHistory<S>> {
+    let mut histories = histories.to_vec();
     for (wall, numbers) in model.plan.walls.iter().zip(&model.coefficients.walls) {
         for (i, cell) in numbers.cells.iter().enumerate() {
             if let Matter::Pcm(law) = cell.matter {
                 let k = wall.first_cell + i;
-                memory[k] = numbers.pcm[law].complete(&memory[k]);
+                histories[k] = numbers.pcm[law].complete(&histories[k]);
             }
         }
     }
-    memory
+    histories
 }

@@ -175,7 +175,7 @@ impl<S: Real> NonlinearLaws<S> {
         for &w in walls {
             let (numbers, cells) = (&stage.model.coefficients.walls[w], stage.model.cells(w));
             let surfaces = solution.surfaces.pair(w);
-            let memory = &stage.state.memory[cells];
+            let memory = &stage.histories[cells];
             largest = largest.max(system.walls[w].remainder(numbers, memory, surfaces));
         }
         largest.lt(self.limit.remainder)

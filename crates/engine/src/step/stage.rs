@@ -5,6 +5,7 @@ use crate::linear::unknowns::{Unknowns, copy_ranges, line};
 use crate::linear::wall::WallSystem;
 use crate::number::line::Line;
 use crate::number::real::Real;
+use crate::physics::pcm::PcmHistory;
 use crate::step::scheme::Tableau;
 use crate::step::state::State;
 use crate::weather::conditions::Conditions;
@@ -16,6 +17,8 @@ pub(crate) struct Stage<'s, S: Real> {
     pub(crate) conditions: &'s Conditions<S>,
     /// State at the start of the step.
     pub(crate) state: &'s State<S>,
+    /// Histories of the cells as the laws read them in this stage.
+    pub(crate) histories: &'s [PcmHistory<S>],
     /// Of the scheme.
     pub(crate) tableau: &'static Tableau,
     /// Effective length [s].

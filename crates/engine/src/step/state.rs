@@ -8,7 +8,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
-use crate::physics::pcm::{PcmMemory, REMEMBERED};
+use crate::physics::pcm::{HISTORY_NUMBERS, PcmHistory};
 use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
 
 /// Temperatures that a run starts from [degC], the same for all members; phase-change materials have been heated to them.
@@ -72,7 +72,7 @@ pub struct State<S> {
     /// Enthalpies of the cells of nonlinear walls [J/m3]; those of others are the capacity times the temperature.
     pub enthalpy: Vec<S>,
     /// Memory of the cells: their history, as far as the laws depend on it.
-    pub memory: Vec<PcmMemory<S>>,
+    pub memory: Vec<PcmHistory<S>>,
     /// Surface temperatures [degC].
     pub surfaces: BySurface<S>,
     /// Zone air temperatures [degC].
@@ -103,7 +103,7 @@ impl<S: Real> State<S> {
             }
         };
         let mut state = Self {
-            memory: cells.iter().map(|&cell| PcmMemory::new(S::zero(), cell)).collect(),
+            memory: cells.iter().map(|&cell| PcmHistory::new(S::zero(), cell)).collect(),
             enthalpy: vec![S::zero(); plan.n_cells],
             load: vec![S::zero(); plan.zones.len()],
             vapour: vapour_at(model, &air, row),
@@ -155,14 +155,14 @@ impl<S: Real> State<S> {
                 let (before, now) = (from.cells[k], self.cells[k]);
                 let heat = match &cell.matter {
                     Matter::Solid { capacity, .. } => *capacity * (now - before),
-                    Matter::Pcm(law) if wall.pcm[*law].remembers() => {
+                    Matter::Pcm(law) if wall.pcm[*law].has_history() => {
                         self.cells[k] = before;
                         S::zero()
                     }
                     Matter::Pcm(law) => {
                         let law = &wall.pcm[*law];
                         let [before, point] = [before, now].map(|at| law.at(at, &from.memory[k]));
-                        self.memory[k] = law.next(&from.memory[k], now, point.liquid_fraction);
+                        self.memory[k] = law.next(&from.memory[k], now, point.liquid_fraction, 0.0);
                         point.enthalpy - before.enthalpy
                     }
                 };
@@ -222,9 +222,9 @@ impl<S: Real> State<S> {
                 change(mine, theirs);
             }
         }
-        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        let (all, _) = numbers.as_chunks::<HISTORY_NUMBERS>();
         for (memory, numbers) in memory.iter_mut().zip(all) {
-            memory.read(*numbers, &mut change);
+            memory.read(numbers, &mut change);
         }
     }
 
@@ -238,7 +238,7 @@ impl<S: Real> State<S> {
                 see(mine, theirs);
             }
         }
-        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        let (all, _) = numbers.as_chunks::<HISTORY_NUMBERS>();
         for (memory, numbers) in self.memory.iter().zip(all) {
             for (mine, &theirs) in memory.numbers().into_iter().zip(numbers) {
                 see(mine, theirs);
@@ -261,7 +261,7 @@ impl<S: Real> State<S> {
 
     /// How many numbers it has.
     pub(crate) fn count(&self) -> usize {
-        self.plain().into_iter().map(<[S]>::len).sum::<usize>() + REMEMBERED * self.memory.len()
+        self.plain().into_iter().map(<[S]>::len).sum::<usize>() + HISTORY_NUMBERS * self.memory.len()
     }
 
     /// Changes each number by the one at its place in another state.
@@ -282,7 +282,7 @@ impl<S: Real> State<S> {
             }
         }
         for (mine, theirs) in self.memory.iter_mut().zip(&other.memory) {
-            mine.read(theirs.numbers(), &mut change);
+            mine.read(&theirs.numbers(), &mut change);
         }
     }
 

@@ -19,6 +19,7 @@ use crate::step::newton::{Counters, Search, StageSolver};
 use crate::step::residual::StageResiduals;
 use crate::step::scheme::Scheme;
 use crate::step::stage::Stage;
+use crate::step::stage_histories::StageHistories;
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::stage_weather::StageWeather;
 use crate::step::state::{Initial, State};
@@ -44,6 +45,8 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) vapour: Option<Box<VapourBalances<'a, S>>>,
     /// Present only in a building with a pressure network.
     pub(super) vents: Option<Box<VentNetwork<'a, S>>>,
+    /// Of phase-change cells, in the present stage.
+    pub(super) histories: StageHistories<S>,
     /// Present only where residuals are evaluated.
     pub(super) residuals: Option<Box<StageResiduals<S>>>,
 }
@@ -66,6 +69,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
             residuals: None,
+            histories: StageHistories::new(&model),
             model,
             scheme,
         }
@@ -120,7 +124,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.weather.set_instant(&self.model, now);
                 self.control_vents(state, now.row, 0.0);
                 self.drive_vents(state);
-                self.begin_step(state, 0.0);
+                self.begin_step(state, 0.0, 0.0);
                 self.solve_stage(state, INSTANT.of::<S>(), (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
                 if let Some(humidity) = &self.weather.conditions.humidity {
@@ -239,7 +243,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger: &mut Ledger<S>,
     ) -> Result<bool, EngineError> {
         let (length, tableau) = (part.share * dt, self.scheme.tableau());
-        self.begin_step(state, tableau.nodes[0]);
+        self.begin_step(state, tableau.nodes[0], length);
         let with_loads = !self.model.plan.ideal_loads.is_empty();
         if with_loads {
             self.guess_loads(state, weather.row(part.step, tableau.weights.len() - 1), length);
@@ -253,7 +257,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         if self.overshoots(state, weather, part) {
             return Ok(false);
         }
-        self.accept(state, &energy, ledger);
+        self.accept(state, &energy, length, ledger);
         self.advance_vapour(state, length, ledger);
         self.known.accept(part, state);
         Ok(true)
@@ -284,9 +288,10 @@ impl<'a, S: Real> Stepper<'a, S> {
         Ok(energy)
     }
 
-    /// Starts from a state; the stage at a node of the step is guessed from the step before.
+    /// Starts a step of a length [s] from a state; the stage at a node of the step is guessed from the step before.
     #[inline(always)]
-    fn begin_step(&mut self, state: &State<S>, node: f64) {
+    fn begin_step(&mut self, state: &State<S>, node: f64, length: f64) {
+        self.histories.begin(&self.model, state, self.scheme.tableau(), length);
         let Self { model, solver, .. } = self;
         solver.start.begin(model, state);
         solver.start.load.copy_from_slice(&state.load);
@@ -300,10 +305,12 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// What the second stage starts from; its end is guessed on a straight line.
     #[inline(always)]
     pub(super) fn begin_second_stage(&mut self, state: &State<S>) {
-        let Self { model, solver, .. } = self;
+        let tableau = self.scheme.tableau();
+        let Self { model, solver, histories, .. } = self;
         let StageSolver { system, start, solution, .. } = solver;
+        histories.begin_second(model, state, tableau, &solution.cells);
         system.step_maps.set_first_surfaces(&solution.surfaces);
-        start.begin_second_stage(model, state, self.scheme.tableau().ratio, (&system.walls, solution));
+        start.begin_second_stage(model, state, tableau.ratio, (&system.walls, solution));
         self.extrapolate_stage(state);
     }
 
@@ -328,7 +335,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<S::Mask, EngineError> {
         let (model, conditions) = (&self.model, &self.weather.conditions);
         let tableau = self.scheme.tableau();
-        let stage = Stage { model, conditions, state, tableau, length, place };
+        let histories = self.histories.within(state);
+        let stage = Stage { model, conditions, state, histories, tableau, length, place };
         let sound = self.solver.solve(&stage, search)?;
         self.known.keep(&self.solver.solution);
         if self.residuals.is_some() && place.1 > 0 {

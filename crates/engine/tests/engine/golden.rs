@@ -20,7 +20,7 @@ use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
-use mascarin_engine::description::{Description, HysteresisModel};
+use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::linear_model::state_space;
@@ -284,7 +284,7 @@ fn hashed<S: Sloped>(name: &str, run: &Run<S>) -> Row {
         rest.lanes(numbers, failed);
     }
     for memory in &run.state.memory {
-        let [first, second] = memory.marks;
+        let [first, second, ..] = memory.model_state;
         rest.lanes(&[memory.liquid_fraction, memory.temperature, first, second], failed);
     }
     rest.lanes(&[run.warm_up_change, run.counters.reversals], failed);
@@ -350,9 +350,9 @@ impl Sample {
     fn melting() -> [Self; 4] {
         [
             ("melting", None),
-            ("curve track", Some(HysteresisModel::CurveTrack)),
-            ("curve switch", Some(HysteresisModel::CurveSwitch)),
-            ("curve scale", Some(HysteresisModel::CurveScale)),
+            ("curve track", Some("curve_track")),
+            ("curve switch", Some("curve_switch")),
+            ("curve scale", Some("curve_scale")),
         ]
         .map(|(name, model)| {
             let description = melting(model);

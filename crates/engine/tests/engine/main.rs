@@ -34,6 +34,7 @@ mod single_precision;
 mod slopes_of_stages;
 mod stepwise;
 mod streamed;
+mod supercooling;
 mod tape_memory;
 mod unlike_members;
 mod vents;

@@ -4,7 +4,6 @@ use crate::common::conditioned::{conditioned, conditioned_outputs, conditioned_w
 use crate::common::melting::{melting, melting_weather};
 use crate::common::{ALL_SCHEMES, forcing, options, run, values, warmup};
 use mascarin_engine::Scheme;
-use mascarin_engine::description::HysteresisModel;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::plan::Plan;
@@ -32,17 +31,19 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|number| number.to_bits()).collect()
 }
 
-/// Ideal loads in two zones, and phase change with hysteresis; periodic and uniform starts.
+/// Ideal loads in two zones, and phase change with hysteresis and supercooling; periodic and uniform starts.
 fn cases(scheme: Scheme) -> Vec<(Plan, Vec<f64>, Options)> {
     let mut found = Vec::new();
     for warmup in [None, Some(warmup(STEP))] {
         let plan = Plan::new(conditioned(0.04)).unwrap();
         let rows = forcing(&plan, scheme, STEPS, STEP, conditioned_weather);
         found.push((plan, rows, Options { warmup, ..options(scheme, STEP, conditioned_outputs()) }));
-        let plan = Plan::new(melting(Some(HysteresisModel::CurveTrack))).unwrap();
-        let rows = forcing(&plan, scheme, STEPS, STEP, melting_weather);
-        let outputs = vec![Output::AirTemperature { zone: 0 }, Output::FaceFlux { surface: 0, side: 1 }];
-        found.push((plan, rows, Options { warmup, ..options(scheme, STEP, outputs) }));
+        for law in ["curve_track", "supercooling"] {
+            let plan = Plan::new(melting(Some(law))).unwrap();
+            let rows = forcing(&plan, scheme, STEPS, STEP, melting_weather);
+            let outputs = vec![Output::AirTemperature { zone: 0 }, Output::FaceFlux { surface: 0, side: 1 }];
+            found.push((plan, rows, Options { warmup, ..options(scheme, STEP, outputs) }));
+        }
     }
     found
 }

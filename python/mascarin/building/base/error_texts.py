@@ -97,7 +97,7 @@ def _lacks(plain: Any, key: str, path: list[str | int]) -> bool:
 
 def _kinds(plain: Mapping[str, Any]) -> tuple[Any, ...]:
     """Kinds as which pydantic may read a mapping: a material without a kind is a solid or a product."""
-    return (plain.get("kind", "solid"), *(["pcm"] if "product" in plain else []))
+    return (plain.get("kind", "solid"), plain.get("model"), *(["pcm"] if "product" in plain else []))
 
 
 def holds(plain: Any, step: str | int) -> bool:

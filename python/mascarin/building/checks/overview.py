@@ -338,8 +338,10 @@ def _melting(building: Description) -> Iterator[str]:
         else:
             latent_text = f"{material.latent_heat:g} J/kg, " if isinstance(law, FractionsLaw) else ""
             yield f"material {name}: {latent_text}melts between {low:g} and {high:g} degC, by its table"
-        if material.hysteresis is not None and material.cooling is not None:
-            yield f"material {name}: {_two_curves(material, material.hysteresis.model, *material.cooling)}"
+        if material.two_curves is not None and material.cooling is not None:
+            yield f"material {name}: {_two_curves(material, material.two_curves.model, *material.cooling)}"
+        if material.one_curve is not None:
+            yield f"material {name}: {material.one_curve.said(material.reference)}"
 
 
 def _two_curves(material: PhaseChangeMaterial, model: str, cooling: FractionLaw, centre: float) -> str:

@@ -9,6 +9,7 @@ from mascarin.building.engine_input.ids import Ids, Json, fields_of
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import Construction
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
+from mascarin.building.parts.materials.history_laws import OneCurveLaw
 from mascarin.building.parts.materials.material import Material, PhaseChangeMaterial
 from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
@@ -53,14 +54,14 @@ def _law(material: PhaseChangeMaterial, ids: Ids) -> Json:
     hysteresis = material.hysteresis
     if hysteresis is None:
         return {"kind": "melting", "latent_heat": latent_heat, "curve": heating}
+    history = {"kind": "history", "latent_heat": latent_heat, "model": hysteresis.model}
+    if isinstance(hysteresis, OneCurveLaw):
+        named = fields_of(hysteresis, ids, "hysteresis.")
+        numbers = [{"name": name, "value": number} for name, number in named.items()]
+        return history | {"curves": [heating], "numbers": numbers}
     shape, prefix = (law, "law.") if hysteresis.law is None else (hysteresis.law, "hysteresis.law.")
-    return {
-        "kind": "hysteresis",
-        "latent_heat": latent_heat,
-        "model": hysteresis.model,
-        "heating": heating,
-        "cooling": _melting_curve(shape, ids, prefix, "hysteresis.freezing_temperature"),
-    }
+    cooling = _melting_curve(shape, ids, prefix, "hysteresis.freezing_temperature")
+    return history | {"curves": [heating, cooling], "numbers": []}
 
 
 def _melting_curve(law: Part, ids: Ids, prefix: str, centre: str) -> Json:

@@ -153,8 +153,8 @@ def _melting_count(name: str, material: PhaseChangeMaterial, thickness: float, w
 def _least_width(name: str, material: PhaseChangeMaterial, worst: _Worst) -> float:
     """Half-width of the narrowest curve at the narrow end of the ranges [K]."""
     widths = [_width(material.law, f"materials.{name}.law", worst)]
-    if material.hysteresis is not None and material.hysteresis.law is not None:
-        widths.append(_width(material.hysteresis.law, f"materials.{name}.hysteresis.law", worst))
+    if material.two_curves is not None and material.two_curves.law is not None:
+        widths.append(_width(material.two_curves.law, f"materials.{name}.hysteresis.law", worst))
     return min(widths)
 
 

@@ -102,6 +102,8 @@ from mascarin.building.quantities.loads import (
 from mascarin.building.quantities.materials import (
     Conductivity,
     Continuity,
+    CrystallisationRate,
+    CrystallisationTime,
     CurveCapacity,
     CurveEnd,
     CurveEnthalpy,
@@ -123,6 +125,7 @@ from mascarin.building.quantities.materials import (
     PhaseSpecificHeat,
     Resistance,
     SpecificHeat,
+    SupercoolingDegree,
     TemperatureShift,
     Thickness,
 )
@@ -224,6 +227,8 @@ __all__ = [
     "ConvectionFactor",
     "ConvectionLength",
     "Coordinate",
+    "CrystallisationRate",
+    "CrystallisationTime",
     "CurveAngle",
     "CurveCapacity",
     "CurveEnd",
@@ -322,6 +327,7 @@ __all__ = [
     "SpecificHeat",
     "StackCoefficient",
     "SunShare",
+    "SupercoolingDegree",
     "SurfaceResistance",
     "TableContent",
     "TableHumidity",

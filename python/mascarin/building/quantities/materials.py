@@ -93,6 +93,33 @@ FreezingTemperature = Annotated[
         TEMPERATURE,
     ),
 ]
+SupercoolingDegree = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "How far below its melting temperature a material that has melted wholly nucleates",
+        Percent(30, "nucleation depends on purity, container and sample mass"),
+        Limits(above=0, at_most=150),
+    ),
+]
+CrystallisationTime = Annotated[
+    Number,
+    Quantity(
+        "s",
+        "Time in which the liquid that crystallises falls to 37 % at a constant temperature",
+        Percent(50, "growth depends on nucleating agents and container"),
+        Limits(at_least=0, at_most=1e7),
+    ),
+]
+CrystallisationRate = Annotated[
+    Number,
+    Quantity(
+        "1/(s K)",
+        "Part of the liquid that crystallises per second and kelvin below the end of the melting range",
+        Percent(50, "growth depends on nucleating agents and container"),
+        Limits(above=0, at_most=1e3),
+    ),
+]
 _WIDTH = Percent(50, "the width measured by a calorimeter depends on its heating rate")
 EndToMiddle = Annotated[
     Number,

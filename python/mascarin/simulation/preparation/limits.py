@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
@@ -65,6 +66,31 @@ class Limits:
             raise InputError(
                 f"{parameter.path}: found {vectors[member, k]:g} {parameter.unit}{whose}; "
                 f"expected {parameter.allowed}"
+            )
+
+
+def require_scheme(building: Building, scheme: str) -> None:
+    """Refuse a scheme of time stepping that cannot follow a law of melting with a state.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    scheme : str
+        Name of the scheme.
+
+    Raises
+    ------
+    InputError
+        Naming the material.
+    """
+    for name, material in building.materials.items():
+        law = material.one_curve if isinstance(material, PhaseChangeMaterial) else None
+        if law is not None and scheme in law.excluded_schemes:
+            raise InputError(
+                f"scheme: found '{scheme}' with {law.model} in materials.{name}.hysteresis, expected "
+                "'sdirk2', 'linearly-implicit' or 'backward-euler': heat that is set free at a rate is no "
+                "function of temperature, so that no capacity contains it"
             )
 
 

@@ -19,6 +19,7 @@ from mascarin.simulation.checks.wind_check import require_wind
 from mascarin.simulation.preparation.initial import MeasuredStart, resolved
 from mascarin.simulation.preparation.initial import read as read_initial
 from mascarin.simulation.preparation.initial_state import Ambient, GivenStart
+from mascarin.simulation.preparation.limits import require_scheme
 from mascarin.simulation.preparation.sky import with_sky_of
 from mascarin.simulation.records.times import Times
 from mascarin.tables.times import stamps_of
@@ -199,6 +200,7 @@ def forcing_of(
     InputError
         A channel that the building needs has no values.
     """
+    require_scheme(building, scheme)
     names = description.schedules
     columns = description.channels[: len(description.channels) - len(names)]
     weather = climate.forcing(

@@ -12,7 +12,7 @@ from mascarin.study.phase_change import law_curve, melting_layers, path
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.building import Building
+    from mascarin.building import Building, PhaseChangeMaterial
     from mascarin.study.findings import ModelRun
     from mascarin.study.phase_change import MeltingLayer
     from mascarin.study.setup import Setup
@@ -38,6 +38,7 @@ def _melting(study: Setup, run: ModelRun, building: Building, layer: MeltingLaye
         "label": f"{layer.surface}: {layer.layer}",
         "column": f"state/{layer.liquid_fraction}",
         "hysteresis": layer.of(building).hysteresis is not None,
+        **_own_path(layer.of(building)),
         "temperature": rounded(temperature[::every]),
         "enthalpy": rounded(enthalpy[::every]),
         "days": [
@@ -57,6 +58,11 @@ def _melting(study: Setup, run: ModelRun, building: Building, layer: MeltingLaye
             ["largest change of enthalpy within a day", f"{moved:.0f} kJ/kg"],
         ],
     }
+
+
+def _own_path(material: PhaseChangeMaterial) -> dict[str, str]:
+    """What a law with a state does beside its curve, where it is no second curve."""
+    return {} if material.one_curve is None else {"own_path": material.one_curve.path}
 
 
 def _shown_days(

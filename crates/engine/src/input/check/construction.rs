@@ -11,10 +11,7 @@ pub(super) fn check_material(material: &Material) -> Checked {
     let Material::Pcm { law, .. } = material else { return Ok(()) };
     match law {
         PcmLaw::Melting { curve, .. } => check_curve(curve),
-        PcmLaw::Hysteresis { heating, cooling, .. } => {
-            check_curve(heating)?;
-            check_curve(cooling)
-        }
+        PcmLaw::History { curves, .. } => curves.iter().try_for_each(check_curve),
         PcmLaw::Tabulated { temperatures, points, melting_range, .. } => {
             let place = "a tabulated phase-change law";
             check_rising(&format!("{place}, temperatures"), temperatures)?;

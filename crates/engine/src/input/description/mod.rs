@@ -35,7 +35,7 @@ pub use humidity::{
 };
 pub use material::Material;
 pub use parameter::{ParamId, Parameter};
-pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};
+pub use phase_change::{MeltingCurve, PcmLaw, TablePoints, Tail};
 pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
 pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};

@@ -16,16 +16,16 @@ pub enum PcmLaw {
         /// Liquid fraction over temperature.
         curve: MeltingCurve,
     },
-    /// The same with one curve for melting and another for freezing.
-    Hysteresis {
+    /// The same by a law whose liquid fraction depends on what went before; laws, curves and numbers: `physics/pcm/history`.
+    History {
         /// Heat of melting [J/kg].
         latent_heat: ParamId,
-        /// What happens on a reversal within the range.
-        model: HysteresisModel,
-        /// Liquid fraction on melting.
-        heating: MeltingCurve,
-        /// Liquid fraction on freezing, nowhere below that on melting.
-        cooling: MeltingCurve,
+        /// Name of the law.
+        model: String,
+        /// Its curves, that of melting first; one of freezing is nowhere below it.
+        curves: Vec<MeltingCurve>,
+        /// Its numbers.
+        numbers: Vec<FormulaNumber>,
     },
     /// Monotone C1 curve of specific enthalpy over temperature [degC]; read at `T - temperature_shift`, multiplied by
     /// `enthalpy_scale`. `specific_heat` of the material is used outside the table. The liquid fraction is 0 below
@@ -149,16 +149,4 @@ pub enum Tail {
     Low,
     /// Melting starts abruptly and ends slowly.
     High,
-}
-
-/// What a material does when the temperature turns back before all has melted or frozen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HysteresisModel {
-    /// It stays on its curve until all has melted or frozen.
-    CurveTrack,
-    /// Its liquid fraction stays until the other curve is met.
-    CurveSwitch,
-    /// It takes the other curve, scaled to what is left to melt or to freeze.
-    CurveScale,
 }

@@ -5,7 +5,7 @@ use crate::building::coefficients::{Cell, Matter, WallCoefficients};
 use crate::input::description::{MeltingCurve, ParamId, PcmLaw};
 use crate::input::values::Values;
 use crate::linear::tridiagonal::Link;
-use crate::physics::pcm::{PcmCoefficients, PcmMemory};
+use crate::physics::pcm::{PcmCoefficients, PcmHistory};
 
 const ID: fn(u32) -> ParamId = ParamId;
 
@@ -44,7 +44,7 @@ fn linearised(
 ) -> (Vec<Link<f64>>, Vec<Storage<f64>>) {
     let none = Link { left: 0.0, right: 0.0, offset: 0.0 };
     let (mut links, mut storage) = (vec![none; 4], vec![Storage::constant(8e5); 3]);
-    let memory = CELLS.map(|temperature| PcmMemory::new(0.0, temperature));
+    let memory = CELLS.map(|temperature| PcmHistory::new(0.0, temperature));
     let enthalpy = CELLS.map(|cell| wall.pcm[0].at(cell - 1.0, &memory[0]).enthalpy);
     let start = CELLS.map(|cell| cell - 1.0);
     let start = Start { cells: &start, enthalpy: &enthalpy, memory: &memory };
@@ -61,7 +61,7 @@ fn flux_at_iterate(links: &[Link<f64>], cells: [f64; 3], surfaces: [f64; 2], lin
 
 /// The law's own flux: by the integrals of the conductivity, and by resistances in series to the board.
 fn exact_flux(wall: &WallCoefficients<f64>, cells: [f64; 3], surfaces: [f64; 2], link: usize) -> f64 {
-    let memory = PcmMemory::new(0.0, 0.0);
+    let memory = PcmHistory::new(0.0, 0.0);
     let at = |temperature: f64| wall.pcm[0].at(temperature, &memory);
     let potential = |temperature: f64| at(temperature).potential;
     match link {
@@ -118,7 +118,7 @@ fn slopes_keep_their_sign() {
 fn storage_is_the_tangent_of_the_enthalpy() {
     const STEP: f64 = 1e-5;
     let wall = wall(0.22);
-    let law = |temperature: f64| wall.pcm[0].at(temperature, &PcmMemory::new(0.0, 0.0)).enthalpy;
+    let law = |temperature: f64| wall.pcm[0].at(temperature, &PcmHistory::new(0.0, 0.0)).enthalpy;
     let (_, storage) = linearised(&wall, (CELLS, SURFACES), None, StorageRule::Enthalpy);
     // Both parts about the iterate itself sum up to the same tangent.
     let (_, split) = linearised(&wall, (CELLS, SURFACES), Some(&CELLS), StorageRule::Enthalpy);
@@ -139,7 +139,7 @@ fn storage_is_the_tangent_of_the_enthalpy() {
 #[test]
 fn the_apparent_capacity_is_that_of_the_start() {
     let wall = wall(0.22);
-    let memory = PcmMemory::new(0.0, 0.0);
+    let memory = PcmHistory::new(0.0, 0.0);
     let (_, storage) = linearised(&wall, (CELLS, SURFACES), None, StorageRule::ApparentCapacity);
     for i in 0..2 {
         let old = wall.pcm[0].at(CELLS[i] - 1.0, &memory);

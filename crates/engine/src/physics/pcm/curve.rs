@@ -28,7 +28,7 @@ pub(super) struct CurvePoint<S> {
 
 /// A curve of the liquid fraction that rises from 0 to 1.
 #[derive(Debug, Clone)]
-pub(super) struct Curve<S> {
+pub(crate) struct Curve<S> {
     shape: Shape<S>,
     centre: S,
     width: S,

@@ -9,7 +9,7 @@
 
 mod curve;
 mod evaluate;
-mod hysteresis;
+pub(crate) mod history;
 mod normal;
 mod segments;
 mod table;
@@ -19,13 +19,14 @@ use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
 use curve::{Curve, CurvePoint, limit_at};
-use hysteresis::{FAR, Hysteresis};
+use history::two_curves::FAR;
+use history::{AnyHistoryLaw, Ingredients};
 use table::{Table, TablePoint};
 
 pub use curve::CUT;
 pub use evaluate::LiquidFraction;
-pub(crate) use hysteresis::REMEMBERED;
-pub use hysteresis::{PcmMemory, reversed};
+pub(crate) use history::HISTORY_NUMBERS;
+pub use history::{MODEL_STATE, PcmHistory, StageStart, reversed};
 
 /// State of a phase-change material at one temperature, per unit volume of layer.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +80,7 @@ pub struct PcmCoefficients<S> {
 #[derive(Debug, Clone)]
 enum Law<S> {
     Melting(Latent<S>, Curve<S>),
-    Hysteresis(Latent<S>, Box<Hysteresis<S>>),
+    History(Latent<S>, AnyHistoryLaw<S>),
     Table(Table<S>),
 }
 
@@ -92,6 +93,9 @@ struct Latent<S> {
 
 impl<S: Real> PcmCoefficients<S> {
     /// Reads the numbers of a law.
+    ///
+    /// # Panics
+    /// Where a law with a state is not in the list, or lacks curves or numbers: a plan refuses such a description.
     pub fn new(
         values: &Values<'_, S>,
         conductivity: [ParamId; 2],
@@ -110,9 +114,11 @@ impl<S: Real> PcmCoefficients<S> {
                 let curve = Curve::new(values, curve);
                 Law::Melting(latent(*latent_heat, &curve), curve)
             }
-            PcmLaw::Hysteresis { latent_heat, model, heating, cooling } => {
-                let latent = latent(*latent_heat, &Curve::new(values, heating));
-                Law::Hysteresis(latent, Box::new(Hysteresis::new(values, *model, heating, cooling)))
+            PcmLaw::History { latent_heat, model, curves, numbers } => {
+                let curves: Vec<_> = curves.iter().map(|curve| Curve::new(values, curve)).collect();
+                let latent = latent(*latent_heat, &curves[0]);
+                let law = AnyHistoryLaw::new(model, Ingredients { values, curves, numbers });
+                Law::History(latent, law.expect("the check of a description knows the name of its law"))
             }
             PcmLaw::Tabulated { temperatures, points, melting_range, temperature_shift, enthalpy_scale } => {
                 let factor = solid * values.get(*enthalpy_scale);
@@ -132,20 +138,20 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     /// Properties at a temperature [degC].
-    pub fn at(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
+    pub fn at(&self, temperature: S, history: &PcmHistory<S>) -> PcmPoint<S> {
         let mut point = PcmPoint::zero();
-        self.at_all(&[temperature], &[*memory], core::slice::from_mut(&mut point), true);
+        self.at_all(&[temperature], &[*history], core::slice::from_mut(&mut point), true);
         point
     }
 
-    /// Properties at several temperatures [degC]; a law that remembers takes a memory for each. Unless `curved`, slopes by temperature
+    /// Properties at several temperatures [degC]; a law with a history takes one for each. Unless `curved`, slopes by temperature
     /// may be constants for derivatives: a tangent needs no more of them.
     // One copy only: inlining all laws at every call would multiply compile time.
     #[inline(never)]
     pub fn at_all(
         &self,
         temperatures: &[S],
-        memory: &[PcmMemory<S>],
+        history: &[PcmHistory<S>],
         points: &mut [PcmPoint<S>],
         curved: bool,
     ) {
@@ -158,27 +164,19 @@ impl<S: Real> PcmCoefficients<S> {
                         // The usual curve has a loop of its own without the other curves, which is faster.
                         if let Some(tanh) = curve.tanh() {
                             for (point, &temperature) in places {
-                                *point = self.without_hysteresis(
-                                    *latent,
-                                    temperature,
-                                    curved,
-                                    tanh.at(temperature),
-                                );
+                                *point =
+                                    self.without_history(*latent, temperature, curved, tanh.at(temperature));
                             }
                         } else {
                             for (point, &temperature) in places {
-                                *point = self.without_hysteresis(
-                                    *latent,
-                                    temperature,
-                                    curved,
-                                    curve.at(temperature),
-                                );
+                                *point =
+                                    self.without_history(*latent, temperature, curved, curve.at(temperature));
                             }
                         }
                     }
-                    Law::Hysteresis(latent, hysteresis) => {
-                        for ((point, &temperature), memory) in places.zip(memory) {
-                            *point = self.with_hysteresis(*latent, hysteresis, (temperature, curved), memory);
+                    Law::History(latent, law) => {
+                        for ((point, &temperature), history) in places.zip(history) {
+                            *point = self.with_history(*latent, law, (temperature, curved), history);
                         }
                     }
                     Law::Table(table) => {
@@ -192,7 +190,7 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
-    fn without_hysteresis(
+    fn without_history(
         &self,
         latent: Latent<S>,
         temperature: S,
@@ -206,14 +204,14 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
-    fn with_hysteresis(
+    fn with_history(
         &self,
         latent: Latent<S>,
-        hysteresis: &Hysteresis<S>,
+        law: &AnyHistoryLaw<S>,
         (temperature, curved): (S, bool),
-        memory: &PcmMemory<S>,
+        history: &PcmHistory<S>,
     ) -> PcmPoint<S> {
-        let (fraction, slope) = hysteresis.at(temperature, memory);
+        let (fraction, slope) = law.at(temperature, history);
         let slope = if curved { slope } else { slope.fixed() };
         let (enthalpy, capacity) = self.heat(latent, (temperature, curved), fraction, slope);
         self.point((temperature, curved), [enthalpy, capacity], [fraction, slope], S::zero())
@@ -263,7 +261,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn integrable(&self) -> bool {
         match &self.law {
             Law::Melting(_, curve) => curve.integrable(),
-            Law::Hysteresis(..) => false,
+            Law::History(..) => false,
             Law::Table(_) => true,
         }
     }
@@ -274,44 +272,58 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     /// Whether the enthalpy depends on earlier temperatures.
-    pub fn remembers(&self) -> bool {
-        matches!(self.law, Law::Hysteresis(..))
+    pub fn has_history(&self) -> bool {
+        matches!(self.law, Law::History(..))
     }
 
-    /// The memory of a cell that was heated to a temperature.
-    pub fn begin(&self, temperature: S) -> PcmMemory<S> {
-        if let Law::Hysteresis(_, hysteresis) = &self.law {
-            return hysteresis.begin(temperature);
-        }
-        let nothing = PcmMemory::new(S::zero(), temperature);
-        PcmMemory::new(self.at(temperature, &nothing).liquid_fraction, temperature)
+    /// Whether it depends on time, so that stages read the history by way of [`Self::in_stage`].
+    pub(crate) fn has_rate(&self) -> bool {
+        matches!(&self.law, Law::History(_, law) if law.has_rate())
     }
 
-    /// The memory after a step that ended at a temperature with a liquid fraction.
+    /// The history that a stage reads.
     #[inline(always)]
-    pub fn next(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
+    pub fn in_stage(&self, history: &PcmHistory<S>, start: &StageStart<S>) -> PcmHistory<S> {
         match &self.law {
-            Law::Hysteresis(_, hysteresis) => hysteresis.next(memory, temperature, fraction),
-            Law::Melting(..) | Law::Table(_) => PcmMemory::new(fraction, temperature),
+            Law::History(_, law) => law.in_stage(history, start),
+            Law::Melting(..) | Law::Table(_) => *history,
         }
     }
 
-    /// The same memory with all that [`Self::rising`] needs.
-    pub fn complete(&self, memory: &PcmMemory<S>) -> PcmMemory<S> {
+    /// The history of a cell that was heated to a temperature.
+    pub fn begin(&self, temperature: S) -> PcmHistory<S> {
+        if let Law::History(_, law) = &self.law {
+            return law.begin(temperature);
+        }
+        let nothing = PcmHistory::new(S::zero(), temperature);
+        PcmHistory::new(self.at(temperature, &nothing).liquid_fraction, temperature)
+    }
+
+    /// The history after a step of a length [s] that ended at a temperature with a liquid fraction.
+    #[inline(always)]
+    pub fn next(&self, history: &PcmHistory<S>, temperature: S, fraction: S, step: f64) -> PcmHistory<S> {
         match &self.law {
-            Law::Hysteresis(_, hysteresis) => hysteresis.complete(memory),
-            Law::Melting(..) | Law::Table(_) => *memory,
+            Law::History(_, law) => law.next(history, temperature, fraction, step),
+            Law::Melting(..) | Law::Table(_) => PcmHistory::new(fraction, temperature),
+        }
+    }
+
+    /// The same history with all that [`Self::rising`] needs.
+    pub fn complete(&self, history: &PcmHistory<S>) -> PcmHistory<S> {
+        match &self.law {
+            Law::History(_, law) => law.complete(history),
+            Law::Melting(..) | Law::Table(_) => *history,
         }
     }
 
     /// Limits a Newton step across the steep part of the enthalpy curve: a step that crosses its inflection and is longer
     /// than a half-width ends on the inflection, from where Newton's method converges monotonically.
     #[inline(always)]
-    pub fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
+    pub fn limit(&self, from: S, to: S, history: &PcmHistory<S>) -> S {
         let (peak, width) = match &self.law {
             Law::Melting(_, curve) => (curve.peak(), curve.width()),
             Law::Table(table) => (table.peak(), table.width()),
-            Law::Hysteresis(_, hysteresis) => return hysteresis.limit(from, to, memory),
+            Law::History(_, law) => return law.limit(from, to, history),
         };
         limit_at(from, to, peak, width)
     }
@@ -322,23 +334,23 @@ impl<S: Real> PcmCoefficients<S> {
     /// enthalpy instead of the temperature (Swaminathan & Voller 1993, Int. J. Numer. Methods Heat Fluid Flow 3(3), 233-244).
     /// The smaller of both moves converged from all of 400 random states of a wall; each alone did not from 100.
     #[inline(always)]
-    pub fn limit_heat(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
+    pub fn limit_heat(&self, from: S, to: S, history: &PcmHistory<S>) -> S {
         match &self.law {
-            Law::Melting(_, curve) if !curve.is_measured() => self.limit(from, to, memory),
-            Law::Melting(..) | Law::Table(_) | Law::Hysteresis(..) => self.move_by_heat(from, to, memory),
+            Law::Melting(_, curve) if !curve.is_measured() => self.limit(from, to, history),
+            Law::Melting(..) | Law::Table(_) | Law::History(..) => self.move_by_heat(from, to, history),
         }
     }
 
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
-    fn move_by_heat(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
+    fn move_by_heat(&self, from: S, to: S, history: &PcmHistory<S>) -> S {
         /// Rise of the curve over that of the tangent, from which a step is limited [-].
         const STEEPER: f64 = 1.5;
         /// Halvings of the step: the place need not be exact.
         const BISECTIONS: usize = 8;
-        let at = self.at(from, memory);
+        let at = self.at(from, history);
         let along_tangent = at.capacity * (to - from);
-        let along_curve = self.at(to, memory).enthalpy - at.enthalpy;
+        let along_curve = self.at(to, history).enthalpy - at.enthalpy;
         let too_far = along_tangent.abs().scale(STEEPER).lt(along_curve.abs());
         if !too_far.any() {
             return to;
@@ -346,7 +358,7 @@ impl<S: Real> PcmCoefficients<S> {
         let (heat, mut low, mut high) = (at.enthalpy + along_tangent, from.min(to), from.max(to));
         for _ in 0..BISECTIONS {
             let middle = (low + high).scale(0.5);
-            let beneath = self.at(middle, memory).enthalpy.lt(heat);
+            let beneath = self.at(middle, history).enthalpy.lt(heat);
             low = S::select(beneath, middle, low);
             high = S::select(beneath, high, middle);
         }
@@ -358,7 +370,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub(crate) fn curvature(&self) -> Option<S> {
         match &self.law {
             Law::Melting(latent, curve) if curve.tanh().is_some() => Some(latent.heat / curve.width()),
-            Law::Melting(..) | Law::Table(_) | Law::Hysteresis(..) => None,
+            Law::Melting(..) | Law::Table(_) | Law::History(..) => None,
         }
     }
 
@@ -366,15 +378,15 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn width(&self) -> S {
         match &self.law {
             Law::Melting(_, curve) => curve.width(),
-            Law::Hysteresis(_, hysteresis) => hysteresis.width(),
+            Law::History(_, law) => law.width(),
             Law::Table(table) => table.width(),
         }
     }
 
     /// The convex part of the enthalpy, `H = H1 - H2` with slopes that never fall, and its slope: the split of Brugnano
-    /// & Casulli (2009) and Casulli & Zanolli (2010), SIAM J. Sci. Comput. 32(4), doi:10.1137/100786320. The memory
+    /// & Casulli (2009) and Casulli & Zanolli (2010), SIAM J. Sci. Comput. 32(4), doi:10.1137/100786320. The history
     /// must be complete.
-    pub fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
+    pub fn rising(&self, temperature: S, history: &PcmHistory<S>) -> (S, S) {
         let (latent, (fraction, slope)) = match &self.law {
             Law::Melting(latent, curve) => {
                 if curve.is_measured() {
@@ -385,7 +397,7 @@ impl<S: Real> PcmCoefficients<S> {
                     (latent, (fraction + slope * (temperature - place), slope))
                 }
             }
-            Law::Hysteresis(latent, hysteresis) => (latent, hysteresis.rising(temperature, memory)),
+            Law::History(latent, law) => (latent, law.rising(temperature, history)),
             Law::Table(table) => {
                 return table.convex(temperature, self.volumetric_heat);
             }
@@ -409,7 +421,7 @@ mod tests {
     fn check_slopes(law: &PcmLaw, numbers: &[f64]) {
         let numbers: Vec<D> = numbers.iter().map(|&v| D::constant(v)).collect();
         let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), law);
-        let memory = PcmMemory::new(D::zero(), D::zero());
+        let memory = PcmHistory::new(D::zero(), D::zero());
         let mut last = f64::NEG_INFINITY;
         for i in 0..400 {
             let t = 10.0 + 0.083 * f64::from(i);
@@ -451,7 +463,7 @@ mod tests {
             PcmLaw::Melting { latent_heat, curve: MeltingCurve::TanhWidth { melting_temperature, width } };
         let numbers = [&ENERGAIN[..], &[71e3, 23.4, 1.0]].concat();
         let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
-        let memory = PcmMemory::new(0.0, 0.0);
+        let memory = PcmHistory::new(0.0, 0.0);
         let rise = pcm.at(33.4, &memory).enthalpy - pcm.at(13.4, &memory).enthalpy;
         let expected = 855.0 * (71e3 + 10.0 * 3134.0 + 10.0 * 2833.0);
         assert!((rise / expected - 1.0).abs() < 1e-7);
@@ -470,7 +482,7 @@ mod tests {
         };
         let numbers = [&ENERGAIN[..], &[0.0, 1.0]].concat();
         let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
-        let memory = PcmMemory::new(0.0, 0.0);
+        let memory = PcmHistory::new(0.0, 0.0);
         for (t, h) in temperatures.iter().zip(&enthalpies) {
             assert!((pcm.at(*t, &memory).enthalpy - 855.0 * h).abs() < 1e-6 * 855.0 * 130e3);
         }

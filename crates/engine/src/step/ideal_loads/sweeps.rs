@@ -172,6 +172,7 @@ impl<S: Real> Stepper<'_, S> {
         let (mut energy, mut change, mut accepted) = (Power::none(), S::zero(), S::Mask::splat(may_end));
         if again {
             self.solver.start.begin(&self.model, state);
+            self.histories.begin(&self.model, state, tableau, length);
             self.known.restart();
             self.ideal_loads.begin_again(active);
         }
@@ -192,11 +193,12 @@ impl<S: Real> Stepper<'_, S> {
                     self.correct_guess(state, index);
                 }
             }
-            let Self { model, weather, solver, ideal_loads, known, .. } = self;
+            let Self { model, weather, solver, ideal_loads, known, histories, .. } = self;
             let stage = Stage {
                 model,
                 conditions: &weather.conditions,
                 state,
+                histories: histories.within(state),
                 tableau,
                 length: length_of_stage,
                 place: (part.step, index + 1),

@@ -1,7 +1,7 @@
 //! Small buildings in which something melts.
 
 use mascarin_engine::description::{
-    Description, Facing, HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail, ZoneLongwave,
+    Description, Facing, FormulaNumber, MeltingCurve, PcmLaw, TablePoints, Tail, ZoneLongwave,
 };
 use mascarin_engine::number::Real;
 
@@ -42,8 +42,8 @@ pub fn ceiling_weather(time: f64, row: &mut [f64]) {
 }
 
 /// Layers that melt between an imposed temperature and a room: one for each shape of the melting curve. With a model of
-/// hysteresis each material freezes 2 K below its melting; without one, layers with tabulated laws are added.
-pub fn melting(model: Option<HysteresisModel>) -> Description {
+/// hysteresis each material freezes 2 K below its melting, or supercools by them; without one, layers with tabulated laws are added.
+pub fn melting(model: Option<&str>) -> Description {
     let mut b = Builder::new();
     let board = b.solid("board", 0.16, 800.0, 1090.0);
     let room = b.zone("room", 27.0, 0.5, ZoneLongwave::None);
@@ -54,9 +54,17 @@ pub fn melting(model: Option<HysteresisModel>) -> Description {
         let heating = curve(&mut b, shape, 23.0);
         laws.push(match model {
             None => PcmLaw::Melting { latent_heat, curve: heating },
+            Some("supercooling") => {
+                let numbers = [("degree", 2.0), ("time_constant", 600.0)].map(|(name, value)| {
+                    FormulaNumber { name: name.to_owned(), value: b.number(name, value) }
+                });
+                let (model, curves) = ("supercooling".to_owned(), vec![heating]);
+                PcmLaw::History { latent_heat, model, curves, numbers: numbers.into() }
+            }
             Some(model) => {
                 let cooling = curve(&mut b, shape, 21.0);
-                PcmLaw::Hysteresis { latent_heat, model, heating, cooling }
+                let curves = vec![heating, cooling];
+                PcmLaw::History { latent_heat, model: model.to_owned(), curves, numbers: Vec::new() }
             }
         });
     }

@@ -6,8 +6,8 @@ use core::f64::consts::TAU;
 
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{
-    AirPath, Construction, Convection, Description, DiffuseSky, Exposure, Facing, FrameShare, Gain, Gap, Gas,
-    Glazing, HysteresisModel, IdealLoad, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
+    AirPath, Construction, Convection, Description, DiffuseSky, Exposure, Facing, FormulaNumber, FrameShare,
+    Gain, Gap, Gas, Glazing, IdealLoad, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
     ParamId, Parameter, PcmLaw, SetPoint, Side, Sky, TablePoints, Tail, Ventilation, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
@@ -319,13 +319,28 @@ impl Maker<'_> {
             return PcmLaw::Melting { latent_heat, curve };
         }
         let apart = self.random.between(0.2, 3.0);
-        let models = [HysteresisModel::CurveTrack, HysteresisModel::CurveSwitch, HysteresisModel::CurveScale];
-        PcmLaw::Hysteresis {
-            latent_heat,
-            model: self.random.of(&models),
-            heating: curve,
-            cooling: self.curve(kind, middle - apart, width),
-        }
+        let model = self.random.of(&["curve_track", "curve_switch", "curve_scale", "supercooling"]);
+        let (curves, numbers) = if model == "supercooling" {
+            (vec![curve], self.supercooling(apart))
+        } else {
+            (vec![curve, self.curve(kind, middle - apart, width)], Vec::new())
+        };
+        PcmLaw::History { latent_heat, model: model.to_owned(), curves, numbers }
+    }
+
+    /// Numbers of a law of supercooling by a degree [K].
+    fn supercooling(&mut self, degree: f64) -> Vec<FormulaNumber> {
+        let (name, value) = if self.random.chance(0.5) {
+            ("time_constant", self.random.between(30.0, 3600.0))
+        } else {
+            ("rate", self.random.between(1e-5, 1e-2))
+        };
+        [("degree", degree), (name, value)]
+            .map(|(name, value)| FormulaNumber {
+                name: name.to_owned(),
+                value: self.b.number(&format!("hysteresis.{name}"), value),
+            })
+            .into()
     }
 
     fn curve(&mut self, kind: usize, middle: f64, width: f64) -> MeltingCurve {

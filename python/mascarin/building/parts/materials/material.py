@@ -136,6 +136,7 @@ class PhaseChangeMaterial(Melting):
         insist(*rules.missing_or_inactive(self), *self._curve_of_nothing())
         insist(*rules.unit_errors(self))
         insist(*rules.falling_enthalpy(self))
+        insist(*rules.no_heat_of_crystallisation(self))
         insist(*rules.contradicted_latent_heat(self))
         insist(*rules.crossing_curves(self))
         if self.latent_heat is not None and isinstance(self.law, TableLaw | CapacityLaw):
@@ -144,8 +145,8 @@ class PhaseChangeMaterial(Melting):
 
     def _curve_of_nothing(self) -> list[InitErrorDetails]:
         laws: dict[tuple[str, ...], Law | FractionLaw] = {("law",): self.law}
-        if self.hysteresis is not None and self.hysteresis.law is not None:
-            laws["hysteresis", "law"] = self.hysteresis.law
+        if self.two_curves is not None and self.two_curves.law is not None:
+            laws["hysteresis", "law"] = self.two_curves.law
         return [
             fault(
                 (*place, "curve"),
@@ -173,8 +174,8 @@ class PhaseChangeMaterial(Melting):
                 continue
             if key == "law":
                 value = _beside_product(self.law, DEFAULT_CURVE)
-            elif key == "hysteresis" and self.hysteresis is not None:
-                value = _hysteresis_beside_product(self.hysteresis)
+            elif key == "hysteresis" and self.two_curves is not None:
+                value = _hysteresis_beside_product(self.two_curves)
             else:
                 value = written_value(getattr(self, key))
             if value not in (None, {}):

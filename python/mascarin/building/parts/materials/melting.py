@@ -7,6 +7,7 @@ from pydantic import Field
 from mascarin.building import quantities as q
 from mascarin.building.base.part import Part
 from mascarin.building.parts.materials.closed_law import ClosedLaw
+from mascarin.building.parts.materials.history_laws import HistoryLaw, OneCurveLaw
 from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
     FractionLaw,
@@ -32,8 +33,8 @@ class Melting(Part):
     latent_heat: q.LatentHeat | None = None
     melting_temperature: q.MeltingTemperature | None = None
     law: Law = Field(description="How the liquid fraction or the enthalpy depends on temperature")
-    hysteresis: Hysteresis | None = Field(
-        None, description="Cooling curve and model of hysteresis; none: it freezes as it melts"
+    hysteresis: HistoryLaw | None = Field(
+        None, description="Model of hysteresis or supercooling and its numbers; none: it freezes as it melts"
     )
 
     @property
@@ -66,11 +67,22 @@ class Melting(Part):
         return (self.centre + low, self.centre + high)
 
     @property
+    def two_curves(self) -> Hysteresis | None:
+        """Hysteresis between a heating and a cooling curve; None without it."""
+        return self.hysteresis if isinstance(self.hysteresis, Hysteresis) else None
+
+    @property
+    def one_curve(self) -> OneCurveLaw | None:
+        """A law with a state and a single curve, such as supercooling; None without it."""
+        return self.hysteresis if isinstance(self.hysteresis, OneCurveLaw) else None
+
+    @property
     def cooling(self) -> tuple[FractionLaw, float] | None:
         """Law of the cooling curve and the temperature it refers to [degC]; None without hysteresis."""
-        if self.hysteresis is None or isinstance(self.law, TableLaw | CapacityLaw):
+        two_curves = self.two_curves
+        if two_curves is None or isinstance(self.law, TableLaw | CapacityLaw):
             return None
-        law = self.hysteresis.law or self.law
+        law = two_curves.law or self.law
         if isinstance(law, FractionsLaw):
             return law, float(law.temperature_shift)
-        return law, float(self.hysteresis.freezing_temperature or 0.0)
+        return law, float(two_curves.freezing_temperature or 0.0)

@@ -60,8 +60,8 @@ def _needed(key: str, kind: str, path: Location = ()) -> InitErrorDetails:
 
 
 def _hysteresis_fits(material: Melting) -> Iterator[InitErrorDetails]:
-    hysteresis, law = material.hysteresis, material.law
-    if hysteresis is None:
+    law = material.law
+    if material.hysteresis is None:
         return
     if isinstance(law, TableLaw | CapacityLaw):
         yield fault(
@@ -70,6 +70,9 @@ def _hysteresis_fits(material: Melting) -> Iterator[InitErrorDetails]:
             "a law of the liquid fraction alone: the enthalpy must follow from temperature and fraction",
             "Write 'law: {kind: fractions, temperatures: [...], fractions: [0, ..., 1]}' and 'latent_heat:'.",
         )
+        return
+    hysteresis = material.two_curves
+    if hysteresis is None:
         return
     cooling = hysteresis.law or law
     if isinstance(cooling, FractionsLaw):
@@ -140,7 +143,7 @@ _PHASES: Final = ("solid", "liquid")
 
 
 def _temperatures(material: Melting) -> Iterator[tuple[Location, float]]:
-    hysteresis = material.hysteresis
+    hysteresis = material.two_curves
     if material.melting_temperature is not None:
         yield ("melting_temperature",), material.melting_temperature
     if hysteresis is not None and hysteresis.freezing_temperature is not None:
@@ -200,6 +203,25 @@ def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
     return []
 
 
+def no_heat_of_crystallisation(material: Melting) -> list[InitErrorDetails]:
+    """A supercooled liquid so cold that it would set no heat free: ``L + (c_l - c_s)(T - Tr)`` below zero."""
+    if material.one_curve is None or material.latent_heat is None:
+        return []
+    coldest = material.one_curve.coldest_liquid(material.reference)
+    solid, liquid = (phase(material.specific_heat, one) for one in _PHASES)
+    heat = material.latent_heat + (liquid - solid) * (coldest - material.reference)
+    if heat > 0.0:
+        return []
+    return [
+        fault(
+            ("hysteresis",),
+            f"{heat:.3g} J/kg set free by crystallisation at {coldest:.2f} degC",
+            "heat that is set free: latent_heat + (c_liquid - c_solid)(T - melting temperature) above zero",
+            "Check specific_heat of both phases, latent_heat and the degree of supercooling.",
+        )
+    ]
+
+
 def solid_density(material: Melting) -> float:
     """Density of the solid, to which heat per volume refers [kg/m3]."""
     return phase(material.density, "solid")
@@ -236,6 +258,8 @@ def _curves(
     if isinstance(material.law, TableLaw | CapacityLaw):
         return {}
     cooling = material.cooling
+    if material.one_curve is not None:
+        return {("law",): _compact(material.law, material.centre)}
     if cooling is None:
         law, centre = material.law, material.centre
         low, high = law.reach
@@ -293,7 +317,7 @@ def unordered_slopes(material: Melting) -> tuple[float, float] | None:
     tuple of float or None
         First and last temperature between which the ratio falls; None where it does not. [degC]
     """
-    if material.hysteresis is None or material.hysteresis.model != "curve_scale" or material.cooling is None:
+    if material.two_curves is None or material.two_curves.model != "curve_scale" or material.cooling is None:
         return None
     (heating, *_), (cooling, *_) = _curves(material).values()
     grid = _grid(material)

@@ -277,7 +277,9 @@ class PhaseChange(TypedDict, total=False):
     column: str
     """Series column with the liquid fraction over time."""
     hysteresis: bool
-    """Whether the material freezes along another curve than it melts."""
+    """Whether the material freezes along another curve than it melts, or has a state of its own."""
+    own_path: str
+    """What a law with a state does beside its curve; absent with two curves or none."""
     rows: list[list[str]]
     """Facts as rows of name and value."""
 

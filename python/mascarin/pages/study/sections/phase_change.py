@@ -36,6 +36,7 @@ def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | 
                 ],
                 "law": bool(entry.get("law_temperature")),
                 "hysteresis": entry.get("hysteresis"),  # not known in files of earlier versions
+                "own_path": entry.get("own_path", ""),
                 "period": period_label(study, short[-1]) if short else "",
             }
         )
