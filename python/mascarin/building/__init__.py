@@ -11,6 +11,7 @@ from mascarin.building.bridge import ThermalBridge
 from mascarin.building.building import Building
 from mascarin.building.checks import check
 from mascarin.building.convection import (
+    CLASSES,
     AlamdariHammond,
     Constant,
     Doe2,
@@ -236,6 +237,9 @@ __all__ = [
     "parameter_table",
     "window_ratings",
 ]
+# Every law of the engine's table, those that are not named above too.
+globals().update(CLASSES)
+__all__ += [name for name in CLASSES if name not in __all__]
 
 
 def __dir__() -> list[str]:

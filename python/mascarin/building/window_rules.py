@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from mascarin.building.convection import Doe2
+from mascarin.building.convection import ConvectionLaw
 from mascarin.building.derived import drawn_areas, outlines, window_outlines
 from mascarin.building.part import Location, fault
 from mascarin.building.zone import GivenSun
@@ -80,10 +80,11 @@ def _between_zones(building: Description, at: Location, window: Window) -> Fault
             "a blind of a window to outdoors",
             "Remove it, or give the window a glazing with its properties.",
         )
-    if isinstance(outside.convection, Doe2):
+    film = outside.convection
+    if isinstance(film, ConvectionLaw) and film.row.sides == "outdoors":
         yield fault(
             (*at, "outside", "convection"),
-            "'doe2' on a side facing a zone",
+            f"'{film.row.kind}' on a side facing a zone",
             "a coefficient without wind",
             "Write 'tarp' or 'iso15099', or another coefficient without wind.",
         )
