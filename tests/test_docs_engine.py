@@ -145,7 +145,17 @@ def test_the_law_is_in_runs_derivatives_calibration_units_and_pages(package: Pat
 def test_the_reference_of_the_copy_is_complete(package: Path) -> None:
     paths = [package, ROOT / "docs" / "site"]
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-n", "0", "tests/test_docs_reference.py"],
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "-n",
+            "0",
+            "tests/test_docs_reference.py",
+        ],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))},
         cwd=ROOT,
         capture_output=True,

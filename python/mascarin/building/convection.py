@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeGuard
 
 from pydantic import Field, create_model
 
@@ -60,11 +60,13 @@ def _example(row: LawRow) -> str:
     """Section of a docstring with an example that can be run."""
     name = row.class_name
     if row.by_direction:
-        given = ", ".join(f'{way}={{"{row.numbers[0].name}": {row.numbers[0].example:g}}}' for way in _WAYS)
+        arguments = ", ".join(
+            f'{way}={{"{row.numbers[0].name}": {row.numbers[0].example:g}}}' for way in _WAYS
+        )
         shown = ", ".join(f"{way}={name}Law" for way in _WAYS)
     else:
         required = [number for number in row.numbers if number.required]
-        given = ", ".join(f"{number.name}={number.example:g}" for number in required)
+        arguments = ", ".join(f"{number.name}={number.example:g}" for number in required)
         values = {number.name: number.example for number in required}
         values |= {n.name: float(n.default) for n in row.numbers if n.default is not None}
         shown = ", ".join(
@@ -72,7 +74,7 @@ def _example(row: LawRow) -> str:
             for n in row.numbers
             if n.name in values
         )
-    return f"Examples\n--------\n>>> {name}({given})\n{name}({shown})"
+    return f"Examples\n--------\n>>> {name}({arguments})\n{name}({shown})"
 
 
 _WAYS: Final = {"upward": "Heat flows up, or the surface is vertical", "downward": "Heat flows down"}
@@ -85,9 +87,8 @@ def _class_of(row: LawRow) -> dict[str, type[Part]]:
     if row.by_direction:
         name = f"{row.class_name}Law"
         number = row.numbers[0]
-        value = Number(number.example, quantity=number.quantity).with_unit()
-        example = f"Examples\n--------\n>>> {name}({number.name}={number.example:g}).{number.name}\n"
-        text = f"{row.meaning.replace('each', 'one')}\n\n{example}{value.split()[0]}"
+        example = f">>> {name}({number.name}={number.example:g}).{number.name}\n{float(number.example)}"
+        text = f"{row.meaning.replace('each', 'one')}\n\nExamples\n--------\n{example}"
         classes[name] = create_model(name, __base__=Part, __module__=__name__, __doc__=text, **fields)
         fields = {way: (classes[name], Field(description=words)) for way, words in _WAYS.items()}
     name = row.class_name
@@ -96,8 +97,7 @@ def _class_of(row: LawRow) -> dict[str, type[Part]]:
         __base__=ConvectionLaw,
         __module__=__name__,
         __doc__=f"{row.meaning}\n\n{_example(row)}",
-        kind=(Literal[row.kind], row.kind),
-        **fields,
+        **{"kind": (Literal[row.kind], row.kind), **fields},
     )
     law.row = row
     return classes | {name: law}
@@ -147,6 +147,11 @@ else:
 def measured_column(convection: Convection | None) -> str | None:
     """Column of a measured coefficient; None for any other."""
     return convection.column if isinstance(convection, Measured) else None
+
+
+def is_law(convection: Convection | None, kind: str) -> TypeGuard[ConvectionLaw]:
+    """Whether a coefficient is a published law of a kind."""
+    return isinstance(convection, ConvectionLaw) and convection.kind == kind
 
 
 def by_wind_direction(convection: Convection | None) -> bool:

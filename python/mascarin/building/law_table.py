@@ -122,7 +122,7 @@ class LawRow(NamedTuple):
 
 def _read(row: Mapping[str, Any]) -> LawRow:
     fields = {key: row[key] for key in LawRow._fields if key in row}
-    alternatives = tuple((one["outdoors"], dict(one["numbers"])) for one in row["alternatives"])
+    alternatives = tuple((where["outdoors"], dict(where["numbers"])) for where in row["alternatives"])
     return LawRow(**fields | {"numbers": tuple(map(_number, row["numbers"])), "alternatives": alternatives})
 
 

@@ -71,8 +71,8 @@ def _alternatives(outdoors: bool) -> tuple[tuple[str, Any], ...]:
     return tuple(
         (kind, {"kind": kind, **numbers} if numbers else kind)
         for kind, row in CONVECTION.items()
-        for there, numbers in row.alternatives
-        if there == outdoors
+        for outside, numbers in row.alternatives
+        if outside == outdoors
     )
 
 
