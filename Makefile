@@ -143,6 +143,7 @@ check-rust: $(ENVIRONMENT)
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || { \
 		echo "error: cargo has no 'fmt' or no 'clippy'. With rustup: rustup component add rustfmt clippy" >&2; exit 1; }
 	cargo fmt --all --check
+	rustfmt --check --edition 2024 $(wildcard crates/engine/src/physics/convection/laws/*.rs) # listed by build.rs
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --package mascarin-engine --no-deps --document-private-items --locked --quiet
 	cargo test --workspace --profile tests --locked --quiet

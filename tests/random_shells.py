@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from mascarin.building.base.part import Part
+from mascarin.building.parts.envelope.law_table import CONVECTION, LawRow
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.openings.window import WindowOutside
 from random_draw import Draw, four
@@ -18,22 +19,34 @@ Point = list[float]
 # --- sides --------------------------------------------------------------------------------------------------
 
 
+def _may_stand(row: LawRow, facing: str) -> bool:
+    """Whether a published law may stand on a side."""
+    return row.sides == "any" or facing == "outdoors" or (row.sides == "air" and facing == "zone")
+
+
+def _published(draw: Draw, row: LawRow, facing: str) -> Json:
+    """A published law with some of its numbers, within their ranges."""
+
+    def numbers() -> Json:
+        return {
+            number.name: draw.number(*number.quantity.default_range(number.example))
+            for number in row.numbers
+            if (facing == "outdoors" or not number.outdoors) and (number.required or draw.chance(0.5))
+        }
+
+    if row.by_direction:
+        return {"kind": row.kind, "upward": numbers(), "downward": numbers()}
+    return {"kind": row.kind, **numbers()}
+
+
 def film(draw: Draw, facing: str) -> Any:
     """A surface heat transfer coefficient that suits what the side faces."""
     plain = draw.of(draw.log(0.5, 40.0), draw.noted(draw.number(2.0, 20.0), 1.0))
     factor: Json = {"factor": draw.number(0.5, 2.0)} if draw.chance(0.3) else {}
-    length: Json = {"length": draw.log(0.3, 6.0)} if draw.chance(0.5) else {}
-    power = {
-        "a": draw.number(0.0, 2.0), "b": draw.number(0.5, 3.0), "n": draw.number(0.1, 0.6),
-        "c": draw.number(0.0, 6.0), "m": draw.number(0.4, 1.0),
-    }  # fmt: skip
     any_air = [
         plain,
-        {"kind": "constant", "coefficient": draw.number(1.0, 20.0)},
-        {"kind": "linear_wind", "constant": draw.number(2.0, 12.0), "wind": draw.number(0.0, 6.0)},
-        {"kind": "power", "upward": power, "downward": {"b": 0.6, "n": 0.25}},
+        *(_published(draw, row, facing) for row in CONVECTION.values() if _may_stand(row, facing)),
         {"kind": "measured", "column": "h_film"} | factor,
-        {"kind": "alamdari_hammond"} | length | factor,
         {
             "kind": "text",
             "formula": "c*abs(dT)^n + b",
@@ -48,22 +61,13 @@ def film(draw: Draw, facing: str) -> Any:
             "numbers": {"c": draw.number(0.5, 4.0), "b": draw.number(0.0, 2.0)},
         },
     ]
-    if facing in ("outdoors", "zone"):
-        any_air += [{"kind": "tarp"} | factor, "tarp"]
     if facing == "zone":
-        any_air += [
-            "alamdari_hammond",
-            {"kind": "paper_eq5"} | length | factor,
-            {"kind": "iso15099"} | length | factor,
-        ]
+        any_air += ["tarp", "alamdari_hammond"]
     if facing == "outdoors":
-        any_air.append({"formula": "sqrt((c*abs(dT)^(1/3))^2 + (b*V^m)^2)", "c": 1.31, "b": 3.2, "m": 0.8})
-        rough = draw.of("very_rough", "smooth", 1.67)
         any_air += [
-            {"kind": "tarp", "roughness": rough, "perimeter": draw.number(4.0, 40.0)},
-            {"kind": "mowitt"} | factor,
-            {"kind": "doe2", "roughness": rough} | factor,
+            "tarp",
             "doe2",
+            {"formula": "sqrt((c*abs(dT)^(1/3))^2 + (b*V^m)^2)", "c": 1.31, "b": 3.2, "m": 0.8},
         ]
     return draw.one(any_air)
 

@@ -50,7 +50,7 @@ def cube(*reverse: str, room: dict[str, Any] | None = None, **outside: Any) -> m
         ({**OUTSIDE, "emissivity": 0}, ["outside.emissivity", "found: 0.0", "'longwave: none'"]),
         (
             {**OUTSIDE, "convection": {"measured": "h"}},
-            ["outside.convection", "without a kind", "tarp, mowitt, doe2", "'convection: 8'"],
+            ["outside.convection", "without a kind", "constant, alamdari_hammond, doe2", "'convection: 8'"],
         ),
         ({"ground": {"measured": "T"}}, ["ground.measured", "'measured: COLUMN' in the side"]),
     ],

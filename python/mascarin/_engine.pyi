@@ -33,6 +33,7 @@ __all__ = [
     "globe_temperature",
     "humidity_ratio",
     "interrupt",
+    "law_table",
     "liquid_fraction",
     "melting_reach",
     "moist_air",
@@ -118,6 +119,9 @@ def liquid_fraction(curve: str, values: _Array, temperature: _Array) -> _Array:
 
 def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
     """Temperatures where melting starts and is complete, without tails [degC]."""
+
+def law_table() -> str:
+    """The table of published laws, JSON lists of rows by what they are laws of."""
 
 def output_table() -> str:
     """The table of outputs, a JSON list of rows."""

@@ -33,6 +33,14 @@ pub use physics::{constants, globe, pcm, psychrometrics, standard_air};
 pub use step::control::RunControl;
 pub use step::{Counters, Scheme, state};
 
+/// The published laws that a description has by name.
+pub mod laws {
+    pub use crate::physics::convection::table as convection;
+    pub use crate::physics::law_row::{
+        Alternative, Default, LawEntry, LawParameter, LawRange, LawRow, Limits, Sides, Tilt,
+    };
+}
+
 /// Laws that are written as text.
 pub mod formula {
     pub use crate::physics::convection::LawText;

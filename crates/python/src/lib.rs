@@ -35,6 +35,13 @@ fn output_table() -> PyResult<String> {
     serde_json::to_string(&Output::table()).map_err(|error| errors::EngineDefect::new_err(error.to_string()))
 }
 
+/// The table of published laws as JSON: lists of rows by what they are laws of.
+#[pyfunction]
+fn law_table() -> PyResult<String> {
+    let tables = serde_json::json!({ "convection": mascarin_engine::laws::convection() });
+    Ok(tables.to_string())
+}
+
 /// Compiled part of mascarin.
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -48,6 +55,7 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(formula::check_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(formula::fraction_values, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
+    module.add_function(wrap_pyfunction!(law_table, module)?)?;
     physics::add(module)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<errors::EngineSolverError>())?;

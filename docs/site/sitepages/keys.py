@@ -26,6 +26,7 @@ from mascarin.building.base.number import (
 from mascarin.building.base.part import Part
 from mascarin.building.json_schemas import json_schema
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.convection import ConvectionLaw
 from sitepages.snippets import Snippets
 
 #: Steps of a path that the user names.
@@ -37,11 +38,9 @@ _NAMES: Final = {
 }  # fmt: skip
 
 
-#: Headings with names of people and programs.
+#: Headings with names of people.
 _TITLES: Final = {
-    "MartinBerdahlSky": "Martin and Berdahl sky", "ClarkAllenSky": "Clark and Allen sky", "Doe2": "DOE-2",
-    "Iso15099": "ISO 15099", "Tarp": "TARP", "Mowitt": "MoWiTT", "PaperEq5": "Equation 5 of the paper",
-    "AlamdariHammond": "Alamdari and Hammond",
+    "MartinBerdahlSky": "Martin and Berdahl sky", "ClarkAllenSky": "Clark and Allen sky",
 }  # fmt: skip
 
 
@@ -229,6 +228,8 @@ def title(part: type[Part]) -> str:
     """Heading of a part: the name of its class in words."""
     if part.__name__ in _TITLES:
         return _TITLES[part.__name__]
+    if issubclass(part, ConvectionLaw) and not part.row.title.islower():  # names of people and programs
+        return part.row.title
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", part.__name__)
     return words[:1] + words[1:].lower()
 

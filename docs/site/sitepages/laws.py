@@ -12,7 +12,7 @@ PHYSICS: Final = ROOT / "crates" / "engine" / "src" / "physics"
 #: Titles of the folders, in the order of the page.
 FOLDERS: Final = {
     "pcm": "Phase change",
-    "convection": "Convection at surfaces",
+    "convection/laws": "Convection at surfaces",
     "longwave": "Long-wave radiation",
     ".": "Sun, air and windows",
     "optics": "Optics of glazings",
@@ -34,8 +34,6 @@ def laws() -> dict[str, dict[str, str]]:
     found: dict[str, dict[str, str]] = {folder: {} for folder in FOLDERS}
     for file in sorted(PHYSICS.rglob("*.rs")):
         text = head(file)
-        if file.stem == "mod" and file.parent.stem == "convection":  # a table of the modules beside it
-            continue
         if re.search(r"\b(1[89]|20)\d\d\b", text):  # a publication, by its year
             found[str(file.parent.relative_to(PHYSICS))][file.stem] = text
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +16,7 @@ from ruamel.yaml.error import YAMLError
 from mascarin import examples
 from mascarin.building.base.part import Part
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.law_table import CONVECTION
 
 _YAML_FENCE = re.compile(
     r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```yaml\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
@@ -107,6 +109,10 @@ def _sources(docs: Path) -> Iterator[str]:
             if fence["file"] != _WRONG:
                 yield fence["text"]
     yield (docs / "site" / "more_keys.yaml").read_text(encoding="utf-8")
+    sides = {
+        kind: {"outside": {"convection": {"kind": kind, **row.example}}} for kind, row in CONVECTION.items()
+    }
+    yield json.dumps({"surfaces": sides})
 
 
 def classes(annotation: Any) -> Iterator[type[Part]]:

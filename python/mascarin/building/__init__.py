@@ -65,6 +65,7 @@ from mascarin.building.parts.air.zone import (
 )
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.convection import (
+    CLASSES,
     AlamdariHammond,
     Constant,
     Doe2,
@@ -246,6 +247,9 @@ __all__ = [
     "parameter_table",
     "window_ratings",
 ]
+# Every law of the engine's table, those that are not named above too.
+globals().update(CLASSES)
+__all__ += [name for name in CLASSES if name not in __all__]
 
 
 def __dir__() -> list[str]:

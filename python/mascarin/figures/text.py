@@ -10,17 +10,11 @@ from typing import Any
 
 from mascarin._io import numbers
 from mascarin._io.units import shown
+from mascarin.building.parts.envelope.law_table import CONVECTION
 
 #: Kinds of the description in words.
 _CHOICES = {
-    "linear_wind": "linear in wind",
-    "alamdari_hammond": "Alamdari and Hammond",
-    "paper_eq5": "Alamdari and Hammond as printed in Guichard et al. 2016, eq. 5",
-    "tarp": "TARP",
-    "mowitt": "MoWiTT",
-    "doe2": "DOE-2",
-    "iso15099": "ISO 15099",
-    "power": "power law by direction",
+    **{kind: row.title for kind, row in CONVECTION.items() if kind != "constant"},
     "text": "a formula of its own",
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",

@@ -5,22 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
+from mascarin.building.parts.envelope.law_table import CONVECTION
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
 
-#: Models of the sky, of diffuse radiation, and surface heat transfer coefficients outdoors and indoors.
+#: Models of the sky and of diffuse radiation.
 _SKIES: Final = ("martin_berdahl", "clark_allen", "brunt")
 _DIFFUSE: Final = ("perez", "hay_davies", "isotropic")
-_OUTDOORS: Final[tuple[tuple[str, Any], ...]] = (
-    ("mowitt", "mowitt"),
-    ("tarp", "tarp"),
-    ("doe2", "doe2"),
-    # McAdams W.H. (1954), Heat Transmission, 3rd ed.: rough surfaces.
-    ("linear_wind", {"kind": "linear_wind", "constant": 5.7, "wind": 3.8}),
-)
-_INDOORS: Final = ("tarp", "alamdari_hammond")
 #: In a building with more surfaces only those of sensors are changed alone, and all others together.
 _MANY: Final = 14
 
@@ -69,10 +62,18 @@ def _sides(building: Building) -> Iterator[tuple[str, str, str, tuple[tuple[str,
         for word, side in (("outside", surface.outside), ("inside", surface.inside)):
             if side.convection is None or side.convection.kind == "measured":
                 continue
-            if side.outdoors:
-                yield name, word, side.convection.kind, _OUTDOORS
-            elif side.zone is not None:
-                yield name, word, side.convection.kind, tuple((kind, kind) for kind in _INDOORS)
+            if side.outdoors or side.zone is not None:
+                yield name, word, side.convection.kind, _alternatives(bool(side.outdoors))
+
+
+def _alternatives(outdoors: bool) -> tuple[tuple[str, Any], ...]:
+    """Published laws of convection outdoors, or in a zone: kind, and what a description has of it."""
+    return tuple(
+        (kind, {"kind": kind, **numbers} if numbers else kind)
+        for kind, row in CONVECTION.items()
+        for outside, numbers in row.alternatives
+        if outside == outdoors
+    )
 
 
 def changed(building: Building, changes: dict[str, Any]) -> Building | None:

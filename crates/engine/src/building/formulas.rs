@@ -1,4 +1,4 @@
-//! Laws that are written as text, read once for a plan.
+//! Laws of convection of the description: the published ones checked against their table, those written as text read once for a plan.
 
 use std::sync::Arc;
 
@@ -7,6 +7,8 @@ use crate::error::EngineError;
 use crate::input::description::{Convection, Description, Facing, Material, MeltingCurve, PcmLaw, Side};
 use crate::physics::convection::formula_text::FormulaText;
 use crate::physics::pcm::history;
+use crate::physics::convection::law::row;
+use crate::physics::law_row::Sides;
 use crate::physics::pcm::text::FractionText;
 
 /// The law of each surface that is written as text.
@@ -17,6 +19,9 @@ pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<For
         for id in SurfaceId::pair(index) {
             let (side, name) =
                 if id.is_outside() { (&wall.outside, "outside") } else { (&wall.inside, "inside") };
+            check_law(side).map_err(|fault| {
+                EngineError::Description(format!("surface {}, {name}, convection: {fault}", wall.name))
+            })?;
             let text = of_side(side, &mut known).map_err(|fault| {
                 EngineError::Description(format!("surface {}, {name}, convection.{fault}", wall.name))
             })?;
@@ -55,6 +60,31 @@ pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError>
     Ok(())
 }
 
+/// A published law has its numbers, and stands where it may.
+fn check_law(side: &Side) -> Result<(), String> {
+    let Some(Convection::Law(law)) = &side.convection else { return Ok(()) };
+    let row = row(law).ok_or_else(|| format!("found the kind '{}', expected one of the table", law.kind))?;
+    let names = row.names();
+    if let Some((name, _)) = law.numbers.iter().find(|(name, _)| names.iter().all(|(other, _)| other != name))
+    {
+        return Err(format!("found the number '{name}' of '{}', expected {names:?}", law.kind));
+    }
+    let has = |name: &str| law.number(name).is_some();
+    if let Some((name, _)) = names.iter().find(|(name, optional)| !optional && !has(name)) {
+        return Err(format!("found '{}' without '{name}', expected all its numbers", law.kind));
+    }
+    let outdoors: Vec<&str> =
+        names.iter().filter(|(_, optional)| *optional).map(|(name, _)| name.as_str()).collect();
+    if outdoors.iter().any(|name| has(name)) && !outdoors.iter().all(|name| has(name)) {
+        return Err(format!("found only one of them, expected {} together, or none", outdoors.join(" and ")));
+    }
+    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
+    if imposed && row.sides != Sides::Any {
+        return Err("found a correlation at an imposed temperature, expected a constant coefficient".into());
+    }
+    Ok(())
+}
+
 /// The law of a side; sides with the same text share it.
 fn of_side<'a>(
     side: &'a Side,
@@ -78,4 +108,36 @@ fn of_side<'a>(
     let text = Arc::new(text);
     known.push((law, wind, Arc::clone(&text)));
     Ok(Some(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::read;
+    use crate::building::test_buildings::zones_in_a_row;
+    use crate::input::description::{Convection, Facing, ParamId};
+
+    /// The error for a law outside of a wall of a room.
+    #[track_caller]
+    fn refused(kind: &str, numbers: &[&str], facing: Facing) -> String {
+        let numbers: Vec<_> = numbers.iter().map(|name| (*name, ParamId(0))).collect();
+        let mut description = zones_in_a_row(1);
+        let outside = &mut description.surfaces[0].outside;
+        (outside.convection, outside.facing) = (Some(Convection::law(kind, &numbers)), facing);
+        read(&description).err().expect("a refusal").to_string()
+    }
+
+    #[test]
+    fn laws_have_their_numbers_and_stand_where_they_may() {
+        let outdoors = Facing::Outdoors;
+        assert!(
+            refused("trap", &[], outdoors.clone())
+                .contains("surface wall, outside, convection: found the kind 'trap'")
+        );
+        assert!(refused("tarp", &[], outdoors.clone()).contains("'tarp' without 'factor'"));
+        assert!(refused("tarp", &["factor", "wind"], outdoors.clone()).contains("number 'wind' of 'tarp'"));
+        let half = refused("tarp", &["factor", "roughness"], outdoors);
+        assert!(half.contains("roughness and perimeter together"), "{half}");
+        let imposed = refused("mowitt", &["factor"], Facing::Measured { channel: 0 });
+        assert!(imposed.contains("at an imposed temperature"), "{imposed}");
+    }
 }

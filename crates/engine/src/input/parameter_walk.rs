@@ -9,9 +9,9 @@ use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth, Description,
     DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap, Glazing, Humidity,
     HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve,
-    Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
-    Sorption, SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation,
-    VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
+    Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, Sensor, SetPoint, Side, Site, Sky, Sorption,
+    SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation, VentilationUnit,
+    WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -229,20 +229,15 @@ walk!(OutdoorLongwave by variant {
     Linearised { reference } plain {},
     None {} plain {},
 });
-walk!(Convection by variant {
-    Constant { coefficient } plain {},
-    Measured { factor } plain { channel },
-    LinearWind { constant, wind } plain {},
-    AlamdariHammond { length, factor } plain {},
-    PaperEq5 { length, factor } plain {},
-    Tarp { factor, roughness, perimeter } plain {},
-    Mowitt { factor } plain {},
-    Doe2 { factor, roughness } plain {},
-    Iso15099 { length, factor } plain {},
-    Power { upward, downward } plain {},
-    Formula { numbers } plain { formula, valid },
-});
-walk!(PowerLaw { a, b, n, c, m } plain {});
+impl ParameterIds for Convection {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        match self {
+            Self::Law(law) => law.numbers.iter().for_each(|(name, id)| walk.field(name, id)),
+            Self::Measured { channel: _, factor } => walk.field("factor", factor),
+            Self::Formula { formula: _, valid: _, numbers } => walk.field("numbers", numbers),
+        }
+    }
+}
 walk!(FormulaNumber { value } plain { name });
 walk!(Sensor { depth } plain { name, surface });
 

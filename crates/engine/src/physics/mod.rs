@@ -11,6 +11,7 @@ pub(crate) mod formula;
 pub mod gains;
 pub mod globe;
 pub mod horizon;
+pub mod law_row;
 pub mod leakage;
 pub mod longwave;
 pub mod mechanical_air;

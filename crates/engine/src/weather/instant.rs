@@ -11,7 +11,7 @@ use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
 use crate::number::elementary::sincos;
 use crate::number::real::Real;
-use crate::physics::convection::{Wind, WindTerms};
+use crate::physics::convection::{Wind, WindTerms, wind_terms};
 use crate::physics::horizon;
 use crate::physics::longwave::SkyState;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
@@ -141,7 +141,7 @@ impl<'a> Weather<'a> {
 
     fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
-        let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
+        let terms = wind_terms(sides().filter_map(|side| side.convection.as_ref()));
         let bridges = plan.description.thermal_bridges.iter().map(|bridge| &bridge.to);
         let ground = sides()
             .map(|side| &side.facing)

@@ -164,9 +164,11 @@ fn stefan_one_phase() {
 #[test]
 fn lumped_zone() {
     step_response(|b| b.convection(4.0));
-    step_response(|b| Convection::LinearWind {
-        constant: b.number("convection.constant", 4.0),
-        wind: b.number("convection.wind", 3.0),
+    step_response(|b| {
+        Convection::law(
+            "linear_wind",
+            &[("constant", b.number("convection.constant", 4.0)), ("wind", b.number("convection.wind", 3.0))],
+        )
     });
     step_response(|b| b.power([4.0, 0.0, 0.3, 0.0, 1.0], [4.0, 0.0, 0.3, 0.0, 1.0]));
     step_response(|b| b.power([0.0, 4.0, 0.0, 0.0, 1.0], [0.0, 4.0, 0.0, 0.0, 1.0]));
@@ -302,8 +304,7 @@ fn maximum_principle() {
         let measured = b.channel("surface");
         let construction = b.construction("wall", &[(solid, 0.05, 10), (pcm, 0.01, 8), (solid, 0.02, 4)]);
         let zone = b.zone("room", 10.0, 0.0, ZoneLongwave::Radiosity);
-        let convection =
-            Convection::Tarp { factor: b.number("factor", 1.0), roughness: None, perimeter: None };
+        let convection = Convection::law("tarp", &[("factor", b.number("factor", 1.0))]);
         let inside = b.inside(zone, convection, 0.9);
         b.surface(
             "wall",

@@ -28,7 +28,7 @@ fn room(radiative: f64, area: f64, film: Option<f64>) -> Description {
     ] {
         let law = match film {
             Some(coefficient) if construction == light => b.convection(coefficient),
-            _ => Convection::Tarp { factor, roughness: None, perimeter: None },
+            _ => Convection::law("tarp", &[("factor", factor)]),
         };
         let outside = b.convection(15.0);
         let (outside, inside) = (b.outdoors(outside, 0.9, 0.6), b.inside(zone, law, 0.9));

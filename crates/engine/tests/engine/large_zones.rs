@@ -32,7 +32,7 @@ fn room(parts: usize, heated: bool) -> Plan {
     let light = b.construction("light", &[(board, 0.02, 2)]);
     let [zone, second] = ["room", "second"].map(|name| b.zone(name, 40.0, 0.5, ZoneLongwave::Radiosity));
     let factor = b.number("factor", 1.0);
-    let natural = || Convection::Tarp { factor, roughness: None, perimeter: None };
+    let natural = || Convection::law("tarp", &[("factor", factor)]);
     for (wall, ([tilt, azimuth], area)) in WALLS.into_iter().enumerate() {
         let between = wall + 1 == WALLS.len();
         let count = if between { 1 } else { parts };

@@ -79,7 +79,7 @@ pub fn row(loads: bool, storing: bool) -> Plan {
     let heavy = b.construction("heavy", &[(board, 0.04, 2), (concrete, 0.15, 4)]);
     let light = b.construction("light", &[(board, 0.02, 2)]);
     let factor = b.number("factor", 1.0);
-    let natural = |factor: ParamId| Convection::Tarp { factor, roughness: None, perimeter: None };
+    let natural = |factor: ParamId| Convection::law("tarp", &[("factor", factor)]);
     let roughness = b.number("roughness", 1.67);
     let (mut between, mut windows) = (None, Vec::new());
     let absorbing = Some(b.number("inside.absorptance", 0.5));
@@ -89,7 +89,11 @@ pub fn row(loads: bool, storing: bool) -> Plan {
         let mut walls = vec![("wall", 90.0), ("roof", 0.0)];
         walls.extend((room + 1 == ROOMS).then_some(("second", 90.0)));
         for (name, tilt) in walls {
-            let outside = b.outdoors(Convection::Doe2 { factor, roughness }, 0.9, 0.6);
+            let outside = b.outdoors(
+                Convection::law("doe2", &[("factor", factor), ("roughness", roughness)]),
+                0.9,
+                0.6,
+            );
             // Rooms of one shape have different correlations at the same place.
             let law = if room % 3 == 1 { b.convection(3.0 + 0.1 * x) } else { natural(factor) };
             let inside = Side { absorptance: absorbing, ..b.inside(zone, law, 0.9) };
@@ -103,7 +107,8 @@ pub fn row(loads: bool, storing: bool) -> Plan {
             b.surface(&format!("between{room}"), light, [9.0, 90.0, 90.0], outer, inner);
         }
         between = Some(zone);
-        let outside = b.outdoors(Convection::Doe2 { factor, roughness }, 0.84, 0.0);
+        let outside =
+            b.outdoors(Convection::law("doe2", &[("factor", factor), ("roughness", roughness)]), 0.84, 0.0);
         let inside = b.inside(zone, natural(factor), 0.84);
         windows.push(b.surface(
             &format!("window{room}"),

@@ -26,7 +26,7 @@ fn walls() -> Plan {
     let wall = b.construction("wall", &[(layer, 0.0, 0)]);
     let inside = b.channel("inside");
     for k in 0..ANGLES {
-        let convection = Convection::Mowitt { factor: b.number("mowitt.factor", 1.0) };
+        let convection = Convection::law("mowitt", &[("factor", b.number("mowitt.factor", 1.0))]);
         let mut outside = b.outdoors(convection, 0.9, 0.0);
         outside.longwave = OutdoorLongwave::None;
         outside.exposure = Exposure { sun: false, ..Exposure::default() };

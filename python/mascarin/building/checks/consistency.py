@@ -18,7 +18,8 @@ from mascarin.building.parameters.set_point_pairs import first_crossing
 from mascarin.building.parameters.ties import faults as tie_faults
 from mascarin.building.parts.air.zone import FloorSun, GivenSun, SunShares, TracedSun
 from mascarin.building.parts.defaults import shade_outlines
-from mascarin.building.parts.envelope.convection import Doe2, Measured, Mowitt, Tarp
+from mascarin.building.parts.envelope.convection import ConvectionLaw, Measured
+from mascarin.building.parts.envelope.law_table import CONVECTION as LAWS
 from mascarin.building.parts.envelope.surface import NoLongwave, Side
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.measured_sun import directions_are_known
@@ -179,29 +180,38 @@ def _emissivities_where_exchange_is(building: Description) -> Faults:
 
 def _convection_suits_its_side(building: Description) -> Faults:
     for location, side in _sides(building):
-        if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground or side.scheduled):
+        film = side.convection
+        if not isinstance(film, ConvectionLaw):
+            continue
+        imposed = side.measured or side.ground or side.scheduled
+        if film.row.sides == "air" and imposed:
             yield fault(
                 (*location, "convection"),
-                f"'{side.convection.kind}' on a side facing {side.faces}",
-                "a coefficient for a given temperature: a number, linear_wind, alamdari_hammond, power",
+                f"'{film.row.kind}' on a side facing {side.faces}",
+                f"a coefficient for a given temperature: a number, {_for_given_temperatures()}",
                 "Write the surface heat transfer coefficient to that air.",
             )
-        if isinstance(side.convection, Doe2) and not side.outdoors:
+        if film.row.sides == "outdoors" and not side.outdoors:
             yield fault(
                 (*location, "convection"),
-                f"'doe2' on a side facing {side.faces}",
+                f"'{film.row.kind}' on a side facing {side.faces}",
                 "a coefficient without wind",
                 "Write 'tarp', which has the same buoyant part, or another coefficient without wind.",
             )
-        if isinstance(side.convection, Tarp) and not side.outdoors:
-            for key in ("roughness", "perimeter"):
-                if getattr(side.convection, key) is not None:
+        if not side.outdoors:
+            for key, number, _ in film.values():
+                if number.outdoors:
                     yield fault(
                         (*location, "convection", key),
                         f"'{key}' on a side facing {side.faces}",
                         "none: only the forced part by wind uses it",
                         f"Remove '{key}:'.",
                     )
+
+
+def _for_given_temperatures() -> str:
+    """Kinds of the laws that may stand on a side to a given temperature."""
+    return ", ".join(kind for kind, row in LAWS.items() if row.sides == "any" and kind != "constant")
 
 
 def _sensors_inside_walls(building: Description) -> Faults:

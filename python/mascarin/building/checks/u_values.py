@@ -6,7 +6,7 @@ import math
 
 from mascarin.building.engine_input.mesh import Mesh
 from mascarin.building.parts.description import Description
-from mascarin.building.parts.envelope.convection import Constant, LinearWind
+from mascarin.building.parts.envelope.convection import is_law
 from mascarin.building.parts.envelope.surface import Side, Surface
 from mascarin.building.parts.materials.material import Material, Resistance
 from mascarin.building.parts.materials.phases import phase
@@ -162,10 +162,10 @@ def _black(side: Side | WindowOutside | WindowInside) -> float:
 def _coefficient(side: Side | WindowOutside | WindowInside, tilt: float) -> float:
     """Convective coefficient [W/(m2 K)]; that of ISO 6946, annex C, where it is no number."""
     film = side.convection
-    if isinstance(film, Constant):
+    if is_law(film, "constant"):
         return float(film.coefficient)
     wind = _WIND if side.outdoors and side.exposed.wind else 0.0
-    if isinstance(film, LinearWind):
+    if is_law(film, "linear_wind"):
         return float(film.constant + film.wind * wind)
     if side.outdoors:
         return 4.0 + 4.0 * wind
@@ -194,7 +194,7 @@ def _surface_resistance(building: Description, side: Side, surface: Surface) -> 
         return math.inf, _CLOSED
     if side.convection is None:
         return 0.0, _NONE
-    if isinstance(side.convection, Constant) and _without_radiation(building, side):
+    if is_law(side.convection, "constant") and _without_radiation(building, side):
         conductance = side.convection.coefficient * (side.area_factor or 1.0)
         return (1.0 / conductance if conductance > 0.0 else math.inf), _DESCRIBED
     return _iso_resistance(side, surface), _ISO
@@ -280,6 +280,6 @@ def _least_surface_resistances(building: Description, construction: str) -> tupl
 def _nominal_resistance(side: Side, surface: Surface) -> float:
     if side.adiabatic:
         return math.inf
-    if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
+    if is_law(side.convection, "constant") and side.convection.coefficient > 0.0:
         return 1.0 / side.convection.coefficient
     return _iso_resistance(side, surface)

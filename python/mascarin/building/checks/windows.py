@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mascarin.building.base.part import Location, fault
 from mascarin.building.parts.air.zone import GivenSun
 from mascarin.building.parts.defaults import drawn_areas, outlines, window_outlines
-from mascarin.building.parts.envelope.convection import Doe2
+from mascarin.building.parts.envelope.convection import ConvectionLaw
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
@@ -80,10 +80,11 @@ def _between_zones(building: Description, location: Location, window: Window) ->
             "a blind of a window to outdoors",
             "Remove it, or give the window a glazing with its properties.",
         )
-    if isinstance(outside.convection, Doe2):
+    film = outside.convection
+    if isinstance(film, ConvectionLaw) and film.row.sides == "outdoors":
         yield fault(
             (*location, "outside", "convection"),
-            "'doe2' on a side facing a zone",
+            f"'{film.row.kind}' on a side facing a zone",
             "a coefficient without wind",
             "Write 'tarp' or 'iso15099', or another coefficient without wind.",
         )

@@ -9,7 +9,7 @@ from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
-from mascarin.building.parts.envelope.convection import Convection, Measured, Power
+from mascarin.building.parts.envelope.convection import Convection, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import Side, Surface
 
@@ -74,17 +74,15 @@ def describe_convection(convection: Convection, columns: list[str], ids: Ids) ->
             "channel": columns.index(convection.column),
             "factor": ids("convection.factor"),
         }
-    if isinstance(convection, Power):
-        return {
-            "kind": "power",
-            "upward": fields_of(convection.upward, ids, "convection.upward."),
-            "downward": fields_of(convection.downward, ids, "convection.downward."),
-        }
     if isinstance(convection, FormulaLaw):
         numbers = [{"name": name, "value": ids(f"convection.{name}")} for name in convection.numbers]
         law = {"formula": convection.formula, "valid": convection.valid, "numbers": numbers}
         return {"kind": "formula", **law}
-    return fields_of(convection, ids, "convection.")
+    if not convection.row.by_direction:
+        return fields_of(convection, ids, "convection.")
+    groups = ("upward", "downward")
+    parts = {way: fields_of(getattr(convection, way), ids, f"convection.{way}.") for way in groups}
+    return {"kind": convection.kind, **parts}
 
 
 def describe_sensor(building: Description, name: str, sensor: Any, ids: Ids) -> Json:

@@ -12,15 +12,8 @@ from typing import TYPE_CHECKING, Any
 from mascarin.building.base.leaves import leaves
 from mascarin.building.parts.air.zone import GivenSun
 from mascarin.building.parts.envelope.convection import (
-    AlamdariHammond,
     Convection,
-    Doe2,
-    Iso15099,
-    LinearWind,
-    Mowitt,
-    PaperEq5,
-    Power,
-    Tarp,
+    ConvectionLaw,
     by_wind_direction,
 )
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
@@ -51,11 +44,9 @@ class SurfaceSide:
         film = self.side.convection
         if not self.side.exposed.wind:
             return False
-        if isinstance(film, Power):
-            return film.upward.c > 0.0 or film.downward.c > 0.0
         if isinstance(film, FormulaLaw):
             return film.uses("V") or film.uses("windward")
-        return isinstance(film, LinearWind | Tarp | Mowitt | Doe2)
+        return isinstance(film, ConvectionLaw) and film.windy
 
     @property
     def sunlit(self) -> bool:
@@ -221,36 +212,27 @@ def _on_side(item: SurfaceSide, obstructed: set[str]) -> Reasons:
         measured = side.irradiance is not None and not isinstance(side, WindowOutside)
         if measured and path not in obstructed:
             yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
-    windless = not side.exposed.wind
-    if isinstance(side.convection, LinearWind) and windless:
-        yield f"{path}.convection.wind", "there is no wind on this side"
-    if isinstance(side.convection, Tarp) and side.outdoors and windless:
-        yield from (
-            (f"{path}.convection.{key}", "there is no wind on this side")
-            for key in ("roughness", "perimeter")
-        )
-    if isinstance(side.convection, Doe2) and windless:
-        yield f"{path}.convection.roughness", "there is no wind on this side"
     if isinstance(side.convection, FormulaLaw):
         only = (name for name in side.convection.numbers if name not in side.convection.names_of_formula)
         yield from ((f"{path}.convection.{name}", "it only says where the law holds") for name in only)
-    if isinstance(side.convection, Power):
-        yield from _in_power(item, side.convection)
+    if isinstance(side.convection, ConvectionLaw):
+        yield from _in_law(item, side.convection)
 
 
-def _in_power(item: SurfaceSide, film: Power) -> Reasons:
-    for direction, law in (("upward", film.upward), ("downward", film.downward)):
-        path = f"{item.path}.convection.{direction}"
+def _in_law(item: SurfaceSide, law: ConvectionLaw) -> Reasons:
+    windless = not item.side.exposed.wind
+    values = {key: value for key, _, value in law.values()}
+    for key, number, _ in law.values():
+        way = key.rpartition(".")[0]
+        path = f"{item.path}.convection.{key}"
+        owner = None if number.of is None else values[f"{way}.{number.of}" if way else number.of]
         # A vertical surface always uses the upward law.
-        if direction == "downward" and item.tilt == 90.0:
-            yield from _all_of(path, law, "the surface is vertical")
-            continue
-        if law.b == 0.0:
-            yield f"{path}.n", "b is 0"
-        if not item.side.exposed.wind:
-            yield from ((f"{path}.{key}", "there is no wind on this side") for key in ("c", "m"))
-        elif law.c == 0.0:
-            yield f"{path}.m", "c is 0"
+        if way == "downward" and item.tilt == 90.0:
+            yield path, "the surface is vertical"
+        elif number.wind and windless:
+            yield path, "there is no wind on this side"
+        elif owner == 0.0:
+            yield path, f"{number.of} is 0"
 
 
 def _in_direction(building: Description, name: str, surface: Surface) -> Reasons:
@@ -261,14 +243,14 @@ def _in_direction(building: Description, name: str, surface: Surface) -> Reasons
     parts = obstructed_paths(building)
     sunlit = any(item.sunlit or item.path in parts for item in both)
     by_direction = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
-    buoyant = any(isinstance(item.side.convection, AlamdariHammond | PaperEq5 | Power) for item in both)
+    buoyant = any(_tilt(item.side.convection) == "cases" for item in both)
     reasons = ["which surfaces of a zone lie in one plane"] if by_direction else []
     if surface.tilt in (0.0, 180.0):
         yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
     elif not (sunlit or any(item.windy and by_wind_direction(item.side.convection) for item in both)):
         yield f"surfaces.{name}.azimuth", _only(reasons)
     skyward = any(item.sees_sky and _sky_by_tilt(item) for item in both)
-    tilted = any(_by_tilt(item.side.convection) for item in both)
+    tilted = any(_tilt(item.side.convection) == "steady" for item in both)
     if not (sunlit or skyward or tilted):
         yield (
             f"surfaces.{name}.tilt",
@@ -276,11 +258,11 @@ def _in_direction(building: Description, name: str, surface: Surface) -> Reasons
         )
 
 
-def _by_tilt(film: Convection | None) -> bool:
-    """Whether a coefficient changes with every change of the tilt."""
+def _tilt(film: Convection | None) -> str:
+    """How a coefficient depends on the tilt: none, cases (vertical or horizontal) or steady."""
     if isinstance(film, FormulaLaw):
-        return film.uses("tilt") or film.uses("upward")
-    return isinstance(film, Tarp | Doe2 | Iso15099)
+        return "steady" if any(film.uses(name) for name in ("tilt", "upward")) else "none"
+    return film.row.tilt if isinstance(film, ConvectionLaw) else "none"
 
 
 def _sky_by_tilt(item: SurfaceSide) -> bool:

@@ -12,15 +12,9 @@ from mascarin.building.base.number import Number, Remark
 from mascarin.building.base.part import Location, NotDerivableError, derived_number, fault, insist, refuse
 from mascarin.building.parts.air.humidity import with_all_zones
 from mascarin.building.parts.air.zone import Zone
-from mascarin.building.parts.envelope.convection import (
-    AlamdariHammond,
-    Convection,
-    Doe2,
-    Iso15099,
-    PaperEq5,
-    Tarp,
-)
+from mascarin.building.parts.envelope.convection import CLASSES, Convection, ConvectionLaw
 from mascarin.building.parts.envelope.formula_law import LENGTH, PERIMETER, FormulaLaw
+from mascarin.building.parts.envelope.law_table import CONVECTION as LAWS
 from mascarin.building.parts.envelope.surface import Ground, Side, Surface
 from mascarin.building.parts.openings.window import Window, WindowOutside
 from mascarin.errors import InputError
@@ -30,8 +24,6 @@ if TYPE_CHECKING:
     from mascarin.building.parts.openings.window import Shade, Vertices
 
 _FROM_VERTICES = Remark("from the vertices")
-#: Roughness of plaster, concrete and brick in Walton 1983.
-_USUAL_ROUGHNESS = 1.52
 #: Sine of the tilt below which a polygon is horizontal [-].
 _LEVEL = 1e-6
 #: Days of the year.
@@ -176,35 +168,51 @@ def _coldest_day(latitude: float) -> Number:
 def _derived_convection(
     convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
 ) -> Convection:
-    match convection:
-        case AlamdariHammond(length=None) | PaperEq5(length=None) | Iso15099(length=None):
-            length, source = _length(area, tilt, polygon)
-            kind = type(convection)
-            with _located_below("convection"):
-                number = derived_number(kind, "length", length, source)
-            return convection.model_copy(update={"length": number})
-        case Tarp() if outdoors:
-            with _located_below("convection"):
-                return convection.model_copy(update=_wind_facts(convection, area, polygon))
-        case Doe2(roughness=None) if outdoors:
-            return convection.model_copy(update=_usual_roughness(Doe2))
-        case FormulaLaw():
-            with _located_below("convection"):
-                numbers = _of_shape(convection, area, tilt, polygon)
-            return convection.model_copy(update={"numbers": {**convection.numbers, **numbers}})
+    if isinstance(convection, ConvectionLaw):
+        with _located_below("convection"):
+            numbers = _of_law(convection, outdoors, area, tilt, polygon)
+        return convection.model_copy(update=numbers) if numbers else convection
+    if isinstance(convection, FormulaLaw):
+        with _located_below("convection"):
+            numbers = _of_shape(convection, area, tilt, polygon)
+        return convection.model_copy(update={"numbers": {**convection.numbers, **numbers}})
     return convection
+
+
+def _of_law(
+    law: ConvectionLaw, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
+) -> dict[str, Number]:
+    """Numbers of a published law that are not given and follow from the surface or are assumed."""
+    numbers = {}
+    for number in law.row.numbers:
+        if not number.follows or getattr(law, number.name) is not None:
+            continue
+        if not outdoors and (number.outdoors or number.wind):
+            continue
+        if number.assumed is not None:
+            value, source = number.assumed
+        else:
+            value, source = _shape_of(number.follows, area, tilt, polygon)
+        numbers[number.name] = derived_number(
+            type(law), number.name, value, source, assumed=number.assumed is not None
+        )
+    return numbers
+
+
+def _shape_of(word: str, area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
+    """Length or perimeter of a surface [m], and where it comes from."""
+    return _length(area, tilt, polygon) if word == LENGTH else _perimeter(area, polygon)
 
 
 def _of_shape(law: FormulaLaw, area: float, tilt: float, polygon: Polygon | None) -> dict[str, Number]:
     """Length and perimeter of a surface, where a formula uses them and has no values of its own."""
-    derived_values = {}
-    if law.uses(LENGTH) and LENGTH not in law.numbers:
-        length, source = _length(area, tilt, polygon)
-        derived_values[LENGTH] = derived_number(AlamdariHammond, LENGTH, length, source)
-    if law.uses(PERIMETER) and PERIMETER not in law.numbers:
-        edge, source = _perimeter(area, polygon)
-        derived_values[PERIMETER] = derived_number(Tarp, PERIMETER, edge, source)
-    return derived_values
+    missing = [word for word in (LENGTH, PERIMETER) if law.uses(word) and word not in law.numbers]
+    return {word: _number_of_shape(word, *_shape_of(word, area, tilt, polygon)) for word in missing}
+
+
+def _number_of_shape(word: str, value: float, source: str) -> Number:
+    row = next(row for row in LAWS.values() if any(number.name == word for number in row.numbers))
+    return derived_number(CLASSES[row.class_name], word, value, source)
 
 
 def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
@@ -233,26 +241,11 @@ def _cavity_height(area: float, polygon: Polygon | None) -> tuple[float, str]:
     return max(along) - min(along), Remark("height of the vertices along the slope")
 
 
-def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, Number]:
-    facts: dict[str, Number] = {}
-    if tarp.roughness is None:
-        facts |= _usual_roughness(Tarp)
-    if tarp.perimeter is None:
-        edge, source = _perimeter(area, polygon)
-        facts["perimeter"] = derived_number(Tarp, "perimeter", edge, source)
-    return facts
-
-
 def _perimeter(area: float, polygon: Polygon | None) -> tuple[float, str]:
     """Perimeter [m]; without vertices, that of a square."""
     if polygon is None:
         return 4.0 * math.sqrt(area), Remark("perimeter of a square of this area")
     return polygon.perimeter, _FROM_VERTICES
-
-
-def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
-    source = "Walton 1983: medium rough, as plaster, concrete and brick"
-    return {"roughness": derived_number(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
 
 
 def derive_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:

@@ -82,22 +82,10 @@ fn check_irradiance(place: &str, side: &Side, (channels, glazed): (usize, bool))
     Ok(())
 }
 
-/// A correlation that needs the wind stands outdoors or in a zone, and a rough surface has a perimeter.
+/// A measured coefficient has a channel; the laws are checked where their table is (`building/formulas.rs`).
 fn check_convection(place: &str, side: &Side, channels: usize) -> Checked {
-    let Some(convection) = &side.convection else { return Ok(()) };
-    if let Convection::Tarp { roughness, perimeter, .. } = convection
-        && roughness.is_some() != perimeter.is_some()
-    {
-        return refuse(place, "only one of them", "roughness and perimeter together, or none");
-    }
-    if let Convection::Measured { channel, .. } = convection {
+    if let Some(Convection::Measured { channel, .. }) = &side.convection {
         check_index(place, "convection in channel", *channel, channels)?;
-    }
-    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
-    let correlation =
-        matches!(convection, Convection::Tarp { .. } | Convection::Mowitt { .. } | Convection::Doe2 { .. });
-    if imposed && correlation {
-        return refuse(place, "a correlation at an imposed temperature", "a constant coefficient");
     }
     Ok(())
 }

@@ -134,10 +134,8 @@ fn every_parameter_id_is_checked() {
     refused(|d| d.openings[0].wind_coefficient.0 = 77, &["openings[0].wind_coefficient"]);
     refused(
         |d| {
-            if let Some(Convection::Tarp { perimeter: Some(perimeter), .. }) =
-                &mut d.surfaces[0].outside.convection
-            {
-                perimeter.0 = 77;
+            if let Some(Convection::Law(law)) = &mut d.surfaces[0].outside.convection {
+                law.numbers[1].1.0 = 77;
             }
         },
         &["surfaces[0].outside.convection.perimeter"],
@@ -212,14 +210,6 @@ fn parts_that_need_each_other_come_together() {
     refused(|d| d.surfaces[0].outside.emissivity = None, &["facade, outside", "convection and emissivity"]);
     refused(|d| d.surfaces[0].outside.absorptance = None, &["facade, outside", "absorptance"]);
     refused(|d| d.surfaces[2].inside.convection = None, &["partition, inside", "convection"]);
-    refused(
-        |d| {
-            if let Some(Convection::Tarp { perimeter, .. }) = &mut d.surfaces[0].outside.convection {
-                *perimeter = None;
-            }
-        },
-        &["facade, outside", "roughness and perimeter together"],
-    );
     refused(|d| d.surfaces[1].outside.facing = Facing::Adiabatic, &["window", "between outdoors"]);
     refused(|d| d.zones[0].ventilation[0].flow = None, &["ventilation fan", "either air changes or a flow"]);
     refused(|d| d.constructions[0].layers.clear(), &["construction wall", "neither"]);

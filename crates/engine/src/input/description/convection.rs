@@ -1,18 +1,17 @@
 //! Surface heat transfer coefficients; equations and sources in `physics/convection`.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
 use super::parameter::ParamId;
 
 /// Surface heat transfer coefficients [W/(m2 K)]; equations and sources in `physics/convection`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(try_from = "Written")]
 pub enum Convection {
-    /// One number.
-    Constant {
-        /// [W/(m2 K)].
-        coefficient: ParamId,
-    },
+    /// A published law.
+    Law(ConvectionLaw),
     /// A forcing channel [W/(m2 K)], times a factor.
     Measured {
         /// Index into [`Description::channels`](super::Description::channels).
@@ -20,99 +19,91 @@ pub enum Convection {
         /// Multiplies the channel [-].
         factor: ParamId,
     },
-    /// `constant + wind V`.
-    LinearWind {
-        /// Coefficient in still air [W/(m2 K)].
-        constant: ParamId,
-
-        /// Its rise with wind [W/(m2 K) per m/s].
-        wind: ParamId,
-    },
-    /// Alamdari & Hammond (1983); `length`: height of a vertical surface, 4 A/P of a horizontal one [m].
-    AlamdariHammond {
-        /// [m].
-        length: ParamId,
-
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-    },
-    /// The paper's eq. 5 as printed, `length` = H [m].
-    PaperEq5 {
-        /// [m].
-        length: ParamId,
-
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-    },
-    /// TARP (Walton 1983). On an outdoor side the forced part is added; roughness and perimeter [m] act there alone.
-    Tarp {
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-        /// Roughness multiplier Rf [-].
-        #[serde(default)]
-        roughness: Option<ParamId>,
-        /// Perimeter of the surface [m].
-        #[serde(default)]
-        perimeter: Option<ParamId>,
-    },
-    /// `MoWiTT` (Yazdanian & Klems 1994), times a factor.
-    Mowitt {
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-    },
-    /// DOE-2: TARP's natural part and `MoWiTT`'s wind on a rough surface.
-    Doe2 {
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-
-        /// Roughness multiplier Rf [-].
-        roughness: ParamId,
-    },
-    /// ISO 15099 at the indoor surface of a glazing; `length`: its height [m].
-    Iso15099 {
-        /// [m].
-        length: ParamId,
-
-        /// Multiplies the correlation [-].
-        factor: ParamId,
-    },
-    /// `a + b |dT|^n + c V^m` by direction of heat flow.
-    Power {
-        /// Heat flows up, or the surface is vertical.
-        upward: PowerLaw,
-        /// Heat flows down.
-        downward: PowerLaw,
-    },
     /// As written, see `physics/convection/formula_text.rs`.
     Formula {
         /// The coefficient [W/(m2 K)].
         formula: String,
         /// Where it is valid; none: everywhere.
-        #[serde(default)]
         valid: Option<String>,
         /// Its numbers.
         numbers: Vec<FormulaNumber>,
     },
 }
 
-/// Coefficients of [`Convection::Power`].
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PowerLaw {
-    /// Constant [W/(m2 K)].
-    pub a: ParamId,
+/// A law of `physics/convection/laws` with its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvectionLaw {
+    /// Name of its file.
+    pub kind: String,
+    /// Its numbers by name, in the order of their names; `upward.a` is `a` where heat flows up.
+    pub numbers: Vec<(String, ParamId)>,
+}
 
-    /// Gain of the temperature difference [W/(m2 K) per K^n].
-    pub b: ParamId,
+impl ConvectionLaw {
+    /// The number of a name.
+    pub fn number(&self, name: &str) -> Option<ParamId> {
+        self.numbers.iter().find(|(other, _)| other == name).map(|(_, id)| *id)
+    }
+}
 
-    /// Exponent of the temperature difference [-].
-    pub n: ParamId,
+impl Convection {
+    /// A published law with its numbers.
+    pub fn law(kind: &str, numbers: &[(&str, ParamId)]) -> Self {
+        let mut numbers: Vec<(String, ParamId)> =
+            numbers.iter().map(|(name, id)| ((*name).to_owned(), *id)).collect();
+        numbers.sort_by(|(a, _), (b, _)| a.cmp(b));
+        Self::Law(ConvectionLaw { kind: kind.to_owned(), numbers })
+    }
+}
 
-    /// Gain of the wind [W/(m2 K) per (m/s)^m].
-    pub c: ParamId,
+/// A coefficient in JSON.
+#[derive(Deserialize)]
+struct Written {
+    kind: String,
+    channel: Option<usize>,
+    formula: Option<String>,
+    valid: Option<String>,
+    numbers: Option<Vec<FormulaNumber>>,
+    #[serde(flatten)]
+    law: BTreeMap<String, Option<WrittenNumber>>,
+}
 
-    /// Exponent of the wind [-].
-    pub m: ParamId,
+/// A number of a law, or those of a direction of the flow of heat.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum WrittenNumber {
+    One(ParamId),
+    Group(BTreeMap<String, ParamId>),
+}
+
+impl TryFrom<Written> for Convection {
+    type Error = String;
+
+    fn try_from(written: Written) -> Result<Self, String> {
+        let Written { kind, channel, formula, valid, numbers, law } = written;
+        let mut ids = Vec::new();
+        for (name, number) in law {
+            match number {
+                Some(WrittenNumber::One(id)) => ids.push((name, id)),
+                Some(WrittenNumber::Group(group)) => {
+                    ids.extend(group.into_iter().map(|(inner, id)| (format!("{name}.{inner}"), id)));
+                }
+                None => {}
+            }
+        }
+        match (kind.as_str(), channel, formula, numbers) {
+            ("measured", Some(channel), None, None) => match ids.as_slice() {
+                [(name, factor)] if name == "factor" => Ok(Self::Measured { channel, factor: *factor }),
+                _ => Err("found a measured coefficient with other keys, expected its factor".into()),
+            },
+            ("formula", None, Some(formula), Some(numbers)) if ids.is_empty() => {
+                Ok(Self::Formula { formula, valid, numbers })
+            }
+            ("measured" | "formula", ..) => Err(format!("found other keys than those of '{kind}'")),
+            (_, None, None, None) => Ok(Self::Law(ConvectionLaw { kind, numbers: ids })),
+            _ => Err(format!("found a channel or a formula in '{kind}'")),
+        }
+    }
 }
 
 /// A number of a formula.

@@ -28,7 +28,7 @@ pub use air_flow::{AirPath, DirectedFlow, Door, Opening, UnitFlow, VentilationUn
 pub use bridge::ThermalBridge;
 pub use building::Description;
 pub use construction::{Construction, Layer};
-pub use convection::{Convection, FormulaNumber, PowerLaw};
+pub use convection::{Convection, ConvectionLaw, FormulaNumber};
 pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use humidity::{
     Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,

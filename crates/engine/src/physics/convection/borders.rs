@@ -1,9 +1,9 @@
 //! Laws of convection at the borders of their branches, and the limits that their sources state. Each is continuous within
 //! round-off, or jumps by what its source has.
 
-use super::testing::{id, surface};
+use super::testing::{id, power as power_law, surface};
 use super::{SurfaceConvection, Wind, WindTerms};
-use crate::input::description::{Convection, PowerLaw};
+use crate::input::description::Convection;
 use crate::number::real::Real;
 
 /// Coefficient at a difference [K] and a wind [m/s] on the windward side [W/(m2 K)].
@@ -19,7 +19,7 @@ fn beside(law: &Convection, numbers: &[f64], tilt: f64) -> [[f64; 2]; 2] {
 }
 
 fn tarp() -> Convection {
-    Convection::Tarp { factor: id(0), roughness: None, perimeter: None }
+    Convection::law("tarp", &[("factor", id(0))])
 }
 
 /// Relative jump.
@@ -36,7 +36,7 @@ fn assert_same(found: f64, expected: f64, within: f64) {
 /// vertical without a jump, where they are within the rounding of their constants: 9.482/7.238 = 1.31003 and 1.810/1.382 = 1.30970.
 #[test]
 fn tarp_and_doe2() {
-    let doe2 = Convection::Doe2 { factor: id(0), roughness: id(1) };
+    let doe2 = Convection::law("doe2", &[("factor", id(0)), ("roughness", id(1))]);
     for law in [tarp(), doe2] {
         let at_tilt = |tilt: f64, d: f64| {
             // The wind of DOE-2 is never quite still.
@@ -60,12 +60,13 @@ fn tarp_and_doe2() {
 /// exponent windward; at 0 m/s no law with wind jumps.
 #[test]
 fn limits_of_the_wind() {
-    let mowitt = surface(&Convection::Mowitt { factor: id(0) }, &[1.0], 0.0);
+    let mowitt = surface(&Convection::law("mowitt", &[("factor", id(0))]), &[1.0], 0.0);
     assert_same(at(&mowitt, 8.0, 0.0), 0.84 * 2.0, 1e-3);
     assert_same(at(&mowitt, 1e-6, 4.0), 3.26 * Real::powf(4.0, 0.89), 1e-3);
-    let doe2 = Convection::Doe2 { factor: id(0), roughness: id(1) };
+    let doe2 = Convection::law("doe2", &[("factor", id(0)), ("roughness", id(1))]);
     assert_same(at(&surface(&doe2, &[1.0, 1.67], 0.0), 1e-6, 4.0), 1.67 * 3.26 * Real::powf(4.0, 0.89), 0.1);
-    let linear = surface(&Convection::LinearWind { constant: id(0), wind: id(1) }, &[5.7, 3.8], 0.0);
+    let linear =
+        surface(&Convection::law("linear_wind", &[("constant", id(0)), ("wind", id(1))]), &[5.7, 3.8], 0.0);
     assert_same(at(&linear, 8.0, 0.0), 5.7, 1e-12);
     for surface in [&mowitt, &linear] {
         assert!((at(surface, 8.0, 2e-3) - at(surface, 8.0, 0.0)).abs() < 0.01);
@@ -76,7 +77,7 @@ fn limits_of_the_wind() {
 /// jumps from one formula to the other. Small differences are laminar, large ones turbulent.
 #[test]
 fn alamdari_and_hammond() {
-    let law = Convection::AlamdariHammond { length: id(0), factor: id(1) };
+    let law = Convection::law("alamdari_hammond", &[("length", id(0)), ("factor", id(1))]);
     let sixth = |a: f64, b: f64| Real::powf(Real::powf(a, 6.0) + Real::powf(b, 6.0), 1.0 / 6.0);
     let quarter = Real::powf(8.0 / 3.0, 0.25);
     let (wall, plate) = (sixth(1.5 * quarter, 1.23 * 2.0), sixth(1.4 * quarter, 1.63 * 2.0));
@@ -94,7 +95,7 @@ fn alamdari_and_hammond() {
 /// does not depend on the inclination, and at 179 deg, to that of a level plate.
 #[test]
 fn iso_15099() {
-    let law = Convection::Iso15099 { length: id(0), factor: id(1) };
+    let law = Convection::law("iso15099", &[("length", id(0)), ("factor", id(1))]);
     let per_cube = 1.2 * 1.2 * 9.806_65 * 1006.0 / (293.15 * 1.820_5e-5 * 0.025_621);
     // Vertical: Rac = 2.5e5 e^(0.72 90/5), reached by 5 m at 8.2 K.
     let critical = 2.5e5 * Real::exp(0.72 * 90.0 / 5.0);
@@ -122,14 +123,7 @@ fn iso_15099() {
 /// Given by the user for both directions of the heat flow: a vertical surface has the first.
 #[test]
 fn power() {
-    let of = |first: u32| PowerLaw {
-        a: id(first),
-        b: id(first + 1),
-        n: id(first + 2),
-        c: id(first + 3),
-        m: id(first + 4),
-    };
-    let law = Convection::Power { upward: of(0), downward: of(5) };
+    let law = power_law([0, 5]);
     let numbers = [1.0, 2.0, 0.25, 3.0, 0.5, 0.5, 1.0, 0.2, 3.0, 0.5];
     for d in [16.0, -16.0] {
         assert_same(at(&surface(&law, &numbers, 0.0), d, 4.0), 1.0 + 2.0 * 2.0 + 3.0 * 2.0, 1e-5);
@@ -140,7 +134,7 @@ fn power() {
 /// Equation 5 of the paper is one formula for all directions, without a border.
 #[test]
 fn paper_eq5() {
-    let law = Convection::PaperEq5 { length: id(0), factor: id(1) };
+    let law = Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]);
     for tilt in [45.0, 90.0, 135.0] {
         let [up, down] = beside(&law, &[2.0, 1.0], tilt);
         assert!(jump(up) < 1e-12 && jump([up[0], down[0]]) < 1e-12);

@@ -1,8 +1,11 @@
 //! What every correlation offers: its coefficient at a temperature difference, and the part of the wind.
 
 use super::natural::{Coefficient, Difference};
-use super::wind::{Forced, Wind};
+use super::wind::{Forced, Wind, WindTerms};
+use crate::input::description::ConvectionLaw;
+use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::law_row::LawRow;
 
 /// Where a surface lies: what turns the wind at the mast and gravity into those at the surface.
 #[derive(Debug, Clone, Copy)]
@@ -43,20 +46,25 @@ pub(crate) trait Correlation<S> {
 
 /// What the wind contributes to a coefficient.
 pub(crate) trait WindPart<S: Real> {
-    /// Whether the wind contributes anything.
-    const DEPENDS_ON_WIND: bool = false;
+    /// The terms of the wind that contribute; none where the wind contributes nothing.
+    const WIND: Option<WindTerms> = None;
 
     /// Whether the temperature contributes nothing.
     const LINEAR: bool = false;
 
     /// Whether the wind contributes anything to this law.
     fn depends_on_wind(&self) -> bool {
-        Self::DEPENDS_ON_WIND
+        Self::WIND.is_some()
     }
 
     /// Whether the temperature contributes nothing to this law.
     fn linear(&self) -> bool {
         Self::LINEAR
+    }
+
+    /// The coefficient, where it depends neither on temperature nor on wind.
+    fn fixed(&self) -> Option<S> {
+        None
     }
 
     /// The part without temperature at a wind; `windward`: where it blows onto the surface.
@@ -68,5 +76,36 @@ pub(crate) trait WindPart<S: Real> {
     /// The part without temperature in calm air.
     fn calm(&self) -> Forced<S> {
         [S::zero(); 2]
+    }
+}
+
+/// A published law that a description has by its name.
+pub(crate) trait NamedLaw<S: Real>: Correlation<S> + WindPart<S> + Sized {
+    /// What it says of itself.
+    const ROW: LawRow;
+
+    /// Reads its numbers for a surface.
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self;
+}
+
+/// The values of the numbers of a law, by name.
+pub(crate) struct Numbers<'a, S> {
+    values: &'a Values<'a, S>,
+    law: &'a ConvectionLaw,
+}
+
+impl<'a, S: Real> Numbers<'a, S> {
+    pub(crate) fn new(values: &'a Values<'a, S>, law: &'a ConvectionLaw) -> Self {
+        Self { values, law }
+    }
+
+    /// A number of the row.
+    pub(crate) fn of(&self, name: &str) -> S {
+        self.optional(name).expect("a plan knows the numbers of its laws")
+    }
+
+    /// A number of the row that outdoor sides alone have.
+    pub(crate) fn optional(&self, name: &str) -> Option<S> {
+        self.law.number(name).map(|id| self.values.get(id))
     }
 }

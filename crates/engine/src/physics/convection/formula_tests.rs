@@ -5,8 +5,9 @@ use std::sync::Arc;
 use super::correlation::Placement;
 use super::formula_check::LawText;
 use super::formula_text::FormulaText;
+use super::testing::power;
 use super::{SurfaceConvection, Wind, WindTerms};
-use crate::input::description::{Convection, FormulaNumber, ParamId, PowerLaw};
+use crate::input::description::{Convection, FormulaNumber, ParamId};
 use crate::input::values::Values;
 use crate::number::dual::Dual;
 use crate::number::elementary::cos_of_degrees;
@@ -80,8 +81,8 @@ fn id(index: u32) -> ParamId {
 
 #[test]
 fn laws_without_buoyancy() {
-    assert_same_law(&Convection::Constant { coefficient: id(0) }, "h", &["h"], &[7.5]);
-    let linear = Convection::LinearWind { constant: id(0), wind: id(1) };
+    assert_same_law(&Convection::law("constant", &[("coefficient", id(0))]), "h", &["h"], &[7.5]);
+    let linear = Convection::law("linear_wind", &[("constant", id(0)), ("wind", id(1))]);
     assert_same_law(&linear, "a + b*V", &["a", "b"], &[5.7, 3.8]);
     assert!(surface(&written("a + b*V", &["a", "b"]), &[5.7, 3.8], 90.0).straight());
 }
@@ -92,10 +93,15 @@ fn alamdari_hammond_and_paper_eq5() {
     let plate = "f*((1.4*(abs(dT)/L)^(1/4))^6 + (1.63*abs(dT)^(1/3))^6)^(1/6)";
     let stable = "f*0.6*(abs(dT)/L^2)^(1/5)";
     let law = format!("if(abs(upward) > sqrt(1/2), if(dT*upward > 0, {plate}, {stable}), {blend})");
-    let built_in = Convection::AlamdariHammond { length: id(0), factor: id(1) };
+    let built_in = Convection::law("alamdari_hammond", &[("length", id(0)), ("factor", id(1))]);
     assert_same_law(&built_in, &law, &["L", "f"], &[2.7, 1.1]);
     let law = "f*((1.51*abs(dT)^(1/4)/H)^6 + (1.33*abs(dT)^(1/3))^6)^(1/6)";
-    assert_same_law(&Convection::PaperEq5 { length: id(0), factor: id(1) }, law, &["H", "f"], &[0.3, 0.9]);
+    assert_same_law(
+        &Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]),
+        law,
+        &["H", "f"],
+        &[0.3, 0.9],
+    );
 }
 
 const TARP: &str = "if(abs(upward) < 1e-6, 1.31, if(dT*upward > 0, 9.482/(7.238 - abs(upward)), \
@@ -103,24 +109,25 @@ const TARP: &str = "if(abs(upward) < 1e-6, 1.31, if(dT*upward > 0, 9.482/(7.238 
 
 #[test]
 fn laws_with_wind() {
-    let tarp = Convection::Tarp { factor: id(0), roughness: Some(id(1)), perimeter: Some(id(2)) };
+    let tarp = Convection::law("tarp", &[("factor", id(0)), ("roughness", id(1)), ("perimeter", id(2))]);
     let law = format!("f*({TARP} + if(windward, 1, 0.5)*2.537*R*sqrt(P*V/area))");
     assert_same_law(&tarp, &law, &["f", "R", "P"], &[1.2, 1.67, 14.5]);
     let wind = "if(windward, 3.26*V^0.89, 3.55*V^0.617)";
     let law = format!("f*sqrt((0.84*abs(dT)^(1/3))^2 + ({wind})^2)");
-    assert_same_law(&Convection::Mowitt { factor: id(0) }, &law, &["f"], &[0.9]);
+    assert_same_law(&Convection::law("mowitt", &[("factor", id(0))]), &law, &["f"], &[0.9]);
     let smooth = format!("sqrt(({TARP})^2 + ({wind})^2)");
     let law = format!("f*({TARP} + R*({smooth} - {TARP}))");
-    assert_same_law(&Convection::Doe2 { factor: id(0), roughness: id(1) }, &law, &["f", "R"], &[1.05, 1.52]);
+    assert_same_law(
+        &Convection::law("doe2", &[("factor", id(0)), ("roughness", id(1))]),
+        &law,
+        &["f", "R"],
+        &[1.05, 1.52],
+    );
 }
 
 #[test]
 fn power_law() {
-    let law = |first| {
-        let [a, b, n, c, m] = core::array::from_fn(|k| id(first + u32::try_from(k).unwrap()));
-        PowerLaw { a, b, n, c, m }
-    };
-    let built_in = Convection::Power { upward: law(0), downward: law(5) };
+    let built_in = power([0, 5]);
     let values = [1.0, 2.0, 0.25, 0.5, 0.8, 0.3, 1.1, 0.33, 0.4, 0.7];
     let text = "if(dT*upward > 0 or abs(upward) < 1e-6, a + b*abs(dT)^n + c*V^m, A + B*abs(dT)^N + C*V^M)";
     assert_same_law(&built_in, text, &["a", "b", "n", "c", "m", "A", "B", "N", "C", "M"], &values);
@@ -142,7 +149,12 @@ fn iso_15099() {
         "f*0.025621/L*if(({angle}) < 15, 0.13*({ra})^(1/3), if(({angle}) > 179, 0.58*({ra})^(1/5), \
          if(({angle}) < 90 or {turns}, {steep}, {laminar})))"
     );
-    assert_same_law(&Convection::Iso15099 { length: id(0), factor: id(1) }, &law, &["L", "f"], &[2.1, 1.3]);
+    assert_same_law(
+        &Convection::law("iso15099", &[("length", id(0)), ("factor", id(1))]),
+        &law,
+        &["L", "f"],
+        &[2.1, 1.3],
+    );
 }
 
 /// Derivatives of flow and slope by the numbers and the difference against differences of plain numbers.

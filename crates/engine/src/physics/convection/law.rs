@@ -2,24 +2,17 @@
 
 use std::sync::Arc;
 
-use super::alamdari_hammond::AlamdariHammond;
-use super::constant::Constant;
-use super::correlation::{Correlation, Placement, WindPart};
-use super::doe2::Doe2;
+use super::correlation::{Correlation, NamedLaw, Numbers, Placement, WindPart};
 use super::formula::Formula;
 use super::formula_text::FormulaText;
-use super::iso15099::Iso15099;
-use super::linear_wind::LinearWind;
+use super::laws::{self, with_laws};
 use super::measured::Measured;
-use super::mowitt::Mowitt;
 use super::natural::{Coefficient, Difference};
-use super::paper_eq5::PaperEq5;
-use super::power::Power;
-use super::tarp::Tarp;
-use super::wind::{Forced, Wind};
-use crate::input::description::Convection;
+use super::wind::{Forced, Wind, WindTerms};
+use crate::input::description::{Convection, ConvectionLaw};
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::law_row::{LawEntry, LawRow};
 
 /// Heat flow from surface to air and its slope in `T_surface - T_air`.
 #[derive(Debug, Clone, Copy)]
@@ -30,13 +23,15 @@ pub struct ConvectiveFlux<S> {
     pub slope: S,
 }
 
-/// Defines `Law`, one variant for each correlation, and passes every question on to the correlation.
+/// Defines `Law`, one variant for each file of `laws`, and passes every question on to the correlation.
 macro_rules! laws {
-    ($($law:ident),*) => {
+    ($(($module:ident, $law:ident, $kind:literal))*) => {
         /// A correlation with its numbers.
         #[derive(Debug, Clone)]
         enum Law<S> {
-            $($law($law<S>),)*
+            $($law(laws::$module::$law<S>),)*
+            Measured(Measured<S>),
+            Formula(Formula<S>),
         }
 
         impl<S> Law<S> {
@@ -44,6 +39,8 @@ macro_rules! laws {
             fn map<T>(&self, change: impl FnMut(&S) -> T) -> Law<T> {
                 match self {
                     $(Self::$law(law) => Law::$law(law.map(change)),)*
+                    Self::Measured(law) => Law::Measured(law.map(change)),
+                    Self::Formula(law) => Law::Formula(law.map(change)),
                 }
             }
 
@@ -57,20 +54,41 @@ macro_rules! laws {
             ) -> Coefficient<V> {
                 match self {
                     $(Self::$law(law) => law.coefficient(number, upward, at, forced),)*
+                    Self::Measured(law) => law.coefficient(number, upward, at, forced),
+                    Self::Formula(law) => law.coefficient(number, upward, at, forced),
                 }
             }
         }
 
         impl<S: Real> Law<S> {
+            /// The law of a kind.
+            fn named(law: &ConvectionLaw, number: &Numbers<'_, S>, surface: &Placement<S>) -> Option<Self> {
+                match law.kind.as_str() {
+                    $($kind => Some(Self::$law(<laws::$module::$law<S> as NamedLaw<S>>::new(number, surface))),)*
+                    _ => None,
+                }
+            }
+
             fn depends_on_wind(&self) -> bool {
                 match self {
                     $(Self::$law(law) => law.depends_on_wind(),)*
+                    Self::Measured(law) => law.depends_on_wind(),
+                    Self::Formula(law) => law.depends_on_wind(),
                 }
             }
 
             fn linear(&self) -> bool {
                 match self {
                     $(Self::$law(law) => law.linear(),)*
+                    Self::Measured(law) => law.linear(),
+                    Self::Formula(law) => law.linear(),
+                }
+            }
+
+            fn fixed(&self) -> Option<S> {
+                match self {
+                    $(Self::$law(law) => law.fixed(),)*
+                    Self::Measured(_) | Self::Formula(_) => None,
                 }
             }
 
@@ -78,69 +96,79 @@ macro_rules! laws {
             fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
                 match self {
                     $(Self::$law(law) => law.forced(wind, windward),)*
+                    Self::Measured(law) => law.forced(wind, windward),
+                    Self::Formula(law) => law.forced(wind, windward),
                 }
             }
 
             fn calm(&self) -> Forced<S> {
                 match self {
                     $(Self::$law(law) => law.calm(),)*
+                    Self::Measured(law) => law.calm(),
+                    Self::Formula(law) => law.calm(),
                 }
+            }
+        }
+
+        /// All laws that a description has by name, in the order of their kinds.
+        pub fn table() -> Vec<LawEntry> {
+            vec![$(entry::<laws::$module::$law<f64>>($kind)),*]
+        }
+
+        /// The terms of the wind that a law needs.
+        fn terms(law: &ConvectionLaw) -> WindTerms {
+            let terms = match law.kind.as_str() {
+                $($kind => <laws::$module::$law<f64> as WindPart<f64>>::WIND,)*
+                _ => None,
+            };
+            terms.unwrap_or_default()
+        }
+
+        /// What a law says of itself; none for a kind that is no law.
+        pub(crate) fn row(law: &ConvectionLaw) -> Option<LawRow> {
+            match law.kind.as_str() {
+                $($kind => Some(<laws::$module::$law<f64> as NamedLaw<f64>>::ROW),)*
+                _ => None,
             }
         }
     };
 }
 
-laws!(
-    Constant,
-    LinearWind,
-    AlamdariHammond,
-    PaperEq5,
-    Tarp,
-    Mowitt,
-    Doe2,
-    Iso15099,
-    Power,
-    Measured,
-    Formula
-);
+with_laws!(laws);
+
+fn entry<L: NamedLaw<f64>>(kind: &'static str) -> LawEntry {
+    let wind_direction = L::WIND.is_some_and(|terms| terms.direction);
+    LawEntry { kind, wind: L::WIND.is_some(), wind_direction, linear: L::LINEAR, row: L::ROW }
+}
+
+/// The terms of the wind that several laws need together.
+pub fn wind_terms<'a>(convections: impl Iterator<Item = &'a Convection>) -> WindTerms {
+    convections.fold(WindTerms::default(), |sum, convection| {
+        sum.and(match convection {
+            Convection::Law(law) => terms(law),
+            Convection::Formula { formula, .. } if formula.contains("windward") => WindTerms::DIRECTION,
+            Convection::Formula { .. } | Convection::Measured { .. } => WindTerms::default(),
+        })
+    })
+}
 
 impl<S: Real> Law<S> {
     fn new(
         values: &Values<'_, S>,
-        law: &Convection,
+        convection: &Convection,
         text: Option<&Arc<FormulaText>>,
         surface: &Placement<S>,
     ) -> Self {
-        let get = |id| values.get(id);
-        match law {
-            Convection::Constant { coefficient } => Self::Constant(Constant::new(get(*coefficient))),
-            Convection::Measured { channel, factor } => Self::Measured(Measured::new(*channel, get(*factor))),
-            Convection::LinearWind { constant, wind } => {
-                Self::LinearWind(LinearWind::new(get(*constant), get(*wind), surface))
+        match convection {
+            Convection::Law(law) => {
+                let named = Self::named(law, &Numbers::new(values, law), surface);
+                named.expect("a plan knows its laws")
             }
-            Convection::AlamdariHammond { length, factor } => {
-                Self::AlamdariHammond(AlamdariHammond::new(get(*length), get(*factor), surface))
-            }
-            Convection::PaperEq5 { length, factor } => {
-                Self::PaperEq5(PaperEq5::new(get(*length), get(*factor)))
-            }
-            Convection::Tarp { factor, roughness, perimeter } => {
-                let rough =
-                    roughness.zip(*perimeter).map(|(roughness, perimeter)| [get(roughness), get(perimeter)]);
-                Self::Tarp(Tarp::new(get(*factor), rough, surface))
-            }
-            Convection::Mowitt { factor } => Self::Mowitt(Mowitt::new(get(*factor), surface)),
-            Convection::Doe2 { factor, roughness } => {
-                Self::Doe2(Doe2::new(get(*factor), get(*roughness), surface))
-            }
-            Convection::Iso15099 { length, factor } => {
-                Self::Iso15099(Iso15099::new(get(*length), get(*factor), surface))
-            }
-            Convection::Power { upward, downward } => {
-                Self::Power(Power::new(values, [upward, downward], surface))
+            Convection::Measured { channel, factor } => {
+                Self::Measured(Measured::new(*channel, values.get(*factor)))
             }
             Convection::Formula { numbers, .. } => {
-                let given: Vec<S> = numbers.iter().map(|number| get(number.value)).collect();
+                let given: Vec<S> = numbers.iter().map(|number| values.get(number.value)).collect();
                 let text = text.expect("a plan reads the formulas of its sides");
                 Self::Formula(Formula::new(text, &given, surface))
             }
@@ -232,7 +260,7 @@ impl<S: Real> SurfaceConvection<S> {
 
     /// The coefficient, where it depends neither on temperature nor on wind.
     pub fn constant(&self) -> Option<S> {
-        if let Law::Constant(law) = &self.law { Some(law.coefficient) } else { None }
+        self.law.fixed()
     }
 
     /// Forcing channel and factor of a measured coefficient.

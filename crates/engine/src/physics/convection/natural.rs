@@ -5,29 +5,29 @@ use crate::number::real::{Mask, Real};
 /// Temperature differences below this [K] are rounded off: `|d|^(1/3)` has an infinite slope at zero.
 pub(crate) const ROUND_OFF: f64 = 0.01;
 /// A surface is treated as horizontal when its normal lies within 45 deg of the vertical.
-pub(super) const HORIZONTAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
+pub(crate) const HORIZONTAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// A temperature difference and what the correlations need of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference<V> {
     /// `d = T_surface - T_air` [K].
-    pub(super) d: V,
+    pub(crate) d: V,
     /// `d^2` [K2].
-    pub(super) square: V,
+    pub(crate) square: V,
     /// `d^2 + r^2` with a small r [K2].
-    pub(super) rounded: V,
+    pub(crate) rounded: V,
 }
 
 impl<V: Real> Difference<V> {
     #[inline(always)]
-    pub(super) fn new(d: V) -> Self {
+    pub(crate) fn new(d: V) -> Self {
         let square = d * d;
         Self { d, square, rounded: square + V::constant(ROUND_OFF * ROUND_OFF) }
     }
 
     /// Where buoyancy moves the air away from the surface: warm and facing up, or cold and facing down. Heat flows up there.
     #[inline(always)]
-    pub(super) fn unstable(&self, upward: V) -> V::Mask {
+    pub(crate) fn unstable(&self, upward: V) -> V::Mask {
         V::zero().lt(self.d * upward)
     }
 }
@@ -35,27 +35,27 @@ impl<V: Real> Difference<V> {
 /// A surface heat transfer coefficient h and `d dh/dd` [W/(m2 K)].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coefficient<V> {
-    pub(super) value: V,
-    pub(super) rise: V,
+    pub(crate) value: V,
+    pub(crate) rise: V,
 }
 
 impl<V: Real> Coefficient<V> {
     /// A coefficient that does not depend on temperature.
     #[inline(always)]
-    pub(super) fn fixed(value: V) -> Self {
+    pub(crate) fn fixed(value: V) -> Self {
         Self { value, rise: V::zero() }
     }
 
     /// Another one where the mask is true.
     #[inline(always)]
-    pub(super) fn or(self, mask: V::Mask, other: Self) -> Self {
+    pub(crate) fn or(self, mask: V::Mask, other: Self) -> Self {
         Self { value: V::select(mask, other.value, self.value), rise: V::select(mask, other.rise, self.rise) }
     }
 }
 
 /// `gain |d|^1/3`.
 #[inline(always)]
-pub(super) fn cube_root<V: Real>(gain: V, at: &Difference<V>) -> Coefficient<V> {
+pub(crate) fn cube_root<V: Real>(gain: V, at: &Difference<V>) -> Coefficient<V> {
     let inverse = at.rounded.inverse_cbrt();
     // x^(1/6) = sqrt(x y^2) with y = x^(-1/3); 1/x = y^3.
     let value = gain * (at.rounded * inverse * inverse).sqrt();
@@ -65,7 +65,7 @@ pub(super) fn cube_root<V: Real>(gain: V, at: &Difference<V>) -> Coefficient<V> 
 
 /// `gain |d|^exponent`.
 #[inline(always)]
-pub(super) fn any_power<V: Real>(gain: V, exponent: V, at: &Difference<V>) -> Coefficient<V> {
+pub(crate) fn any_power<V: Real>(gain: V, exponent: V, at: &Difference<V>) -> Coefficient<V> {
     let value = gain * (exponent.scale(0.5) * at.rounded.ln()).exp();
     Coefficient { value, rise: exponent * value * (at.square / at.rounded) }
 }
@@ -73,7 +73,7 @@ pub(super) fn any_power<V: Real>(gain: V, exponent: V, at: &Difference<V>) -> Co
 /// `(laminar |d|^3/2 + turbulent d^2)^1/6`: the sixth root of the sum of the sixth powers of `l |d|^1/4` and `t |d|^1/3`,
 /// with `laminar = l^6` and `turbulent = t^6` (Churchill & Usagi 1972, doi:10.1002/aic.690180606).
 #[inline(always)]
-pub(super) fn blend<V: Real>(laminar: V, turbulent: V, at: &Difference<V>) -> Coefficient<V> {
+pub(crate) fn blend<V: Real>(laminar: V, turbulent: V, at: &Difference<V>) -> Coefficient<V> {
     let magnitude = at.rounded.sqrt();
     let laminar = laminar * (magnitude * magnitude.sqrt());
     let turbulent = turbulent * at.rounded;
@@ -86,14 +86,14 @@ pub(super) fn blend<V: Real>(laminar: V, turbulent: V, at: &Difference<V>) -> Co
 }
 
 /// Sixth power, by products: the compiler may round `powi` of a constant otherwise in lanes than in scalars.
-pub(super) fn sixth_power<V: Real>(x: V) -> V {
+pub(crate) fn sixth_power<V: Real>(x: V) -> V {
     let cube = x * x * x;
     cube * cube
 }
 
 /// `gain |d|^1/5` where the mask is true, else what is given.
 #[inline(always)]
-pub(super) fn fifth_root_where<V: Real>(
+pub(crate) fn fifth_root_where<V: Real>(
     mask: V::Mask,
     gain: V,
     otherwise: Coefficient<V>,

@@ -10,6 +10,16 @@ pub(super) fn id(index: u32) -> ParamId {
     ParamId(index)
 }
 
+/// Power laws with five numbers each from these on.
+pub(super) fn power(first: [u32; 2]) -> Convection {
+    let ids = ["upward", "downward"].into_iter().zip(first).flat_map(|(direction, first)| {
+        (first..).zip(["a", "b", "n", "c", "m"]).map(move |(k, name)| (format!("{direction}.{name}"), id(k)))
+    });
+    let ids: Vec<(String, ParamId)> = ids.collect();
+    let numbers: Vec<(&str, ParamId)> = ids.iter().map(|(name, id)| (name.as_str(), *id)).collect();
+    Convection::law("power", &numbers)
+}
+
 /// A surface of 1 m2 in air of 1.2 kg/m3 with the mast's wind.
 pub(super) fn surface(law: &Convection, numbers: &[f64], upward: f64) -> SurfaceConvection<f64> {
     let inclination = crate::number::elementary::acos(upward.abs()).to_degrees();

@@ -1,13 +1,12 @@
 //! The wind, and its part of a surface heat transfer coefficient.
 
-use crate::input::description::Convection;
 use crate::number::real::Real;
 
 /// Exponents of the wind, windward and leeward.
-pub(super) const MOWITT_EXPONENTS: [f64; 2] = [0.89, 0.617];
+pub(crate) const MOWITT_EXPONENTS: [f64; 2] = [0.89, 0.617];
 
 /// Wind speeds below this [m/s] count as this: `V^b` has an infinite slope at zero.
-pub(super) const CALM: f64 = 1e-3;
+pub(crate) const CALM: f64 = 1e-3;
 
 /// The part of a coefficient that does not depend on temperature, where heat flows up and where it flows down [W/(m2 K)].
 pub type Forced<S> = [S; 2];
@@ -24,30 +23,28 @@ pub struct WindTerms {
 }
 
 impl WindTerms {
-    /// What several correlations need together.
-    pub fn of<'a>(laws: impl Iterator<Item = &'a Convection>) -> Self {
-        laws.fold(Self::default(), |mut terms, law| {
-            match law {
-                Convection::Tarp { .. } => terms.direction = true,
-                Convection::Mowitt { .. } | Convection::Doe2 { .. } => {
-                    (terms.direction, terms.mowitt) = (true, true);
-                }
-                Convection::Power { .. } => terms.logarithm = true,
-                Convection::Formula { formula, .. } => terms.direction |= formula.contains("windward"),
-                Convection::Constant { .. }
-                | Convection::Measured { .. }
-                | Convection::LinearWind { .. }
-                | Convection::AlamdariHammond { .. }
-                | Convection::PaperEq5 { .. }
-                | Convection::Iso15099 { .. } => {}
-            }
-            terms
-        })
+    /// The speed and its root.
+    pub const SPEED: Self = Self { mowitt: false, logarithm: false, direction: false };
+    /// The direction.
+    pub const DIRECTION: Self = Self { direction: true, ..Self::SPEED };
+    /// The direction and the powers of `MoWiTT`.
+    pub const MOWITT: Self = Self { mowitt: true, ..Self::DIRECTION };
+    /// The logarithm.
+    pub const LOGARITHM: Self = Self { logarithm: true, ..Self::SPEED };
+
+    /// What two correlations need together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            mowitt: self.mowitt | other.mowitt,
+            logarithm: self.logarithm | other.logarithm,
+            direction: self.direction | other.direction,
+        }
     }
 
     /// All terms.
     #[cfg(test)]
-    pub(super) fn all() -> Self {
+    pub(crate) fn all() -> Self {
         Self { mowitt: true, logarithm: true, direction: true }
     }
 }
@@ -58,11 +55,11 @@ pub struct Wind {
     /// [m/s].
     pub speed: f64,
     /// Root of the speed.
-    pub(super) root: f64,
+    pub(crate) root: f64,
     /// Speed to the windward and leeward exponents of `MoWiTT`.
-    pub(super) mowitt: [f64; 2],
+    pub(crate) mowitt: [f64; 2],
     /// Logarithm of the speed.
-    pub(super) logarithm: f64,
+    pub(crate) logarithm: f64,
 }
 
 impl Wind {

@@ -30,10 +30,13 @@ pub fn assorted_cell(sky: usize) -> Description {
     };
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.18));
 
-    let doe2 = Convection::Doe2 {
-        factor: number(&mut d, "doe2.factor", 1.0),
-        roughness: number(&mut d, "doe2.roughness", 1.67),
-    };
+    let doe2 = Convection::law(
+        "doe2",
+        &[
+            ("factor", number(&mut d, "doe2.factor", 1.0)),
+            ("roughness", number(&mut d, "doe2.roughness", 1.67)),
+        ],
+    );
     let (sky_view, height) = (number(&mut d, "north.sky_view", 0.35), number(&mut d, "north.height", 2.5));
     let north = &mut d.surfaces[0].outside;
     (north.convection, north.sky_view, north.height) = (Some(doe2), Some(sky_view), Some(height));
@@ -84,7 +87,8 @@ pub fn assorted_windows() -> Description {
     let length = number(&mut d, "iso.length", 2.0);
     let factor = number(&mut d, "iso.factor", 1.0);
     for window in [6, 7] {
-        d.surfaces[window].inside.convection = Some(Convection::Iso15099 { length, factor });
+        d.surfaces[window].inside.convection =
+            Some(Convection::law("iso15099", &[("length", length), ("factor", factor)]));
     }
     let krypton = Gap::Filled {
         thickness: number(&mut d, "krypton.thickness", 0.01),

@@ -33,9 +33,8 @@ pub fn sharp(width: f64, thickness: f64, nodes: usize, heated: bool) -> Descript
     let wall = b.construction("wall", &[(pcm, thickness, nodes)]);
     let zone = b.zone("zone", 27.0, 0.5, ZoneLongwave::Radiosity);
     for (name, azimuth) in [("north", 0.0), ("east", 90.0), ("south", 180.0)] {
-        let tarp =
-            Convection::Tarp { factor: b.number("tarp.factor", 1.0), roughness: None, perimeter: None };
-        let mowitt = Convection::Mowitt { factor: b.number("mowitt.factor", 1.0) };
+        let tarp = Convection::law("tarp", &[("factor", b.number("tarp.factor", 1.0))]);
+        let mowitt = Convection::law("mowitt", &[("factor", b.number("mowitt.factor", 1.0))]);
         let (outside, inside) = (b.outdoors(mowitt, 0.9, 0.6), b.inside(zone, tarp, 0.9));
         b.surface(name, wall, [9.0, 90.0, azimuth], outside, inside);
     }

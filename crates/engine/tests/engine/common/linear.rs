@@ -1,12 +1,12 @@
 //! Cells whose laws of convection and radiation are linear.
 
 use mascarin_engine::description::{
-    AirPath, Convection, Description, Facing, Gain, Material, OutdoorLongwave, ParamId, Parameter, PowerLaw,
+    AirPath, Convection, Description, Facing, Gain, Material, OutdoorLongwave, ParamId, Parameter,
     Ventilation, ZoneLongwave,
 };
 
-use super::cell;
 use super::conditioned::number;
+use super::{cell, law};
 
 /// The cell with constant heat transfer coefficients inside, coefficients linear in the wind outside and linearised
 /// radiation: only its ceiling, which melts, is nonlinear. With `as_power` one constant coefficient is written as a power of
@@ -24,12 +24,15 @@ pub fn cell_of_linear_laws(as_power: bool) -> Description {
             side.convection = match side.facing {
                 Facing::Zone { .. } if as_power && index == 1 => {
                     let [a, b, n, c, m] = [3.0, 0.0, 0.5, 0.0, 1.0].map(&mut number);
-                    let law = PowerLaw { a, b, n, c, m };
-                    Some(Convection::Power { upward: law.clone(), downward: law })
+                    let numbers = ["upward", "downward"].map(|direction| {
+                        [("a", a), ("b", b), ("n", n), ("c", c), ("m", m)]
+                            .map(|(name, id)| (format!("{direction}.{name}"), id))
+                    });
+                    Some(law("power", numbers.as_flattened()))
                 }
-                Facing::Zone { .. } => Some(Convection::Constant { coefficient: number(3.0) }),
+                Facing::Zone { .. } => Some(Convection::law("constant", &[("coefficient", number(3.0))])),
                 Facing::Outdoors => {
-                    Some(Convection::LinearWind { constant: number(11.4), wind: number(5.7) })
+                    Some(Convection::law("linear_wind", &[("constant", number(11.4)), ("wind", number(5.7))]))
                 }
                 _ => side.convection.take(),
             };
@@ -57,7 +60,7 @@ pub fn linear_cell() -> Description {
     let coefficient = number(&mut d, "linear.coefficient", 18.0);
     for surface in &mut d.surfaces {
         if surface.outside.facing == Facing::Outdoors {
-            surface.outside.convection = Some(Convection::Constant { coefficient });
+            surface.outside.convection = Some(Convection::law("constant", &[("coefficient", coefficient)]));
         }
     }
     let gain = Gain {

@@ -15,8 +15,8 @@ use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{
     Clouds, Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer,
-    Material, MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky,
-    Surface, WindProfile, Zone, ZoneLongwave, ZoneSun,
+    Material, MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, Sensor, Side, Site, Sky, Surface,
+    WindProfile, Zone, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
@@ -39,6 +39,12 @@ pub struct Builder {
 
 /// A layer: material, thickness [m] (ignored for a resistance), nodes.
 pub type LayerOf = (usize, f64, usize);
+
+/// A published law of convection with its numbers.
+pub fn law(kind: &str, numbers: &[(String, ParamId)]) -> Convection {
+    let numbers: Vec<(&str, ParamId)> = numbers.iter().map(|(name, id)| (name.as_str(), *id)).collect();
+    Convection::law(kind, &numbers)
+}
 
 impl Builder {
     /// A site at sea level under a sky 10 K colder than the air, without parts.
@@ -239,15 +245,17 @@ impl Builder {
     }
 
     pub fn convection(&mut self, coefficient: f64) -> Convection {
-        Convection::Constant { coefficient: self.number("convection.coefficient", coefficient) }
+        Convection::law("constant", &[("coefficient", self.number("convection.coefficient", coefficient))])
     }
 
     pub fn power(&mut self, upward: [f64; 5], downward: [f64; 5]) -> Convection {
-        let mut law = |numbers: [f64; 5]| {
-            let [a, b, n, c, m] = numbers.map(|value| self.number("convection.power", value));
-            PowerLaw { a, b, n, c, m }
-        };
-        Convection::Power { upward: law(upward), downward: law(downward) }
+        let mut numbers = Vec::new();
+        for (direction, values) in [("upward", upward), ("downward", downward)] {
+            for (name, value) in ["a", "b", "n", "c", "m"].into_iter().zip(values) {
+                numbers.push((format!("{direction}.{name}"), self.number("convection.power", value)));
+            }
+        }
+        law("power", &numbers)
     }
 
     pub fn outdoors(&mut self, convection: Convection, emissivity: f64, absorptance: f64) -> Side {
@@ -422,15 +430,20 @@ pub fn cell(gamma: f64) -> Description {
     let gap = b.zone("gap", 2.68, 0.1, ZoneLongwave::Radiosity);
     let soil = b.channel("soil");
 
-    let tarp = |b: &mut Builder, outdoors: bool| Convection::Tarp {
-        factor: b.number("tarp.factor", 1.0),
-        roughness: outdoors.then(|| b.number("tarp.roughness", 1.5)),
-        perimeter: outdoors.then(|| b.number("tarp.perimeter", 12.0)),
+    let tarp = |b: &mut Builder, outdoors: bool| {
+        let mut numbers = vec![("factor", b.number("tarp.factor", 1.0))];
+        if outdoors {
+            numbers.push(("roughness", b.number("tarp.roughness", 1.5)));
+            numbers.push(("perimeter", b.number("tarp.perimeter", 12.0)));
+        }
+        Convection::law("tarp", &numbers)
     };
-    let mowitt = |b: &mut Builder| Convection::Mowitt { factor: b.number("mowitt.factor", 1.0) };
-    let alamdari = |b: &mut Builder, length: f64| Convection::AlamdariHammond {
-        length: b.number("alamdari.length", length),
-        factor: b.number("alamdari.factor", 1.0),
+    let mowitt = |b: &mut Builder| Convection::law("mowitt", &[("factor", b.number("mowitt.factor", 1.0))]);
+    let alamdari = |b: &mut Builder, length: f64| {
+        Convection::law(
+            "alamdari_hammond",
+            &[("length", b.number("alamdari.length", length)), ("factor", b.number("alamdari.factor", 1.0))],
+        )
     };
 
     let outer = tarp(&mut b, true);
@@ -444,17 +457,19 @@ pub fn cell(gamma: f64) -> Description {
     let inside = b.inside(room, inner, 0.9);
     b.surface("east", wall, [9.0, 90.0, 90.0], outside, inside);
 
-    let outer = Convection::LinearWind {
-        constant: b.number("linear.constant", 5.7),
-        wind: b.number("linear.wind", 3.8),
-    };
+    let outer = Convection::law(
+        "linear_wind",
+        &[("constant", b.number("linear.constant", 5.7)), ("wind", b.number("linear.wind", 3.8))],
+    );
     let inner = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
     let (outside, inside) = (b.outdoors(outer, 0.9, 0.4), b.inside(room, inner, 0.9));
     b.surface("south", wall, [7.0, 90.0, 180.0], outside, inside);
 
     let outer = b.power([2.0, 1.2, 0.33, 3.1, 0.8], [2.0, 0.7, 0.25, 3.1, 0.8]);
-    let inner =
-        Convection::PaperEq5 { length: b.number("eq5.length", 2.0), factor: b.number("eq5.factor", 1.0) };
+    let inner = Convection::law(
+        "paper_eq5",
+        &[("length", b.number("eq5.length", 2.0)), ("factor", b.number("eq5.factor", 1.0))],
+    );
     let (outside, inside) = (b.outdoors(outer, 0.9, 0.5), b.inside(room, inner, 0.9));
     b.surface("door", door, [2.0, 90.0, 180.0], outside, inside);
 

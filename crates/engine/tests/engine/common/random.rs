@@ -11,13 +11,14 @@ use mascarin_engine::description::{
     ParamId, Parameter, PcmLaw, SetPoint, Side, Sky, TablePoints, Tail, Ventilation, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
+use mascarin_engine::laws::{self, LawEntry, LawRange, Sides};
 use mascarin_engine::number::Real;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::Options;
 use mascarin_engine::run::outputs::Output;
 use mascarin_engine::state::Initial;
 
-use crate::common::{Builder, LayerOf, facing, forcing, options, set, weather};
+use crate::common::{Builder, LayerOf, facing, forcing, law, options, set, weather};
 
 /// Random numbers: `SplitMix64` (Steele, Lea & Flood 2014, doi:10.1145/2660193.2660195).
 #[derive(Debug, Clone)]
@@ -400,35 +401,26 @@ impl Maker<'_> {
         self.b.zone(&format!("zone_{index}"), volume, changes, longwave);
     }
 
-    /// A law of convection of a surface in a zone or outdoors.
+    /// Any law of convection of the table that may stand in a zone or outdoors.
     fn convection(&mut self, outdoors: bool) -> Convection {
-        let factor = self.number("convection.factor", 0.7, 1.4);
-        let length = self.number("convection.length", 0.5, 4.0);
-        let roughness = self.number("convection.roughness", 1.0, 2.1);
-        let perimeter = self.number("convection.perimeter", 4.0, 20.0);
-        match self.random.below(if outdoors { 7 } else { 6 }) {
-            0 => Convection::Constant { coefficient: self.number("convection.coefficient", 1.0, 20.0) },
-            1 => Convection::AlamdariHammond { length, factor },
-            2 => Convection::Tarp {
-                factor,
-                roughness: outdoors.then_some(roughness),
-                perimeter: outdoors.then_some(perimeter),
-            },
-            3 => {
-                let wind = if outdoors { 3.0 } else { 0.0 };
-                let mut law = |b: f64| [self.random.between(0.1, 2.0), b, 0.3, wind, 0.8];
-                let (upward, downward) = (law(1.3), law(0.6));
-                self.b.power(upward, downward)
+        let mut table = laws::convection();
+        table.retain(|entry| outdoors || entry.row.sides != Sides::Outdoors);
+        let LawEntry { kind, row, .. } = self.random.of(&table);
+        let directions: &[&str] = if row.by_direction { &["upward.", "downward."] } else { &[""] };
+        let mut numbers = Vec::new();
+        for direction in directions {
+            for number in row.numbers.iter().filter(|number| outdoors || !number.outdoors) {
+                let (low, high) = match number.range {
+                    LawRange::Percent(part, _) => {
+                        (number.example * (1.0 - part / 100.0), number.example * (1.0 + part / 100.0))
+                    }
+                    LawRange::Span(low, high, _) => (low, high),
+                };
+                let id = self.number(&format!("convection.{}", number.name), low, high);
+                numbers.push((format!("{direction}{}", number.name), id));
             }
-            4 if outdoors => Convection::LinearWind {
-                constant: self.number("convection.constant", 3.0, 7.0),
-                wind: self.number("convection.wind", 1.0, 5.0),
-            },
-            4 => Convection::PaperEq5 { length, factor },
-            5 if outdoors => Convection::Mowitt { factor },
-            5 => Convection::Iso15099 { length, factor },
-            _ => Convection::Doe2 { factor, roughness },
         }
+        law(kind, &numbers)
     }
 
     fn inside(&mut self, zone: usize) -> Side {

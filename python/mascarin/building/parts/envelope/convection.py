@@ -1,30 +1,121 @@
-"""Surface heat transfer coefficients: constants and correlations."""
+"""Surface heat transfer coefficients: the published laws of the engine's table, measured ones, formulas.
+
+Each law of the table (`mascarin.building.parts.envelope.law_table`) is a class here: `Constant`, `Tarp` and so on.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import functools
+import operator
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeGuard
 
-from pydantic import Field
+from pydantic import Field, create_model
 
-from mascarin.building import quantities as q
 from mascarin.building.base.number import Number, Remark
 from mascarin.building.base.part import Part, Shorthand
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.envelope.law_table import CONVECTION as ROWS
+from mascarin.building.parts.envelope.law_table import LawNumber, LawRow
 
-_AS_PUBLISHED = Remark("the correlation as published")
+
+class ConvectionLaw(Part):
+    """A published law of convection with its numbers."""
+
+    #: What the engine says of it.
+    row: ClassVar[LawRow]
+
+    if TYPE_CHECKING:
+        kind: str
+
+        def __init__(self, **numbers: Any) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def values(self, *, wind: bool | None = None) -> Iterator[tuple[str, LawNumber, Number]]:
+        """Numbers that it has: key below the law, what it is, value.
+
+        Parameters
+        ----------
+        wind : bool, optional
+            Only numbers that have an effect with wind alone, or only the others.
+        """
+        groups = ("upward", "downward") if self.row.by_direction else ("",)
+        for group in groups:
+            part = getattr(self, group) if group else self
+            for number in self.row.numbers:
+                value = getattr(part, number.name)
+                if value is not None and wind in (None, number.wind):
+                    yield f"{group}.{number.name}" if group else number.name, number, value
+
+    @property
+    def windy(self) -> bool:
+        """Whether it depends on the wind with its numbers."""
+        owners = {number.of for number in self.row.numbers if number.wind}
+        gains = [value for _, number, value in self.values(wind=True) if number.name in owners]
+        return self.row.wind and (not gains or any(gain > 0.0 for gain in gains))
 
 
-class Constant(Part):
-    """A constant surface heat transfer coefficient.
+def _example(row: LawRow) -> str:
+    """Section of a docstring with an example that can be run."""
+    name = row.class_name
+    if row.by_direction:
+        arguments = ", ".join(
+            f'{way}={{"{row.numbers[0].name}": {row.numbers[0].example:g}}}' for way in _WAYS
+        )
+        shown = ", ".join(f"{way}={name}Law" for way in _WAYS)
+    else:
+        required = [number for number in row.numbers if number.required]
+        arguments = ", ".join(f"{number.name}={number.example:g}" for number in required)
+        values = {number.name: number.example for number in required}
+        values |= {n.name: float(n.default) for n in row.numbers if n.default is not None}
+        shown = ", ".join(
+            f"{n.name}={Number(values[n.name], quantity=n.quantity).with_unit()}"
+            for n in row.numbers
+            if n.name in values
+        )
+    return f"Examples\n--------\n>>> {name}({arguments})\n{name}({shown})"
 
-    Examples
-    --------
-    >>> Constant(coefficient=8)
-    Constant(coefficient=8 W/(m2 K))
-    """
 
-    kind: Literal["constant"] = "constant"
-    coefficient: q.HeatTransferCoefficient
+_WAYS: Final = {"upward": "Heat flows up, or the surface is vertical", "downward": "Heat flows down"}
+
+
+def _class_of(row: LawRow) -> dict[str, type[Part]]:
+    """The class of a law, and that of its numbers where it has them by direction."""
+    fields: dict[str, Any] = {number.name: number.field for number in row.numbers}
+    classes: dict[str, type[Part]] = {}
+    if row.by_direction:
+        name = f"{row.class_name}Law"
+        number = row.numbers[0]
+        example = f">>> {name}({number.name}={number.example:g}).{number.name}\n{float(number.example)}"
+        text = f"{row.meaning.replace('each', 'one')}\n\nExamples\n--------\n{example}"
+        classes[name] = create_model(name, __base__=Part, __module__=__name__, __doc__=text, **fields)
+        fields = {way: (classes[name], Field(description=words)) for way, words in _WAYS.items()}
+    name = row.class_name
+    law = create_model(
+        name,
+        __base__=ConvectionLaw,
+        __module__=__name__,
+        __doc__=f"{row.meaning}\n\n{_example(row)}",
+        **{"kind": (Literal[row.kind], row.kind), **fields},
+    )
+    law.row = row
+    return classes | {name: law}
+
+
+CLASSES: Final[Mapping[str, type[Part]]] = {
+    name: law for row in ROWS.values() for name, law in _class_of(row).items()
+}
+"""Classes of all laws of the table by their names."""
+globals().update(CLASSES)
+
+if TYPE_CHECKING:
+
+    def __getattr__(name: str) -> type[ConvectionLaw]: ...
+
+
+#: Factor on a measurement.
+_FACTOR: Final = ROWS["alamdari_hammond"].number("factor").quantity
 
 
 class Measured(Part):
@@ -38,152 +129,19 @@ class Measured(Part):
 
     kind: Literal["measured"] = "measured"
     column: str = Field(description="Name of a measured column [W/(m2 K)], not below 0")
-    factor: q.ConvectionFactor = Number(1.0, source=Remark("the measurement without a correction"))
+    factor: Annotated[Number, _FACTOR] = Number(1.0, source=Remark("the measurement without a correction"))
 
 
-class LinearWind(Part):
-    """``constant + wind V``, with the wind speed V at the surface.
-
-    Examples
-    --------
-    >>> LinearWind(constant=11.4, wind=5.7)
-    LinearWind(constant=11.4 W/(m2 K), wind=5.7 W/(m2 K)/(m/s))
-    """
-
-    kind: Literal["linear_wind"] = "linear_wind"
-    constant: q.HeatTransferCoefficient
-    wind: q.HeatTransferCoefficientPerSpeed
-
-
-class AlamdariHammond(Part):
-    """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983).
-
-    Examples
-    --------
-    >>> AlamdariHammond(factor=1.1)
-    AlamdariHammond(factor=1.1)
-    """
-
-    kind: Literal["alamdari_hammond"] = "alamdari_hammond"
-    length: q.ConvectionLength | None = None
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-
-
-class PaperEq5(Part):
-    """Equation 5 of Guichard et al. 2016 as printed.
-
-    Examples
-    --------
-    >>> PaperEq5()
-    PaperEq5(factor=1)
-    """
-
-    kind: Literal["paper_eq5"] = "paper_eq5"
-    length: q.ConvectionLength | None = None
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-
-
-class Tarp(Part):
-    """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter.
-
-    Examples
-    --------
-    >>> Tarp(roughness="smooth").roughness
-    1.11
-    """
-
-    kind: Literal["tarp"] = "tarp"
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-    roughness: q.Roughness | None = None
-    perimeter: q.Perimeter | None = None
-
-
-class Mowitt(Part):
-    """MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors.
-
-    Examples
-    --------
-    >>> Mowitt(factor=0.9)
-    Mowitt(factor=0.9)
-    """
-
-    kind: Literal["mowitt"] = "mowitt"
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-
-
-class Doe2(Part):
-    """DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors.
-
-    Examples
-    --------
-    >>> Doe2(roughness="rough")
-    Doe2(factor=1, roughness=1.67)
-    """
-
-    kind: Literal["doe2"] = "doe2"
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-    roughness: q.Roughness | None = None
-
-
-class Iso15099(Part):
-    """Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003).
-
-    Examples
-    --------
-    >>> Iso15099()
-    Iso15099(factor=1)
-    """
-
-    kind: Literal["iso15099"] = "iso15099"
-    length: q.ConvectionLength | None = None
-    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
-
-
-class PowerLaw(Part):
-    """``a + b |dT|^n + c V^m`` for one direction of heat flow.
-
-    Examples
-    --------
-    >>> PowerLaw(b=1.5, n=0.33)
-    PowerLaw(a=0 W/(m2 K), b=1.5 W/(m2 K^(n+1)), n=0.33, c=0 W/(m2 K (m/s)^m), m=0.8)
-    """
-
-    a: q.PowerConstant = Number(0.0, source=Remark("not given: no constant part"))
-    b: q.PowerBuoyant = Number(0.0, source=Remark("not given: no buoyant part"))
-    n: q.PowerExponent = Number(1.0 / 3.0, source=Remark("turbulent free convection"))
-    c: q.PowerForced = Number(0.0, source=Remark("not given: no forced part"))
-    m: q.PowerWindExponent = Number(0.8, source=Remark("turbulent flow along a plate"))
-
-
-class Power(Part):
-    """A power law for each direction of heat flow.
-
-    Examples
-    --------
-    >>> Power(upward={"b": 1.5}, downward={"b": 0.6, "n": 0.25})
-    Power(upward=PowerLaw, downward=PowerLaw)
-    """
-
-    kind: Literal["power"] = "power"
-    upward: PowerLaw = Field(description="Heat flows up, or the surface is vertical")
-    downward: PowerLaw = Field(description="Heat flows down")
-
-
-Convection = Annotated[
-    Constant
-    | LinearWind
-    | AlamdariHammond
-    | PaperEq5
-    | Tarp
-    | Mowitt
-    | Doe2
-    | Iso15099
-    | Power
-    | Measured
-    | FormulaLaw,
-    Field(discriminator="kind"),
-    Shorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
-]
+if TYPE_CHECKING:
+    Convection = ConvectionLaw | Measured | FormulaLaw
+else:
+    _LAWS = [law for law in CLASSES.values() if issubclass(law, ConvectionLaw)]
+    _LAWS.sort(key=lambda law: law.row.kind != "constant")
+    Convection = Annotated[
+        functools.reduce(operator.or_, [*_LAWS, Measured, FormulaLaw]),
+        Field(discriminator="kind"),
+        Shorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
+    ]
 
 
 def measured_column(convection: Convection | None) -> str | None:
@@ -191,22 +149,20 @@ def measured_column(convection: Convection | None) -> str | None:
     return convection.column if isinstance(convection, Measured) else None
 
 
+def is_law(convection: Convection | None, kind: str) -> TypeGuard[ConvectionLaw]:
+    """Whether a coefficient is a published law of a kind."""
+    return isinstance(convection, ConvectionLaw) and convection.kind == kind
+
+
 def by_wind_direction(convection: Convection | None) -> bool:
     """Whether a coefficient depends on the direction of the wind."""
     if isinstance(convection, FormulaLaw):
         return convection.uses("windward")
-    return isinstance(convection, Tarp | Mowitt | Doe2)
+    return isinstance(convection, ConvectionLaw) and convection.row.wind_direction
 
 
 #: Description of the fields that hold a coefficient.
 CONVECTION = "Surface heat transfer coefficient: a number [W/(m2 K)], or a correlation"
 
 #: Sources of the correlations.
-SOURCES = {
-    "alamdari_hammond": "Alamdari & Hammond 1983, doi:10.1177/014362448300400304",
-    "paper_eq5": "Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed",
-    "tarp": "Walton 1983, Thermal Analysis Research Program Reference Manual, NBSIR 83-2655",
-    "mowitt": "Yazdanian & Klems 1994, ASHRAE Transactions 100(1)",
-    "doe2": "LBL 1994, DOE2.1E-053 source code; EnergyPlus Engineering Reference, outside convection",
-    "iso15099": "ISO 15099:2003, 8.3.2.2: convection indoors",
-}
+SOURCES: Final = {kind: row.source for kind, row in ROWS.items() if row.source is not None}

@@ -4,23 +4,40 @@
 //! below 5 m/s (Juerges' measurements on a vertical plate). Coefficients of this form include natural convection, and often
 //! long-wave radiation. The numbers are parameters.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference};
-use super::wind::{Forced, Wind};
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
+
+/// The rise of a coefficient with the wind.
+const SLOPE: LawParameter = LawParameter::new(
+    "wind",
+    "W/(m2 K)/(m/s)",
+    "Increase of the surface heat transfer coefficient with wind speed",
+    LawRange::Percent(50.0, "published slopes are 2 to 6"),
+    5.7,
+)
+.at_most(1e3)
+.of_wind();
 
 /// `constant + wind V`, V at the mast.
 #[derive(Debug, Clone)]
-pub(super) struct LinearWind<S> {
+pub(crate) struct LinearWind<S> {
     /// [W/(m2 K)].
     constant: S,
     /// [W/(m2 K) per m/s].
     wind: S,
 }
 
-impl<S: Real> LinearWind<S> {
-    pub(super) fn new(constant: S, wind: S, surface: &Placement<S>) -> Self {
-        Self { constant, wind: wind * surface.wind_factor }
+impl<S: Real> NamedLaw<S> for LinearWind<S> {
+    const ROW: LawRow = LawRow::new(
+        "linear in wind",
+        "``constant + wind V``, with the wind speed V at the surface.",
+        "wind speeds below 5 m/s",
+    )
+    .numbers(&[coefficient("constant", 11.4), SLOPE])
+    // McAdams W.H. (1954), Heat Transmission, 3rd ed.: rough surfaces.
+    .alternatives(&[Alternative { outdoors: true, numbers: &[("constant", 5.7), ("wind", 3.8)] }]);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        Self { constant: number.of("constant"), wind: number.of("wind") * surface.wind_factor }
     }
 }
 
@@ -45,7 +62,7 @@ impl<S> Correlation<S> for LinearWind<S> {
 }
 
 impl<S: Real> WindPart<S> for LinearWind<S> {
-    const DEPENDS_ON_WIND: bool = true;
+    const WIND: Option<WindTerms> = Some(WindTerms::SPEED);
     const LINEAR: bool = true;
 
     #[inline(always)]
@@ -66,7 +83,11 @@ mod tests {
     /// `McAdams` at 4 m/s: 5.7 + 3.8 4 = 20.9.
     #[test]
     fn by_hand() {
-        let law = surface(&Convection::LinearWind { constant: id(0), wind: id(1) }, &[5.7, 3.8], 0.0);
+        let law = surface(
+            &Convection::law("linear_wind", &[("constant", id(0)), ("wind", id(1))]),
+            &[5.7, 3.8],
+            0.0,
+        );
         assert_close(coefficient(&law, 5.0, 4.0, false), 20.9);
         assert_eq!(law.calm(), [5.7; 2]);
     }

@@ -7,22 +7,31 @@
 //!
 //! Range: that of `MoWiTT`, extended to rough surfaces and to any inclination.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference, cube_root};
-use super::wind::{Forced, Wind};
 use super::{mowitt, tarp};
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// `n + roughness (sqrt(n^2 + (wind V^b)^2) - n)`, n TARP's natural part, windward and leeward, V at the mast.
 #[derive(Debug, Clone)]
-pub(super) struct Doe2<S> {
+pub(crate) struct Doe2<S> {
     natural: [S; 2],
     roughness: S,
     wind: [S; 2],
 }
 
-impl<S: Real> Doe2<S> {
-    pub(super) fn new(factor: S, roughness: S, surface: &Placement<S>) -> Self {
+impl<S: Real> NamedLaw<S> for Doe2<S> {
+    const ROW: LawRow = LawRow::new(
+        "DOE-2",
+        "DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors.",
+        "surfaces of buildings in the wind",
+    )
+    .source("LBL 1994, DOE2.1E-053 source code; EnergyPlus Engineering Reference, outside convection")
+    .numbers(&[FACTOR, ROUGHNESS])
+    .sides(Sides::Outdoors)
+    .tilt(Tilt::Steady)
+    .alternatives(&[Alternative::OUTDOORS]);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        let (factor, roughness) = (number.of("factor"), number.of("roughness"));
         let wind = mowitt::wind_gains(surface.wind_factor);
         Self {
             natural: tarp::natural(factor, surface.upward),
@@ -66,7 +75,7 @@ impl<S> Correlation<S> for Doe2<S> {
 }
 
 impl<S: Real> WindPart<S> for Doe2<S> {
-    const DEPENDS_ON_WIND: bool = true;
+    const WIND: Option<WindTerms> = Some(WindTerms::MOWITT);
 
     #[inline(always)]
     fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
@@ -81,7 +90,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = Convection::Doe2 { factor: id(0), roughness: id(1) };
+        let law = Convection::law("doe2", &[("factor", id(0)), ("roughness", id(1))]);
         // Rough wall (1.67), 8 K, 4 m/s: natural 2.62, smooth (2.62^2 + 11.1957^2)^1/2 = 11.49815 and 8.75157
         let wall = surface(&law, &[1.0, 1.67], 0.0);
         assert_close(coefficient(&wall, 8.0, 4.0, true), 17.446_5);

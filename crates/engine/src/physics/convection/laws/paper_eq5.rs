@@ -5,22 +5,28 @@
 //! is kept under its own name, so that results of the paper can be compared. It makes no difference between heat that flows up
 //! and heat that flows down.
 
-use super::correlation::{Correlation, WindPart};
-use super::natural::{Coefficient, Difference, blend, sixth_power};
-use super::wind::Forced;
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`.
 #[derive(Debug, Clone)]
-pub(super) struct PaperEq5<S> {
+pub(crate) struct PaperEq5<S> {
     factor: S,
     laminar: S,
     turbulent: S,
 }
 
-impl<S: Real> PaperEq5<S> {
-    /// `length`: H [m].
-    pub(super) fn new(length: S, factor: S) -> Self {
+impl<S: Real> NamedLaw<S> for PaperEq5<S> {
+    const ROW: LawRow = LawRow::new(
+        "Alamdari and Hammond as printed in Guichard et al. 2016, eq. 5",
+        "Equation 5 of Guichard et al. 2016 as printed.",
+        "comparisons with the paper",
+    )
+    .source("Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed")
+    .numbers(&[LENGTH, FACTOR])
+    .tilt(Tilt::Cases);
+
+    fn new(number: &Numbers<'_, S>, _surface: &Placement<S>) -> Self {
+        let (length, factor) = (number.of("length"), number.of("factor"));
         let laminar = S::constant(sixth_power(1.51)) / sixth_power(length);
         Self { factor, laminar, turbulent: S::constant(sixth_power(1.33)) }
     }
@@ -58,7 +64,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = Convection::PaperEq5 { length: id(0), factor: id(1) };
+        let law = Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]);
         // 5 K, 0.28 m: the first term 1.51 5^.25 / 0.28 = 8.06419 is much larger than 1.33 5^(1/3) = 2.27427
         assert_close(coefficient(&surface(&law, &[0.28, 1.0], 1.0), 5.0, 0.0, false), 8.064_9);
     }

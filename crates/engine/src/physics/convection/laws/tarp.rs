@@ -17,10 +17,7 @@
 //! Range: turbulent natural convection at surfaces of building size; forced part from a flat plate in parallel flow (Sparrow, Ramsey
 //! & Mass 1979, J. Heat Transfer 101(2), 199-204).
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference, cube_root};
-use super::wind::{Forced, Wind};
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// Largest cosine of the tilt near the vertical [-]: sin 1 deg.
 const NEAR: f64 = 0.017_452_406_437_283_51;
@@ -53,16 +50,28 @@ const fn cubic(slope: f64, (gain, slope_there): Branch) -> [f64; 3] {
 
 /// `natural |d|^1/3` where heat flows up and where it flows down; forced part per root of the wind at the mast.
 #[derive(Debug, Clone)]
-pub(super) struct Tarp<S> {
+pub(crate) struct Tarp<S> {
     natural: [S; 2],
     forced: S,
 }
 
-impl<S: Real> Tarp<S> {
-    /// `rough`: roughness [-] and perimeter [m] of a surface outdoors.
-    pub(super) fn new(factor: S, rough: Option<[S; 2]>, surface: &Placement<S>) -> Self {
+impl<S: Real> NamedLaw<S> for Tarp<S> {
+    const ROW: LawRow = LawRow::new(
+        "TARP",
+        "TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter.",
+        "turbulent flow at surfaces of building size",
+    )
+    .source("Walton 1983, Thermal Analysis Research Program Reference Manual, NBSIR 83-2655")
+    .numbers(&[FACTOR, ROUGHNESS.outdoors(), PERIMETER.outdoors()])
+    .sides(Sides::Air)
+    .tilt(Tilt::Steady)
+    .alternatives(&[Alternative::OUTDOORS, Alternative::INDOORS]);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        let factor = number.of("factor");
+        let rough = number.optional("roughness").zip(number.optional("perimeter"));
         let forced = match rough {
-            Some([roughness, perimeter]) => {
+            Some((roughness, perimeter)) => {
                 roughness.scale(2.537) * (perimeter / surface.area * surface.wind_factor).sqrt()
             }
             None => S::zero(),
@@ -72,7 +81,7 @@ impl<S: Real> Tarp<S> {
 }
 
 /// Gains of `|d|^1/3` where heat flows up and where it flows down.
-pub(super) fn natural<S: Real>(factor: S, upward: S) -> [S; 2] {
+pub(crate) fn natural<S: Real>(factor: S, upward: S) -> [S; 2] {
     let tilt = upward.abs();
     let near = tilt.lt(S::constant(NEAR));
     let up = S::constant(9.482) / (S::constant(7.238) - tilt);
@@ -109,7 +118,7 @@ impl<S> Correlation<S> for Tarp<S> {
 }
 
 impl<S: Real> WindPart<S> for Tarp<S> {
-    const DEPENDS_ON_WIND: bool = true;
+    const WIND: Option<WindTerms> = Some(WindTerms::DIRECTION);
 
     #[inline(always)]
     fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
@@ -128,13 +137,13 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = Convection::Tarp { factor: id(0), roughness: None, perimeter: None };
+        let law = Convection::law("tarp", &[("factor", id(0))]);
         // 8 K: the cube root is 2.
         assert_close(coefficient(&surface(&law, &[1.0], 0.0), 8.0, 0.0, false), 2.62);
         assert_close(coefficient(&surface(&law, &[1.0], 1.0), 8.0, 0.0, false), 2.0 * 9.482 / 6.238);
         assert_close(coefficient(&surface(&law, &[1.0], 1.0), -8.0, 0.0, false), 2.0 * 1.81 / 2.382);
         // Rough (2.17) surface of 1 m2 with 4 m perimeter at 4 m/s: 2.537 2.17 (4 4)^1/2 = 22.0212
-        let law = Convection::Tarp { factor: id(0), roughness: Some(id(1)), perimeter: Some(id(2)) };
+        let law = Convection::law("tarp", &[("factor", id(0)), ("roughness", id(1)), ("perimeter", id(2))]);
         let rough = surface(&law, &[1.0, 2.17, 4.0], 0.0);
         assert_close(coefficient(&rough, 8.0, 4.0, true), 2.62 + 22.021_2);
         assert_close(coefficient(&rough, 8.0, 4.0, false), 2.62 + 11.010_6);

@@ -9,23 +9,30 @@
 //! Range: laminar to turbulent flow at the surfaces of rooms with still air. A surface counts as horizontal when its normal lies
 //! within 45 deg of the vertical.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference, HORIZONTAL, blend, fifth_root_where, sixth_power};
-use super::wind::Forced;
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`, but `factor stable |d|^1/5` where warm air lies on a horizontal surface.
 #[derive(Debug, Clone)]
-pub(super) struct AlamdariHammond<S> {
+pub(crate) struct AlamdariHammond<S> {
     factor: S,
     laminar: S,
     turbulent: S,
     stable: S,
 }
 
-impl<S: Real> AlamdariHammond<S> {
-    /// `length`: height of a vertical surface, 4 A/P of a horizontal one [m].
-    pub(super) fn new(length: S, factor: S, surface: &Placement<S>) -> Self {
+impl<S: Real> NamedLaw<S> for AlamdariHammond<S> {
+    const ROW: LawRow = LawRow::new(
+        "Alamdari and Hammond",
+        "Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983).",
+        "surfaces of rooms with still air",
+    )
+    .source("Alamdari & Hammond 1983, doi:10.1177/014362448300400304")
+    .numbers(&[LENGTH, FACTOR])
+    .tilt(Tilt::Cases)
+    .alternatives(&[Alternative::INDOORS]);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        let (length, factor) = (number.of("length"), number.of("factor"));
         let horizontal = S::constant(HORIZONTAL).lt(surface.upward.abs());
         let choose = |plate: f64, wall: f64| {
             S::select(horizontal, S::constant(sixth_power(plate)), S::constant(sixth_power(wall)))
@@ -76,7 +83,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = Convection::AlamdariHammond { length: id(0), factor: id(1) };
+        let law = Convection::law("alamdari_hammond", &[("length", id(0)), ("factor", id(1))]);
         // 5 K, 3 m: laminar 1.5 (5/3)^.25 = 1.70434, turbulent 1.23 5^(1/3) = 2.10327
         assert_close(coefficient(&surface(&law, &[3.0, 1.0], 0.0), 5.0, 0.0, false), 2.192_50);
         // Stable over a 3 m plate at 5 K: 0.6 (5/9)^0.2 = 0.53345

@@ -10,12 +10,9 @@
 //!
 //! Range: still room air. The properties are those of air at 20 degC and the site's density.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference, any_power, cube_root};
-use super::wind::Forced;
 use crate::number::elementary::sin_of_degrees;
-use crate::number::real::{Mask, Real};
 use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY};
+use crate::physics::convection::prelude::*;
 
 /// Thermal conductivity [W/(m K)] and viscosity [Pa s] of air at 20 degC (ISO 15099:2003, annex B).
 const INDOOR_AIR: [f64; 2] = [0.025_621, 1.820_5e-5];
@@ -26,7 +23,7 @@ const VERTICAL: f64 = 90.0 - 1e-6;
 
 /// Where heat flows up and where it flows down.
 #[derive(Debug, Clone)]
-pub(super) struct Iso15099<S>([Branch<S>; 2]);
+pub(crate) struct Iso15099<S>([Branch<S>; 2]);
 
 /// `laminar |d|^1/4`, or `level |d|^1/5` where that is not zero; above a difference `turbulent |d|^1/3 + offset`.
 #[derive(Debug, Clone, Copy)]
@@ -53,9 +50,18 @@ impl<S> Branch<S> {
     }
 }
 
-impl<S: Real> Iso15099<S> {
-    /// `length`: height of the glazing [m].
-    pub(super) fn new(length: S, factor: S, surface: &Placement<S>) -> Self {
+impl<S: Real> NamedLaw<S> for Iso15099<S> {
+    const ROW: LawRow = LawRow::new(
+        "ISO 15099",
+        "Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003).",
+        "still room air",
+    )
+    .source("ISO 15099:2003, 8.3.2.2: convection indoors")
+    .numbers(&[LENGTH, FACTOR])
+    .tilt(Tilt::Steady);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        let (length, factor) = (number.of("length"), number.of("factor"));
         let [conductivity, viscosity] = INDOOR_AIR;
         let degrees = surface.inclination;
         let sine = sin_of_degrees(degrees);
@@ -147,7 +153,7 @@ mod tests {
     /// In air of 1.2 kg/m3: Ra/(H^3 d) = 1.2^2 9.80665 1006 / (293.15 1.8205e-5 0.025621) = 1.03897e8 a K.
     #[test]
     fn by_hand() {
-        let law = Convection::Iso15099 { length: id(0), factor: id(1) };
+        let law = Convection::law("iso15099", &[("length", id(0)), ("factor", id(1))]);
         // Vertical, 2 m, 10 K: Nu = 0.56 (8.3117e9)^1/4.
         let vertical = surface(&law, &[2.0, 1.0], 0.0);
         assert_close(coefficient(&vertical, -10.0, 3.0, true), 2.166_10);

@@ -6,33 +6,40 @@
 //!
 //! Range: very smooth, vertical surfaces (window glass) of low-rise buildings.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference};
-use super::wind::{Forced, MOWITT_EXPONENTS, Wind};
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// `factor sqrt(0.84^2 |d|^2/3 + (wind V^b)^2)`, windward and leeward, V at the mast.
 #[derive(Debug, Clone)]
-pub(super) struct Mowitt<S> {
+pub(crate) struct Mowitt<S> {
     factor: S,
     wind: [S; 2],
 }
 
-impl<S: Real> Mowitt<S> {
-    pub(super) fn new(factor: S, surface: &Placement<S>) -> Self {
-        Self { factor, wind: wind_gains(surface.wind_factor) }
+impl<S: Real> NamedLaw<S> for Mowitt<S> {
+    const ROW: LawRow = LawRow::new(
+        "MoWiTT",
+        "MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors.",
+        "very smooth, vertical surfaces of low buildings",
+    )
+    .source("Yazdanian & Klems 1994, ASHRAE Transactions 100(1)")
+    .numbers(&[FACTOR])
+    .sides(Sides::Air)
+    .alternatives(&[Alternative::OUTDOORS]);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        Self { factor: number.of("factor"), wind: wind_gains(surface.wind_factor) }
     }
 }
 
 /// Gains of the powers of the speed at the mast, windward and leeward.
-pub(super) fn wind_gains<S: Real>(wind_factor: S) -> [S; 2] {
+pub(crate) fn wind_gains<S: Real>(wind_factor: S) -> [S; 2] {
     let [windward, leeward] = MOWITT_EXPONENTS.map(|exponent| wind_factor.powf(S::constant(exponent)));
     [windward.scale(3.26), leeward.scale(3.55)]
 }
 
 /// `a V^b` of the side that the wind makes of the surface.
 #[inline(always)]
-pub(super) fn forced<S: Real>([windward, leeward]: &[S; 2], wind: &Wind, is_windward: S::Mask) -> Forced<S> {
+pub(crate) fn forced<S: Real>([windward, leeward]: &[S; 2], wind: &Wind, is_windward: S::Mask) -> Forced<S> {
     [S::select(is_windward, windward.scale(wind.mowitt[0]), leeward.scale(wind.mowitt[1])); 2]
 }
 
@@ -64,7 +71,7 @@ impl<S> Correlation<S> for Mowitt<S> {
 }
 
 impl<S: Real> WindPart<S> for Mowitt<S> {
-    const DEPENDS_ON_WIND: bool = true;
+    const WIND: Option<WindTerms> = Some(WindTerms::MOWITT);
 
     #[inline(always)]
     fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
@@ -79,7 +86,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = surface(&Convection::Mowitt { factor: id(0) }, &[1.0], 0.0);
+        let law = surface(&Convection::law("mowitt", &[("factor", id(0))]), &[1.0], 0.0);
         // 8 K: 0.84 2 = 1.68; 4 m/s: 3.26 4^0.89 = 11.1957 and 3.55 4^0.617 = 8.3502.
         let by_hand = |forced: f64| (1.68 * 1.68 + forced * forced).sqrt();
         assert_close(coefficient(&law, 8.0, 4.0, true), by_hand(11.195_7));

@@ -1,20 +1,21 @@
 //! A constant surface heat transfer coefficient, also one that includes long-wave radiation.
 
-use super::correlation::{Correlation, WindPart};
-use super::natural::{Coefficient, Difference};
-use super::wind::Forced;
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// One number.
 #[derive(Debug, Clone)]
-pub(super) struct Constant<S> {
+pub(crate) struct Constant<S> {
     /// [W/(m2 K)].
-    pub(super) coefficient: S,
+    pub(crate) coefficient: S,
 }
 
-impl<S> Constant<S> {
-    pub(super) fn new(coefficient: S) -> Self {
-        Self { coefficient }
+impl<S: Real> NamedLaw<S> for Constant<S> {
+    const ROW: LawRow =
+        LawRow::new("constant", "A constant surface heat transfer coefficient.", "where it was found")
+            .numbers(&[coefficient("coefficient", 8.0)]);
+
+    fn new(number: &Numbers<'_, S>, _surface: &Placement<S>) -> Self {
+        Self { coefficient: number.of("coefficient") }
     }
 }
 
@@ -40,6 +41,10 @@ impl<S> Correlation<S> for Constant<S> {
 
 impl<S: Real> WindPart<S> for Constant<S> {
     const LINEAR: bool = true;
+
+    fn fixed(&self) -> Option<S> {
+        Some(self.coefficient)
+    }
 }
 
 #[cfg(test)]
@@ -49,7 +54,7 @@ mod tests {
 
     #[test]
     fn one_number() {
-        let law = surface(&Convection::Constant { coefficient: id(0) }, &[7.7], 1.0);
+        let law = surface(&Convection::law("constant", &[("coefficient", id(0))]), &[7.7], 1.0);
         assert_close(coefficient(&law, 5.0, 3.0, true), 7.7);
         assert_eq!(law.constant(), Some(7.7));
         assert!(law.straight() && !law.windy());

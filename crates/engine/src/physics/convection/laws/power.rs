@@ -3,19 +3,61 @@
 //!
 //! The form of many published correlations; all numbers are parameters, and their source is given with them in the description.
 
-use super::correlation::{Correlation, Placement, WindPart};
-use super::natural::{Coefficient, Difference, any_power};
-use super::wind::{Forced, Wind};
-use crate::input::description::PowerLaw;
-use crate::input::values::Values;
-use crate::number::real::Real;
+use crate::physics::convection::prelude::*;
 
 /// A surface counts as vertical when the upward component of its normal is below this.
 const VERTICAL: f64 = 1e-6;
 
+const A: LawParameter = LawParameter::new(
+    "a",
+    "W/(m2 K)",
+    "Constant part a of a + b abs(dT)^n + c V^m",
+    LawRange::Span(0.0, 5.0, "still air between plates"),
+    1.0,
+)
+.default(Default::Value(0.0, "not given: no constant part"));
+const B: LawParameter = LawParameter::new(
+    "b",
+    "W/(m2 K^(n+1))",
+    "Coefficient b of a + b abs(dT)^n + c V^m",
+    LawRange::Span(0.0, 3.0, "stable air to an upward plume; published values are 0.5 to 2.3"),
+    1.5,
+)
+.default(Default::Value(0.0, "not given: no buoyant part"));
+const N: LawParameter = LawParameter::new(
+    "n",
+    "-",
+    "Exponent n of a + b abs(dT)^n + c V^m",
+    LawRange::Span(0.2, 0.4, "stable layers 1/5, laminar 1/4, turbulent 1/3"),
+    0.33,
+)
+.at_most(2.0)
+.default(Default::Value(1.0 / 3.0, "turbulent free convection"))
+.of("b");
+const C: LawParameter = LawParameter::new(
+    "c",
+    "W/(m2 K (m/s)^m)",
+    "Coefficient c of a + b abs(dT)^n + c V^m",
+    LawRange::Span(0.0, 6.0, "sheltered to exposed"),
+    2.0,
+)
+.default(Default::Value(0.0, "not given: no forced part"))
+.of_wind();
+const M: LawParameter = LawParameter::new(
+    "m",
+    "-",
+    "Exponent m of a + b abs(dT)^n + c V^m",
+    LawRange::Span(0.5, 1.0, "laminar 1/2, turbulent 0.8, linear fits 1"),
+    0.9,
+)
+.at_most(2.0)
+.default(Default::Value(0.8, "turbulent flow along a plate"))
+.of_wind()
+.of("c");
+
 /// Where heat flows up (or the surface is vertical) and where it flows down.
 #[derive(Debug, Clone)]
-pub(super) struct Power<S>([Branch<S>; 2]);
+pub(crate) struct Power<S>([Branch<S>; 2]);
 
 /// `constant + gain |d|^exponent + wind V^wind_exponent`, V at the mast.
 #[derive(Debug, Clone, Copy)]
@@ -42,9 +84,9 @@ impl<S> Branch<S> {
 }
 
 impl<S: Real> Branch<S> {
-    fn new(values: &Values<'_, S>, law: &PowerLaw, wind_factor: S) -> Self {
+    fn new(number: &Numbers<'_, S>, direction: &str, wind_factor: S) -> Self {
         let [constant, gain, exponent, wind, wind_exponent] =
-            [law.a, law.b, law.n, law.c, law.m].map(|id| values.get(id));
+            ["a", "b", "n", "c", "m"].map(|name| number.of(&format!("{direction}.{name}")));
         Self { constant, gain, exponent, wind: wind * wind_factor.powf(wind_exponent), wind_exponent }
     }
 
@@ -55,10 +97,17 @@ impl<S: Real> Branch<S> {
     }
 }
 
-impl<S: Real> Power<S> {
-    /// `laws`: where heat flows up, and where it flows down.
-    pub(super) fn new(values: &Values<'_, S>, laws: [&PowerLaw; 2], surface: &Placement<S>) -> Self {
-        Self(laws.map(|law| Branch::new(values, law, surface.wind_factor)))
+impl<S: Real> NamedLaw<S> for Power<S> {
+    const ROW: LawRow = LawRow::new(
+        "power law by direction",
+        "``a + b |dT|^n + c V^m`` for each direction of heat flow.",
+        "where it was found",
+    )
+    .numbers_by_direction(&[A, B, N, C, M])
+    .tilt(Tilt::Cases);
+
+    fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self {
+        Self(["upward", "downward"].map(|direction| Branch::new(number, direction, surface.wind_factor)))
     }
 }
 
@@ -90,7 +139,7 @@ impl<S> Correlation<S> for Power<S> {
 }
 
 impl<S: Real> WindPart<S> for Power<S> {
-    const DEPENDS_ON_WIND: bool = true;
+    const WIND: Option<WindTerms> = Some(WindTerms::LOGARITHM);
 
     #[inline(always)]
     fn forced(&self, wind: &Wind, _windward: S::Mask) -> Forced<S> {
@@ -106,16 +155,11 @@ impl<S: Real> WindPart<S> for Power<S> {
 
 #[cfg(test)]
 mod tests {
-    use crate::input::description::{Convection, PowerLaw};
-    use crate::physics::convection::testing::{assert_close, coefficient, id, surface};
+    use crate::physics::convection::testing::{assert_close, coefficient, power, surface};
 
     #[test]
     fn by_hand() {
-        let law = |first| {
-            let [a, b, n, c, m] = core::array::from_fn(|k| id(first + u32::try_from(k).unwrap()));
-            PowerLaw { a, b, n, c, m }
-        };
-        let law = Convection::Power { upward: law(0), downward: law(5) };
+        let law = power([0, 5]);
         let numbers = [1.0, 2.0, 0.25, 0.5, 1.0, 0.3, 0.0, 1.0, 0.0, 1.0];
         let plate = surface(&law, &numbers, 1.0);
         // Up, 16 K and 3 m/s: 1 + 2 16^1/4 + 0.5 3 = 6.5; down: 0.3.
