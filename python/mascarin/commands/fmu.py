@@ -12,6 +12,7 @@ from mascarin._io.locks import writing
 from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     CheckSun,
+    Shift,
     Outside,
     Settings,
     Step,
@@ -47,6 +48,7 @@ def fmu(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     fmi: Literal["3.0", "2.0"] = "3.0",
 ) -> int:
     """Write a building as a unit for co-simulation (FMU).
@@ -110,7 +112,7 @@ def fmu(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
-            check_sun=check_sun,
+            check_sun=check_sun, shift=shift,
         )
         simulation = Simulation(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,

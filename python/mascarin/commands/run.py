@@ -15,6 +15,7 @@ from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
     CheckSun,
+    Shift,
     Columns,
     MeasuredTable,
     Outside,
@@ -66,6 +67,7 @@ def run(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -114,7 +116,7 @@ def run(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
-            check_sun=check_sun,
+            check_sun=check_sun, shift=shift,
         )
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, CheckSun, read_weather
+from mascarin.commands.inputs import AsJson, CheckSun, Shift, read_weather
 from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError
 
@@ -30,6 +30,7 @@ def weather(
     heating_base: float = 18.0,
     cooling_base: float = 24.0,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     as_json: AsJson = False,
 ) -> None:
     """Show and check a weather file.
@@ -64,7 +65,7 @@ def weather(
     from mascarin.weather import MonthlyChanges, morphed, overview, write_epw
 
     changes = None if morph is None else MonthlyChanges.read(morph)
-    climate = _checked(file, check_sun)
+    climate = _checked(file, check_sun, shift)
     if changes is not None:
         climate = morphed(climate, changes)
     found = overview(climate, heating_base=heating_base, cooling_base=cooling_base)
@@ -82,7 +83,7 @@ def weather(
         _show(climate, found, result)
 
 
-def _checked(file: Path, check_sun: bool) -> Climate:
+def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
     """The climate, after a check that its radiation follows the sun."""
     from mascarin.errors import did_you_mean
     from mascarin.weather import SHIPPED
@@ -94,7 +95,7 @@ def _checked(file: Path, check_sun: bool) -> Climate:
         raise InputError(
             f"{file}: no such file; give the path from the folder you work in, or shipped:NAME. {hint}"
         )
-    climate = read_weather(file, check_sun=check_sun)
+    climate = read_weather(file, check_sun=check_sun, shift=shift)
     if climate.site is None:
         return climate
     completed = climate.completed()

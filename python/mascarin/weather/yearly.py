@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import date
 from typing import cast
 
 import numpy as np
 
+from mascarin._io.durations import shift_of
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid
@@ -74,6 +76,29 @@ def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere
         start - (offset.total_seconds() if offset else 0.0), 3600.0 / read.records, count, read.zone, periodic
     )
     return _of_year(read, grid, values, lines, notes, elsewhere)
+
+
+def shifted(record: WeatherRecord, shift: str | float | None) -> WeatherRecord:
+    """A record of a year all of whose times are later.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        As read.
+    shift : str or float or None
+        Added to the times; None: nothing. [s]
+
+    Raises
+    ------
+    InputError
+        No time can be read.
+    """
+    seconds = 0.0 if shift is None else shift_of(shift, f"{record.file}: shift")
+    if not seconds:
+        return record
+    note = f"{record.file}: {seconds / 60.0:+g} min were added to all times, as stated (shift)."
+    grid = replace(record.grid, start=record.grid.start + seconds)
+    return replace(record, grid=grid, provenance=(*record.provenance, note))
 
 
 def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -> dict[str, Array]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from mascarin._io import memory
 from mascarin._io.arguments import require_type
-from mascarin._io.durations import seconds_of
+from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 Stamps = Literal["start", "end"]
 """Which end of its interval a stamp marks."""
 
+#: Stamps of PVGIS (Joint Research Centre, user manual of PVGIS 5.3): the time of the satellite's image.
+_PVGIS: Final = re.compile(r"\d{8}:\d{4}")
 #: Jitter of a clock that is allowed, as a part of the step.
 _JITTER: Final = 0.1
 
@@ -76,6 +78,8 @@ class Table:
         Whether the user states it.
     decimal_evident : bool
         Whether entries of the file can have this one alone.
+    of_pvgis : bool
+        Whether the stamps have the form of PVGIS, whose irradiances are values at the stamp (such as 00:10).
     """
 
     frame: pd.DataFrame
@@ -90,6 +94,7 @@ class Table:
     decimal: str = "."
     decimal_stated: bool = False
     decimal_evident: bool = False
+    of_pvgis: bool = False
 
     @property
     def names(self) -> list[str]:
@@ -162,6 +167,7 @@ def read_table(
     step: str | float | None = None,
     missing: Sequence[str | float] = (),
     tolerance: str | float | None = None,
+    shift: str | float | None = None,
 ) -> Table:
     """Read a table and put it on a regular grid of times.
 
@@ -190,11 +196,13 @@ def read_table(
     tolerance : str or float, optional
         Largest deviation of a stamp from the regular grid, to which it is moved, such as `30s` or seconds
         [s]. Default: a tenth of the step.
+    shift : str or float, optional
+        Added to every stamp, such as `-30min` where the clock of the logger was half an hour fast. [s]
 
     Returns
     -------
     Table
-        The table; stamps unchanged.
+        The table; stamps unchanged but for `shift`.
 
     Raises
     ------
@@ -236,9 +244,16 @@ def read_table(
     zone, clock, of_zone = _clock(used, text, zone, where)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
     said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
+    if shift is not None and (moved := shift_of(shift, f"{where}: shift")):
+        frame.index = stamps_of(epoch_seconds(pd.DatetimeIndex(frame.index)) + moved, zone)
+        said = (*said, f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift).")
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
+    of_pvgis = bool(_PVGIS.fullmatch(str(text.iloc[0])))
+    if of_pvgis:
+        note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
+        table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     return table if read is None else replace(table, **read.said_of_itself)
 
 
