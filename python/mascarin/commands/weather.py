@@ -117,11 +117,13 @@ def _list(as_json: bool) -> None:
 def _result(climate: Climate, found: Overview) -> dict[str, Any]:
     from mascarin.comfort.outdoors import hours_in_givoni_zones
     from mascarin.weather import summary
+    from mascarin.weather.missing_infrared import sky_of_runs
 
     zones = hours_in_givoni_zones(climate) if "dew_point" in climate.data else {}
     months = {str(month): row.to_dict() for month, row in found.months.iterrows()}
     return {
         **summary(climate),
+        "sky": sky_of_runs(climate.record),
         "quality": [
             {"column": one.channel, "kind": one.kind, "start": str(one.start), "end": str(one.end),
              "count": one.count, "detail": one.detail}
@@ -142,7 +144,9 @@ def _show(climate: Climate, found: Overview, result: dict[str, Any]) -> None:
             f"{place.name}: {place.latitude:g} deg north, {place.longitude:g} deg east, {place.altitude:g} m"
         )
     kind = "a typical year" if climate.grid.periodic else climate.grid.span()
-    print(f"{kind}, every {climate.grid.interval:g} s, {climate.timezone}\n")
+    print(f"{kind}, every {climate.grid.interval:g} s, {climate.timezone}")
+    print(f"sky of a run: {result['sky']}")
+    print(*(f"warning: {note}" for note in _warnings(climate)), "", sep="\n")
     _show_quality(result["quality"])
     table = found.months.round(1)
     header = ["month", *(name.replace(", horizontal", "").replace(" [", "\n[") for name in table.columns)]
@@ -163,6 +167,13 @@ def _show(climate: Climate, found: Overview, result: dict[str, Any]) -> None:
         zones = result["outdoor_hours_in_givoni_zones"]
         keys = list(next(iter(zones.values())))
         print_table(("air speed", *keys), [(speed, *hours.values()) for speed, hours in zones.items()])
+
+
+def _warnings(climate: Climate) -> list[str]:
+    """Warnings of the file and of its clock."""
+    used = climate.used.record
+    clock = [note.replace(": warning: ", ": ", 1) for note in used.provenance if ": warning: " in note]
+    return list(dict.fromkeys([*clock, *climate.record.warnings]))
 
 
 _SHORT = {

@@ -27,8 +27,9 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     Returns
     -------
     Building
-        With ``site.sky: measured``, if the weather has infrared radiation in every interval and the building
-        gives neither ``site.sky`` nor ``site.cloud``; else the same building.
+        With ``site.sky: measured``, if the weather has infrared radiation and the building gives neither
+        ``site.sky`` nor ``site.cloud``; else the same building. Intervals without a value have that of the
+        default model (`mascarin.weather.missing_infrared`).
 
     Examples
     --------
@@ -41,6 +42,6 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     if given or any(path.startswith(_MODEL) for path in used):
         return building
     values = climate.data.get("infrared")
-    if values is None or not bool(values.notna().all()):
+    if values is None or not bool(values.notna().any()):
         return building
     return building.replace({"site.sky": "measured"})

@@ -55,6 +55,9 @@ ENERGIES: Final[Mapping[str, float]] = {
 }
 """Energies per interval, in J/m2; divided by the interval they become W/m2."""
 
+HEATS: Final[Mapping[str, float]] = {"Wh": 3600.0, "kWh": 3.6e6, "J": 1.0, "kJ": 1e3}
+"""Heat or electricity of an interval, in J; divided by the interval it becomes W."""
+
 _FRACTIONS: Final[Mapping[tuple[str, str], float]] = {("%", "tenths"): 0.1, ("1", "tenths"): 10.0}
 """Further conversions between a unit and the one that is wanted."""
 
@@ -221,7 +224,7 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     Parameters
     ----------
     unit : str
-        Key of `FACTORS` or `ENERGIES`.
+        Key of `FACTORS`, `ENERGIES` or `HEATS`.
     target : str
         Wanted unit; empty: that of `FACTORS`.
     interval : float
@@ -239,6 +242,8 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     """
     if unit in ENERGIES and target in ("W/m2", ""):
         return ENERGIES[unit] / interval, 0.0
+    if unit in HEATS and target in ("W", ""):
+        return HEATS[unit] / interval, 0.0
     if (unit, target) in _FRACTIONS:
         return _FRACTIONS[unit, target], 0.0
     if unit in FACTORS and target in (FACTORS[unit][0], ""):

@@ -25,6 +25,7 @@ from mascarin.weather.completion import complete
 from mascarin.weather.forcing import forcing, require_period
 from mascarin.weather.measured import Columns, record_of_table
 from mascarin.weather.measurements import Measurements
+from mascarin.weather.missing_infrared import with_whole_infrared
 from mascarin.weather.place_check import require_place
 from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
 from mascarin.weather.readers import read_epw, read_tmy3
@@ -449,7 +450,8 @@ class Climate(RecordView[WeatherRecord]):
         key = (float(place.latitude), float(place.longitude))
         if key not in self._completed:
             said = check_clock(self.record, *key) if self.record.check_sun else ()
-            complete_record = with_findings(complete(self.record, *key), self.record, *key)
+            filled_record = with_whole_infrared(complete(self.record, *key))
+            complete_record = with_findings(filled_record, self.record, *key)
             made = Climate(with_notes(complete_record, said))
             made._completed[key] = self._completed[key] = made
         return self._completed[key]

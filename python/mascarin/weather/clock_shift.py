@@ -41,6 +41,12 @@ _LOW: Final = 0.08
 """Sine of the elevation below which hours are not compared with a form. [-]"""
 _CLEAR_PART: Final = 0.6
 """Part of the hours of a day with the form of a clear sky from which a day is a clear one. [-]"""
+_CLEAN: Final = 0.03
+"""Decay of a clear sky that is cleaner than most. [-]"""
+_LOW_SUN: Final = 0.35
+"""Sine of 20 deg."""
+_TWILIGHT: Final = 6.0
+"""Light of a clear sky with the sun at the horizon, means of half an hour. [W/m2]"""
 _SAMPLES: Final = 200
 _FLOOR: Final = 100.0
 """Uncertainty that remains with any number of days: tilt and cosine error of instruments. [s]"""
@@ -68,6 +74,10 @@ class ClockShift:
         Days that were used.
     split : bool
         Whether the direct irradiance was calculated from the global one: its balance closes by construction.
+    outside : float
+        Part of the radiation that is more than a clear sky gives at the stated time, on the side of the day to
+        which the record is shifted. Haze and fog that change over a day look like a small shift, but they never
+        make the low sun brighter. [-]
     """
 
     late: float
@@ -75,6 +85,7 @@ class ClockShift:
     by: Literal["balance", "symmetry"]
     days: int
     split: bool = False
+    outside: float = 1.0
 
     @property
     def minutes(self) -> str:
@@ -270,4 +281,18 @@ def _by_symmetry(days: _Days) -> ClockShift | None:
     if not clear.any():
         return None
     late, uncertainty = _with_uncertainty(scores[clear], _FLOOR)
-    return ClockShift(late, uncertainty, "symmetry", int(clear.sum()))
+    return ClockShift(late, uncertainty, "symmetry", int(clear.sum()), outside=_outside(days, late))
+
+
+def _outside(days: _Days, late: float) -> float:
+    """Part of the radiation that is more than a clear sky gives, in the morning or the evening."""
+    total = np.nan_to_num(days.values["global_horizontal"])
+    sine = days.means(days.sines, 0)
+    clear = days.means(_CLEAR * days.sines * np.exp(-_CLEAN / np.maximum(days.sines, 1e-3)), 0)
+    high = sine > 0.7 * sine.max()
+    gain = max(1.0, float(np.quantile(total[high] / clear[high], 0.9)))
+    noon = np.argmax(sine, axis=1)[:, None]
+    place = np.arange(days.rows)
+    side = place > noon if late > 0.0 else place < noon
+    low = side & (sine < _LOW_SUN)
+    return float(np.maximum(total - gain * clear - _TWILIGHT, 0.0)[low].sum() / max(total.sum(), 1e-9))

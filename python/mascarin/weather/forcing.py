@@ -155,9 +155,9 @@ def _day_of_year(stage: Array, grid: Grid) -> Array:
 
 def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
     if name in record.columns:
-        if name != "infrared" or not record.of_year:
+        if name != "infrared":
             return column_values(record, name, steps)
-        # Hours without a value are no fault where the building has a model of the sky.
+        # Rows without a value are no fault where the building has a model of the sky.
         with contextlib.suppress(InputError):
             return column_values(record, name, steps)
     if name in ("infrared", "pressure"):

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 _LARGEST_SHIFT: Final = 600.0
 """A clock that is wrong by more than this and three times the uncertainty is refused. [s]"""
+_OUTSIDE: Final = 5e-4
+"""Part of the radiation above a clear sky from which clouds do not explain a shift. [-]"""
 _NAMED_SHIFT: Final = 180.0
 """One that is wrong by more than this and three times the uncertainty is named. [s]"""
 _SHORTEST: Final = 2.0 * 86400.0
@@ -85,8 +87,7 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     key = ("clock", digest, kind, given, record.file, grid.start, grid.interval, zone_name(grid.zone), latitude, longitude)
 
     def passed() -> Cached:
-        _refuse(record, values, latitude, longitude)
-        return Cached({"said": _shift_findings(record, latitude, longitude)})
+        return Cached({"said": _refuse(record, values, latitude, longitude)})
 
     return tuple(cached(key, [sys.modules[__name__], clock_shift, sun_module], passed).notes["said"])
 
@@ -96,6 +97,8 @@ def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) ->
     shifts = {shift.by: shift for shift in shifts_of(record, latitude, longitude)}
     balance, symmetry = shifts.get("balance"), shifts.get("symmetry")
     said = []
+    if balance is not None and not balance.split and not balance.exceeds(_NAMED_SHIFT):
+        symmetry = None  # instruments agree with the sun: what is not symmetrical are clouds
     if balance is not None and _proves_nothing(balance, symmetry, record.grid.interval):
         if abs(balance.late) > max(_LARGEST_SHIFT, 3.0 * balance.uncertainty):
             said.append(
@@ -108,7 +111,7 @@ def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) ->
     for shift in (balance, symmetry):
         if shift is None:
             continue
-        if shift.exceeds(_LARGEST_SHIFT):
+        if shift.exceeds(_LARGEST_SHIFT) and shift.outside > _OUTSIDE:
             raise InputError(_shift_text(record, shift, latitude, longitude))
         if shift.exceeds(_NAMED_SHIFT) or abs(shift.late) > _LARGEST_SHIFT:
             said.append(f"{record.file}: warning: {_shift_sentence(shift)}; the clock is used as stated.")
@@ -160,8 +163,8 @@ def _shift_text(record: WeatherRecord, shift: ClockShift, latitude: float, longi
     )
 
 
-def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> None:
-    """Refuse radiation [W/m2] that does not follow the sun."""
+def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> list[str]:
+    """Refuse radiation [W/m2] that does not follow the sun; warnings about smaller shifts."""
     grid = record.grid
     shift = 0.0 if record.kinds[_name(record)] == "instant" else 0.5
     middle = grid.start + grid.interval * (np.arange(grid.count) + shift)
@@ -171,9 +174,10 @@ def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: fl
     if night > 0.0:
         _refuse_jump(record, middle, turns)
     late = float(np.degrees(np.angle(turns.sum())) / 15.0)
+    said = _shift_findings(record, latitude, longitude)
     # Clouds and hills move the center as far as they like: what lies at night alone shows a wrong clock.
     if night <= _NIGHT_MOST and (night <= _NIGHT_TRACE or abs(late) <= _NOON_OFF):
-        return
+        return said
     when = "after" if late > 0.0 else "before"
     raise InputError(
         f"{record.file}: the radiation does not follow the sun at latitude {latitude:g}, longitude "

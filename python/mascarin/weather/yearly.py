@@ -110,13 +110,6 @@ def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -
             f"{where}: {' and '.join(sorted(empty))} have no value in any hour: derived from the others."
         )
         values = {name: column for name, column in values.items() if name not in empty}
-    infrared = values.get("infrared", np.zeros(0))
-    gaps = int(np.isnan(infrared).sum())
-    if 0 < gaps < len(infrared):
-        notes.append(
-            f"{where}: warning: infrared has no value in {gaps} of {len(infrared)} rows: a run takes the "
-            "model of the sky (site.sky) in all hours, not the infrared of the file. Repair it to use it."
-        )
     return values
 
 

@@ -368,6 +368,9 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
 _ZONE: Final = re.compile(r"\b(?:GMT|UTC)\s*(?P<sign>[-+−])\s*(?P<hours>\d{1,2})(?::?(?P<minutes>\d{2}))?\b")
 
 
+_PLAIN_ZONE: Final = re.compile(r"(?:^|[\s,(\[_])(?:GMT|UTC)\s*[)\]]?\s*$", re.IGNORECASE)
+
+
 def offset_in_name(name: str) -> float | None:
     """Offset of the clock that the name of a column states.
 
@@ -383,12 +386,12 @@ def offset_in_name(name: str) -> float | None:
 
     Examples
     --------
-    >>> offset_in_name("Date Time, GMT-05:00"), offset_in_name("Date Time")
-    (-5.0, None)
+    >>> offset_in_name("Date Time, GMT-05:00"), offset_in_name("time(UTC)"), offset_in_name("Date Time")
+    (-5.0, 0.0, None)
     """
     found = _ZONE.search(name)
     if found is None:
-        return None
+        return 0.0 if _PLAIN_ZONE.search(name) else None
     hours = int(found["hours"]) + int(found["minutes"] or 0) / 60.0
     if hours > 14.0:
         return None
@@ -407,7 +410,7 @@ def require_zone_has(zone: tzinfo, hours: float, years: tuple[int, int], name: s
     years : (int, int)
         First and last year of the record.
     name : str
-        Name of the column that states the offset.
+        Where the offset is stated, in words.
     where : str
         File, for errors.
 
@@ -423,7 +426,7 @@ def require_zone_has(zone: tzinfo, hours: float, years: tuple[int, int], name: s
         sign = "+" if hours >= 0.0 else "-"
         stated = f"UTC{sign}{int(abs(hours))}" + (f":{round(abs(hours) % 1 * 60):02d}" if hours % 1 else "")
         raise InputError(
-            f"{where}: found the timezone {zone_name(zone)}, but the name of the time column, {name!r}, says "
+            f"{where}: found the timezone {zone_name(zone)}, but {name} says "
             f"{stated}, which that zone never has; expected one of them. Write timezone: {stated}, or a zone "
             "of the place with that offset; correct the name in the file where it is wrong."
         )

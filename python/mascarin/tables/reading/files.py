@@ -19,6 +19,7 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.layout import Layout, decoded, find_layout
 from mascarin.tables.reading.numbers import suspicious_decimals
+from mascarin.tables.reading.preamble import clock_of_preamble, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 
 if TYPE_CHECKING:
@@ -74,6 +75,10 @@ class Read:
         Whether the user states it.
     decimal_evident : bool
         Whether entries of the file can have this one alone.
+    preamble_units : mapping of str to (str, int)
+        Units that lines above the names state, and the number of the line.
+    clock : (str, int)
+        Clock that they state, and the number of the line.
     """
 
     frame: pd.DataFrame
@@ -84,11 +89,13 @@ class Read:
     decimal: str = "."
     decimal_stated: bool = False
     decimal_evident: bool = False
+    preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    clock: tuple[str, int] = ("", 0)
 
     @property
     def said_of_itself(self) -> dict[str, Any]:
         """What the file says of its units and marks, for `Table`."""
-        names = ("units", "units_line", "decimal", "decimal_stated", "decimal_evident")
+        names = ("units", "units_line", "decimal", "decimal_stated", "decimal_evident", "preamble_units")
         return {name: getattr(self, name) for name in names}
 
 
@@ -142,6 +149,7 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     if repeated:
         notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip
+    preamble = lines[: layout.header]
     header = lines[layout.header] if layout.header < len(lines) else ""
     header = layout.separator.join(layout.names) or header
     data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
@@ -154,9 +162,12 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     _refuse_cut(last, layout, len(frame.columns), path.name, count)
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
     stated = decimal is not None
+    said_units = {name: (text, 1 + k) for name, (text, k) in units_of_preamble(preamble, list(frame.columns)).items()}
+    words, line = clock_of_preamble(preamble)
     return Read(
-        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated, layout.evident
-    )
+        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated, layout.evident,
+        said_units, (words, line + 1),
+    )  # fmt: skip
 
 
 def _rows(lines: Sequence[str], layout: Layout) -> tuple[Lines, list[int]]:

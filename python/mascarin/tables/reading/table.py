@@ -18,7 +18,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
 from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
-from mascarin.tables.reading.numbers import parse_numbers, points_as_degrees
+from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
     has_words,
     rows_with_values,
@@ -80,6 +80,8 @@ class Table:
         Whether entries of the file can have this one alone.
     of_pvgis : bool
         Whether the stamps have the form of PVGIS, whose irradiances are values at the stamp (such as 00:10).
+    preamble_units : mapping of str to (str, int)
+        Units that lines above the names state, and their lines.
     """
 
     frame: pd.DataFrame
@@ -95,6 +97,7 @@ class Table:
     decimal_stated: bool = False
     decimal_evident: bool = False
     of_pvgis: bool = False
+    preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -129,7 +132,23 @@ class Table:
             )
         if row is not None:
             return StatedUnit(row, text, f"the row of units (line {self.units_line})")
-        return None if name is None else StatedUnit(*name, "the name of the column")
+        if name is not None:
+            return StatedUnit(*name, "the name of the column")
+        if column in self.preamble_units:
+            words, line = self.preamble_units[column]
+            return StatedUnit(str(parse_unit(words)), words, f"line {line} above the names")
+        return None
+
+    def empty_words(self, column: str) -> dict[str, int]:
+        """How often each word for no value stands in a column; empty entries are not counted."""
+        import pandas as pd
+
+        entries = self.frame[column]
+        if pd.api.types.is_numeric_dtype(entries.dtype):
+            return {}
+        words = entries.dropna().astype(str).str.strip()
+        counts = words[words.str.lower().isin(EMPTY) & (words != "")].value_counts()
+        return {str(word): int(count) for word, count in counts.items()}
 
     def numbers(self, column: str, what: str, *, compass: bool = False) -> Array:
         """A column as numbers, NaN where empty; with `compass`, points such as NNE are directions. [deg]
@@ -241,7 +260,8 @@ def read_table(
     if missing:
         frame = without_entries(frame, missing)
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
-    zone, clock, of_zone = _clock(used, text, zone, where)
+    stated = read.clock if read is not None else ("", 0)
+    zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
     said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
     if shift is not None and (moved := shift_of(shift, f"{where}: shift")):
@@ -279,21 +299,26 @@ def _is_time(index: pd.Index[Any]) -> bool:
 
 
 def _clock(
-    names: Sequence[Hashable], text: pd.Series[Any], zone: tzinfo | None, where: str
+    names: Sequence[Hashable], text: pd.Series[Any], zone: tzinfo | None, where: str, preamble: tuple[str, int]
 ) -> tuple[tzinfo, tzinfo, tuple[str, ...]]:
-    """Zone of the result and zone of the stamps: that which the name of the time column states."""
+    """Zone of the result and zone of the stamps: that which the time column or a line above it states."""
     stated = [hours for name in names if (hours := offset_in_name(str(name))) is not None]
+    said = f"the time column {str(names[0])!r} states"
+    if not stated and preamble[0]:
+        stated = [hours for hours in (offset_in_name(preamble[0]),) if hours is not None]
+        said = f"line {preamble[1]}, {preamble[0]!r}, states"
     if not stated:
         if zone is None:
             zone = parse_timezone(None, f"{where}: timezone")
         return zone, zone, ()
     clock = fixed_zone(stated[0])
     if zone is None:
-        return clock, clock, (f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}.",)
+        return clock, clock, (f"{where}: {said} {zone_name(clock)}.",)
     years = sorted(set(re.findall(r"\b(?:19|20)\d{2}\b", f"{text.iloc[0]} {text.iloc[-1]}"))) or ["2024"]
-    require_zone_has(zone, stated[0], (int(years[0]), int(years[-1])), str(names[0]), where)
+    if stated[0] != 0.0:  # UTC is a clock of its own, which no zone of a place contradicts
+        require_zone_has(zone, stated[0], (int(years[0]), int(years[-1])), said.removesuffix(" states"), where)
     note = (
-        f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}: its stamps were turned into "
+        f"{where}: {said} {zone_name(clock)}: its stamps were turned into "
         f"the clock of {zone_name(zone)}."
     )
     return zone, clock, () if zone_name(zone) == zone_name(clock) else (note,)
