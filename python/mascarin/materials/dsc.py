@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from mascarin.figures.melting import Curve
+    from mascarin.figures.melting import Analysis, Curve
 
     Array = npt.NDArray[np.float64]
 
@@ -66,6 +66,8 @@ class Melting:
         Heating rate [K/min].
     fits : tuple of LawFit
         Fitted laws, the best first.
+    freezing : (float, float) or None
+        Temperature at which a supercooled sample begins to freeze [degC], and rise from there [K].
     """
 
     direction: str
@@ -79,6 +81,7 @@ class Melting:
     end: float
     rate: float | None
     fits: tuple[LawFit, ...]
+    freezing: tuple[float, float] | None = None
 
     @property
     def half(self) -> float:
@@ -184,6 +187,8 @@ class DscMaterial:
     def plot(self, *, ax: Sequence[Axes] | None = None) -> Figure:
         """Plot the runs and the best law: enthalpy above, apparent specific heat below.
 
+        Below also the sensible heat that was taken as the baseline, and onset and end.
+
         Parameters
         ----------
         ax : sequence of two matplotlib.axes.Axes, optional
@@ -196,7 +201,9 @@ class DscMaterial:
         """
         from mascarin.figures import melting
 
-        return melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
+        figure = melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
+        melting.draw_analysis((ax or figure.axes)[1], [_analysis(n, run) for n, run in enumerate(self.runs)])
+        return figure
 
 
 def from_dsc(
@@ -321,7 +328,7 @@ def _melting(
     fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda one: one.residual))
     peak = float(t[np.argmax(heat)])
     melting = Melting(
-        scan.direction, t, fraction, heat, (solid, liquid), latent, onset, peak, end, scan.rate, fits
+        scan.direction, t, fraction, heat, (solid, liquid), latent, onset, peak, end, scan.rate, fits, scan.freezing
     )
     return melting, remarks
 
@@ -427,6 +434,12 @@ def _compared(runs: Sequence[Melting]) -> list[str]:
             f"latent heat on heating and cooling differ by {apart:.0%}: different integration limits, or "
             "a run that did not melt or freeze everything"
         )
+    if cooling.freezing is not None:
+        begins, rise = cooling.freezing
+        lines.append(
+            f"supercooling: freezing begins at {begins:.2f} degC, {heating.onset - begins:.2f} K below the onset of "
+            f"melting ({heating.onset:.2f} degC), and the sample warms by {rise:.2f} K (recalescence)"
+        )
     gap = heating.half - cooling.half
     if gap > 0.5:
         lines.append(
@@ -468,6 +481,7 @@ def _summary(run: Melting) -> dict[str, Any]:
         "half": run.half,
         "melting_range": list(run.melting_range),
         "rate": run.rate,
+        "freezing": None if run.freezing is None else {"begins": run.freezing[0], "rise": run.freezing[1]},
         "fits": {
             one.law.name: {
                 "rms": one.residual,
@@ -482,6 +496,15 @@ def _summary(run: Melting) -> dict[str, Any]:
 
 def _listed(value: float | tuple[float, float]) -> float | list[float]:
     return [float(x) for x in value] if isinstance(value, tuple | list) else float(value)
+
+
+def _analysis(number: int, run: Melting) -> Analysis:
+    """What was done to the signal of a run."""
+    from mascarin.figures import melting
+
+    solid, liquid = run.specific_heat
+    baseline = solid + (liquid - solid) * run.fraction
+    return melting.Analysis(number, run.temperature, baseline, (run.onset, run.end))
 
 
 def _curves(number: int, run: Melting) -> Iterator[Curve]:
