@@ -17,8 +17,9 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
-from mascarin.tables.reading.layout import Layout, decoded, find_layout
+from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
+from mascarin.tables.reading.own_readers import read_own, reader_of
 from mascarin.tables.reading.preamble import clock_of_preamble, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 
@@ -123,6 +124,13 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     """
     import pandas as pd
 
+    reader = reader_of(path)
+    if reader is not None:
+        frame = read_own(path, reader)
+        units = {str(name): str(unit) for name, unit in dict(frame.attrs.get("units", {})).items()}
+        frame = with_time_column(frame)
+        said = (f"{path.name}: read by {getattr(reader, '__module__', '')}.{getattr(reader, '__name__', reader)}.",)
+        return Read(frame, 1 + np.arange(len(frame), dtype=np.int64), said, units)
     if path.suffix.lower() in {".parquet", ".pq"}:
         try:
             frame = with_time_column(pd.read_parquet(path))
@@ -144,8 +152,14 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
     del text  # a large table is in memory once, as far as that is possible
     layout = find_layout(lines, path.name, separator, decimal, skip_lines)
+    end = footer_of(lines, layout.first, layout.separator)
+    remarks = lines[end:]
+    if remarks:
+        lines, last = lines[:end], ""
     rows, repeated = _rows(lines, layout)
     notes = (*sheet, *_notes(layout, encoding, lines, path.name))
+    if remarks:
+        notes += (f"{path.name}: {len(remarks)} lines below the table, from line {end + 1} on, were left out.",)
     if repeated:
         notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip

@@ -21,10 +21,10 @@ from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
     has_words,
+    parts_of_time,
     rows_with_values,
     time_text,
     without_entries,
-    year_day_hour,
 )
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
@@ -131,7 +131,8 @@ class Table:
                 f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
             )
         if row is not None:
-            return StatedUnit(row, text, f"the row of units (line {self.units_line})")
+            line = f"the row of units (line {self.units_line})" if self.units_line else "the file"
+            return StatedUnit(row, text, line)
         if name is not None:
             return StatedUnit(*name, "the name of the column")
         if column in self.preamble_units:
@@ -253,8 +254,8 @@ def read_table(
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
         raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
-    if time is None and time_format is None and (parts := year_day_hour(frame)):
-        time, time_format = parts, "%Y %j %H%M"
+    if time is None and time_format is None and (parts := parts_of_time(frame)):
+        time, time_format = parts
     text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
     if missing:
