@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import timezone
+from datetime import UTC
 
 import numpy as np
 
@@ -45,7 +45,10 @@ def sky(
         diffuse = np.where(of_block[0] < cover, 1.8, 1.0) * diffuse
     elif kind == "fog":
         left = 0.3 if rng.random() < 0.5 else np.clip(0.3 + 0.7 * (hour - 6.0) / 6.0, 0.3, 1.0)
-        beam, diffuse = np.where(hour < 12.0, left, 1.0) * beam, np.where(hour < 12.0, 1.3 * left, 1.0) * diffuse
+        beam, diffuse = (
+            np.where(hour < 12.0, left, 1.0) * beam,
+            np.where(hour < 12.0, 1.3 * left, 1.0) * diffuse,
+        )
     elif kind == "overcast":
         beam, diffuse = 0.0 * beam, 800.0 * up * (0.2 + 0.3 * of_block[0])
     values = {"global_horizontal": beam * up + diffuse, "direct_normal": beam, "diffuse_horizontal": diffuse}
@@ -56,6 +59,6 @@ def sky(
         columns[name] = np.maximum(means * noise + rng.normal(0.0, 0.7, count) * (means > 0.0), 0.0)
     kinds: dict[str, Kind] = dict.fromkeys(names, "mean")
     return WeatherRecord(
-        columns=columns, kinds=kinds, grid=Grid(first, step, count, timezone.utc), closing={}, file="sky.csv",
+        columns=columns, kinds=kinds, grid=Grid(first, step, count, UTC), closing={}, file="sky.csv",
         sha256=None, provenance=(), lines=np.arange(count),
     )  # fmt: skip

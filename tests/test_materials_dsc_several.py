@@ -30,7 +30,9 @@ def test_runs_of_one_rate_have_a_mean_and_a_spread(tmp_path: Path) -> None:
     assert both.main.half == pytest.approx(one.main.half, abs=0.01)
     assert both.main.latent_heat == pytest.approx(one.main.latent_heat, rel=1e-3)
     # Averaged at equal fraction: the mean is not broader than a run.
-    width = [np.subtract(*np.interp([0.9, 0.1], run.fraction, run.temperature)) for run in (one.main, both.main)]
+    width = [
+        np.subtract(*np.interp([0.9, 0.1], run.fraction, run.temperature)) for run in (one.main, both.main)
+    ]
     assert width[1] == pytest.approx(width[0], rel=0.01)
     spread = spread_of([from_dsc(file).main for file in files])["half liquid at"]
     assert (spread.deviation, spread.count) == (pytest.approx(0.3, abs=0.005), 3)
@@ -40,7 +42,9 @@ def test_runs_of_one_rate_have_a_mean_and_a_spread(tmp_path: Path) -> None:
 
 def test_slower_runs_are_used_and_the_lag_is_extrapolated(tmp_path: Path) -> None:
     rates = (0.2, 1.0, 5.0)
-    files = [run_file(tmp_path, f"rate{k}", samples.CENTRE + 0.4 * rate, rate) for k, rate in enumerate(rates)]
+    files = [
+        run_file(tmp_path, f"rate{k}", samples.CENTRE + 0.4 * rate, rate) for k, rate in enumerate(rates)
+    ]
     material = from_dsc_files(files)
     assert material.main.rate == pytest.approx(0.2, rel=1e-6)
     assert material.main.peak == pytest.approx(samples.CENTRE + 0.08, abs=0.06)
@@ -54,11 +58,19 @@ def test_slower_runs_are_used_and_the_lag_is_extrapolated(tmp_path: Path) -> Non
 
 def test_supercooling_in_numbers(tmp_path: Path) -> None:
     heating = samples.temperatures()
-    cooling = np.concatenate([np.linspace(heating[-1], 18.0, 400), np.linspace(18.0, 21.5, 40), np.linspace(21.5, heating[0], 300)])
+    cooling = np.concatenate(
+        [np.linspace(heating[-1], 18.0, 400), np.linspace(18.0, 21.5, 40), np.linspace(21.5, heating[0], 300)]
+    )
     t = np.concatenate([heating, cooling[1:]])
     flow = np.concatenate([samples.heat(heating), samples.heat(cooling[1:])])
-    path = samples.write(tmp_path / "cold.csv", {"temperature [degC]": t, "cp [J/(kg K)]": flow,
-                                                 "direction": np.r_[np.zeros(len(heating)), np.ones(len(cooling) - 1)]})  # fmt: skip
+    path = samples.write(
+        tmp_path / "cold.csv",
+        {
+            "temperature [degC]": t,
+            "cp [J/(kg K)]": flow,
+            "direction": np.r_[np.zeros(len(heating)), np.ones(len(cooling) - 1)],
+        },
+    )
     text = path.read_text(encoding="utf-8").splitlines()
     names = ["heating", "cooling"]
     rows = [",".join([*row.split(",")[:2], names[int(float(row.split(",")[2]))]]) for row in text[1:]]
@@ -78,16 +90,27 @@ def test_exports_with_the_temperature_of_the_furnace(maker: str, tmp_path: Path)
     flow = samples.heat(t) * rate / 60.0 * mass * 1e-3  # mW
     minutes = (t - t[0]) / rate
     if maker == "PerkinElmer":
-        columns = {"Time (min)": minutes, "Unsubtracted Heat Flow (mW)": flow, "Baseline Heat Flow (mW)": 0.0 * t,
-                   "Program Temperature (°C)": t + 0.4, "Sample Temperature (°C)": t}  # fmt: skip
+        columns = {
+            "Time (min)": minutes,
+            "Unsubtracted Heat Flow (mW)": flow,
+            "Baseline Heat Flow (mW)": 0.0 * t,
+            "Program Temperature (°C)": t + 0.4,
+            "Sample Temperature (°C)": t,
+        }
         head, separator = "Sample Weight: 12.5 mg\n", "\t"
     else:
-        columns = {"Time (s)": 60.0 * minutes, "Furnace Temperature (°C)": t + 0.4, "Sample Temperature (°C)": t,
-                   "HeatFlow (mW)": flow}  # fmt: skip
+        columns = {
+            "Time (s)": 60.0 * minutes,
+            "Furnace Temperature (°C)": t + 0.4,
+            "Sample Temperature (°C)": t,
+            "HeatFlow (mW)": flow,
+        }
         head, separator = "Sample mass: 12.5 mg\n", ";"
     path = samples.write(tmp_path / "export.txt", columns, separator=separator, head=head)
     made = from_dsc(path, mass=mass)
-    true = from_dsc(samples.write(tmp_path / "cp.csv", {"temperature [degC]": t, "cp [J/(kg K)]": samples.heat(t)}))
+    true = from_dsc(
+        samples.write(tmp_path / "cp.csv", {"temperature [degC]": t, "cp [J/(kg K)]": samples.heat(t)})
+    )
     assert made.main.latent_heat == pytest.approx(true.main.latent_heat, rel=1e-4)
     assert made.main.peak == pytest.approx(true.main.peak, abs=0.02)
 

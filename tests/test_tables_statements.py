@@ -1,4 +1,4 @@
-"""What a file says of itself above its columns, and in their units: clock, units, sums, words for no value."""
+"""What a file says of itself: clock and units above its columns, sums, words for no value."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import pytest
 from mascarin import Measurements
 from mascarin.errors import InputError
 
-ROWS = [f"2024-07-01 {k // 4:02d}:{15 * (k % 4):02d},{50.0 + 0.5 * k},{0.25 * (1 + k % 3)}" for k in range(48)]
+ROWS = [
+    f"2024-07-01 {k // 4:02d}:{15 * (k % 4):02d},{50.0 + 0.5 * k},{0.25 * (1 + k % 3)}" for k in range(48)
+]
 
 
 def written(folder: Path, head: list[str], rows: list[str] = ROWS, name: str = "logger.csv") -> Path:

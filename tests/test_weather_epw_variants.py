@@ -261,7 +261,7 @@ def test_the_polar_night_is_no_stuck_sensor() -> None:
 
 
 def test_rows_of_the_log_w01_w02_leap_years(chicago: list[Fields], tmp_path: Path) -> None:
-    """W01: February of a leap year with 28 days is a typical year. W02: 8784 hours of 2020 keep 29 February."""
+    """W01: February of a leap year with 28 days. W02: 8784 hours of 2020 keep 29 February."""
 
     def leap_year(fields: Fields) -> None:
         fields[0] = "2020" if fields[1] == "2" else fields[0]
@@ -272,7 +272,9 @@ def test_rows_of_the_log_w01_w02_leap_years(chicago: list[Fields], tmp_path: Pat
     rows = [list(fields) for fields in chicago]
     for fields in rows[8:]:
         fields[0] = "2020"
-    added = [[*fields[:2], "29", *fields[3:6], "33.3", *fields[7:]] for fields in rows[8 + 58 * 24 : 8 + 59 * 24]]
+    added = [
+        [*fields[:2], "29", *fields[3:6], "33.3", *fields[7:]] for fields in rows[8 + 58 * 24 : 8 + 59 * 24]
+    ]
     leap = climate([*rows[: 8 + 59 * 24], *added, *rows[8 + 59 * 24 :]], tmp_path)
     assert len(leap.data) == 8784
     day = leap.data.loc["2020-02-29 01:00":"2020-02-29 23:00", "air_temperature"]
@@ -302,17 +304,26 @@ def test_row_w12_written_and_read_again(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("latitude", "longitude", "zone"),
-    [(28.6, 77.2, 5.5), (69.7, 18.9, 1.0), (-37.7, 144.8, 10.0), (-0.2, -78.5, -5.0), (65.0, 179.9, 12.0), (-18.0, -179.0, 12.0)],
+    [
+        (28.6, 77.2, 5.5),
+        (69.7, 18.9, 1.0),
+        (-37.7, 144.8, 10.0),
+        (-0.2, -78.5, -5.0),
+        (65.0, 179.9, 12.0),
+        (-18.0, -179.0, 12.0),
+    ],
 )
 def test_rows_w15_w16_w17_places_of_the_world(
     chicago: list[Fields], tmp_path: Path, latitude: float, longitude: float, zone: float
 ) -> None:
-    """A zone of 5.5 h, midnight sun, date line, south and equator: a clear sky of pvlib's sun passes and keeps its sums."""
+    """A zone of 5.5 h, midnight sun, date line, south, equator: a clear sky with pvlib's sun passes."""
     import pvlib
 
     time = pd.date_range("2023-01-01 00:00", periods=8760 * 6, freq="10min", tz="UTC") + pd.Timedelta("5min")
     time -= pd.Timedelta(hours=zone)
-    sine = np.sin(np.radians(pvlib.solarposition.get_solarposition(time, latitude, longitude)["elevation"].to_numpy()))
+    sine = np.sin(
+        np.radians(pvlib.solarposition.get_solarposition(time, latitude, longitude)["elevation"].to_numpy())
+    )
     sine = np.maximum(sine, 0.0)
     beam = 1361.0 * np.exp(-0.2 / np.maximum(sine, 0.02)) * (sine > 0.0)
     diffuse = 90.0 * np.sqrt(sine)
@@ -329,5 +340,9 @@ def test_rows_w15_w16_w17_places_of_the_world(
     total = day[..., CHANNELS.index("global_horizontal")].mean()
     first = int((pd.Timestamp("2023-06-20") - pd.Timestamp("2023-01-01")) / pd.Timedelta("1h"))
     assert total == pytest.approx(means[0][first : first + 48].mean(), rel=0.01)
-    dark = [part for part in read.quality() if part.channel in ("global_horizontal", "direct_normal") and part.kind == "stuck"]
+    dark = [
+        part
+        for part in read.quality()
+        if part.channel in ("global_horizontal", "direct_normal") and part.kind == "stuck"
+    ]
     assert not dark

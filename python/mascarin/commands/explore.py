@@ -14,12 +14,12 @@ from mascarin._io import identity
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import (
     CheckSun,
-    Shift,
     Columns,
     Flag,
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,

@@ -12,9 +12,9 @@ from mascarin._io.locks import writing
 from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     CheckSun,
-    Shift,
     Outside,
     Settings,
+    Shift,
     Step,
     matching_outputs,
     read_building,
@@ -112,7 +112,8 @@ def fmu(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
-            check_sun=check_sun, shift=shift,
+            check_sun=check_sun,
+            shift=shift,
         )
         simulation = Simulation(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,

@@ -69,7 +69,8 @@ Shift = Annotated[
     str | None,
     Parameter(
         negative="",
-        help="Added to all times of the weather and of measured tables, such as 30min; a negative one is written "
+        help="Added to all times of the weather and of measured tables, such as 30min; a negative "
+        "one is written "
         "--shift=-30min.",
     ),
 ]

@@ -15,11 +15,11 @@ from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
     CheckSun,
-    Shift,
     Columns,
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,
@@ -116,7 +116,8 @@ def run(
             timezone=timezone,
             stamps=stamps,
             allow_outside=allow_outside,
-            check_sun=check_sun, shift=shift,
+            check_sun=check_sun,
+            shift=shift,
         )
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,

@@ -15,11 +15,11 @@ from mascarin.commands.exit_code import exit_code
 from mascarin.commands.inputs import (
     AsJson,
     CheckSun,
-    Shift,
     Columns,
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,

@@ -76,7 +76,8 @@ def run_inputs(
             )
         if shift is not None:
             raise InputError(
-                f"--shift: found beside {weather}; expected shift: {shift} in that file, beside the table, or "
+                f"--shift: found beside {weather}; expected shift: {shift} in that file, beside the "
+                f"table, or "
                 "under climate for a weather file"
             )
         if columns:
@@ -134,7 +135,12 @@ def show_columns(
 
 
 def _measured_weather(
-    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps, check_sun: bool,
+    building: Building,
+    file: Path,
+    columns: Sequence[str],
+    zone: str,
+    stamps: Stamps,
+    check_sun: bool,
     shift: str | None,
 ) -> Climate:
     from mascarin.tables.reading.table import read_table

@@ -328,7 +328,18 @@ def _melting(
     fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda one: one.residual))
     peak = float(t[np.argmax(heat)])
     melting = Melting(
-        scan.direction, t, fraction, heat, (solid, liquid), latent, onset, peak, end, scan.rate, fits, scan.freezing
+        scan.direction,
+        t,
+        fraction,
+        heat,
+        (solid, liquid),
+        latent,
+        onset,
+        peak,
+        end,
+        scan.rate,
+        fits,
+        scan.freezing,
     )
     return melting, remarks
 
@@ -437,7 +448,8 @@ def _compared(runs: Sequence[Melting]) -> list[str]:
     if cooling.freezing is not None:
         begins, rise = cooling.freezing
         lines.append(
-            f"supercooling: freezing begins at {begins:.2f} degC, {heating.onset - begins:.2f} K below the onset of "
+            f"supercooling: freezing begins at {begins:.2f} degC, {heating.onset - begins:.2f} K "
+            f"below the onset of "
             f"melting ({heating.onset:.2f} degC), and the sample warms by {rise:.2f} K (recalescence)"
         )
     gap = heating.half - cooling.half

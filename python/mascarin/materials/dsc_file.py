@@ -260,7 +260,9 @@ def _scan(
                 f"{direction}: the file says that heat given off points {'up' if exothermal_up else 'down'}, "
                 "but the peak points the other way: the peak was followed"
             )
-    return Scan(direction, t, heat, rate, signal, factor, tuple(remarks), place, recalescence(values[:, 0], direction))
+    return Scan(
+        direction, t, heat, rate, signal, factor, tuple(remarks), place, recalescence(values[:, 0], direction)
+    )
 
 
 def _upside_down(heat: Array) -> bool:

@@ -236,7 +236,8 @@ def supercooling(temperature: Array, direction: str) -> list[str]:
     if freezing is None:
         return []
     return [
-        f"cooling: the temperature rises by {freezing[1]:.1f} K from {freezing[0]:.2f} degC on: the sample was "
+        f"cooling: the temperature rises by {freezing[1]:.1f} K from {freezing[0]:.2f} degC on: the "
+        f"sample was "
         "supercooled, and the curve over temperature does not show how it freezes; use the heating run, or "
         "give the law its supercooling"
     ]

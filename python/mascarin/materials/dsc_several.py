@@ -1,4 +1,4 @@
-"""Several calorimeter files of one material: the mean curve of the slowest runs, spread, and heating rates."""
+"""Several calorimeter files of one material: mean of the slowest runs, spread, heating rates."""
 
 from __future__ import annotations
 
@@ -169,7 +169,9 @@ def _rate_lines(direction: str, runs: Sequence[Melting]) -> list[str]:
     peaks = [run.peak for run in runs]
     slope, at_rest = (float(x) for x in np.polyfit(rates, peaks, 1))
     return [
-        f"{direction}: rates from {min(rates):.3g} to {max(rates):.3g} K/min: the peak moves by {slope:+.3g} K for "
-        f"each K/min, to {at_rest:.2f} degC without lag (straight line); the slowest runs are used, which are "
+        f"{direction}: rates from {min(rates):.3g} to {max(rates):.3g} K/min: the peak moves by "
+        f"{slope:+.3g} K for "
+        f"each K/min, to {at_rest:.2f} degC without lag (straight line); the slowest runs are used, "
+        f"which are "
         "nearest to equilibrium"
     ]

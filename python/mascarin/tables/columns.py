@@ -193,7 +193,9 @@ class Column:
             values = values * found[0] + found[1]
         return values * self.scale + self.offset
 
-    def line(self, name: str, unit: str, values: Array, stated: StatedUnit | None, words: Mapping[str, int] = MappingProxyType({})
+    def line(
+        self, name: str, unit: str, values: Array, stated: StatedUnit | None,
+        words: Mapping[str, int] = MappingProxyType({}),
     ) -> str:  # fmt: skip
         """What was read, in one line.
 
@@ -216,7 +218,9 @@ class Column:
             Name, unit in the file, conversion, range, missing values, and whether all are equal.
         """
         own = self.unit or ""
-        after = unit or (FACTORS[own][0] if own in FACTORS else "W" if own in HEATS else "W/m2" if own else "")
+        after = unit or (
+            FACTORS[own][0] if own in FACTORS else "W" if own in HEATS else "W/m2" if own else ""
+        )
         parts = [f"column {self.column!r}" if self.column != name else "column"]
         by = f" ({stated.place})" if stated is not None and not self.overrule else " (as stated)"
         if self.unit is not None and self.unit != after:

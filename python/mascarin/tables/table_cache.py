@@ -86,7 +86,9 @@ def _packed(record: Record) -> Cached:
         "closing": {name: float(value) for name, value in record.closing.items()},
         "sha256": record.sha256,
         "provenance": list(record.provenance),
-        "origins": {name: [one.unit, one.stated, one.line, one.of_interval] for name, one in record.origins.items()},
+        "origins": {
+            name: [one.unit, one.stated, one.line, one.of_interval] for name, one in record.origins.items()
+        },
         "last": None if knots is None else int(knots[-1]),
     }
     notes |= {name: sorted(getattr(record, name)) for name in record.name_sets}

@@ -65,7 +65,8 @@ CONVERTED: Final = frozenset({"degC", "W/m2", "m/s", "Pa"})
 """Units into which every measured column is converted, whatever it is used for."""
 
 _SPELLINGS: Final[Mapping[str, str]] = {
-    "degC": "degc °c c celsius degcelsius degreescelsius degreesc gradc gradcelsius degree_celsius degrees_celsius",
+    "degC": "degc °c c celsius degcelsius degreescelsius degreesc gradc gradcelsius degree_celsius "
+    "degrees_celsius",
     "K": "k kelvin degk °k kelvins",
     "degF": "degf °f f fahrenheit degfahrenheit degreesf",
     "W/m2": "w/m2 wm-2 wm2 w/sqm w/qm watt/m2 watts/m2 w/msq",

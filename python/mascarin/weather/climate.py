@@ -285,7 +285,8 @@ class Climate(RecordView[WeatherRecord]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance, "shift": shift,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
+            "shift": shift,
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))

@@ -1,14 +1,15 @@
 """How much later than the sun the radiation of a record is, with the uncertainty of that.
 
-By the balance of irradiances, where global and direct irradiance were both measured, and by the symmetry of clear
-hours about solar noon. Every time of a row is compared with the sun a little earlier or later; the shift for which
-most clear hours have the form of a clear sky, or for which the balance closes best, is taken.
+By the balance of irradiances, where global and direct irradiance were both measured, and by the symmetry
+of clear hours about solar noon. Every time of a row is compared with the sun a little earlier or later;
+the shift for which most clear hours have the form of a clear sky, or for which the balance closes best, is
+taken.
 
 References
 ----------
 Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
-Long & Shi 2008, The Open Atmospheric Science Journal 2, 23-37, doi:10.2174/1874282300802010023 (the same balance of
-components as a check of instruments).
+Long & Shi 2008, The Open Atmospheric Science Journal 2, 23-37, doi:10.2174/1874282300802010023 (the same
+balance of components as a check of instruments).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import Final, Literal
 import numpy as np
 
 from mascarin.tables.arrays import Array, Flags
+from mascarin.weather.channels import RADIATION
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath
 
@@ -51,7 +53,7 @@ _SAMPLES: Final = 200
 _FLOOR: Final = 100.0
 """Uncertainty that remains with any number of days: tilt and cosine error of instruments. [s]"""
 _FLOOR_WITHOUT_DIFFUSE: Final = 240.0
-"""The same where diffuse irradiance was not measured, which fog in the morning makes uneven over a day. [s]"""
+"""The same where diffuse irradiance was not measured: fog makes it uneven over a day. [s]"""
 _BEAM: Final = 100.0
 """Least direct irradiance that is used in the balance. [W/m2]"""
 _ROUNDING: Final = 1.5
@@ -75,9 +77,9 @@ class ClockShift:
     split : bool
         Whether the direct irradiance was calculated from the global one: its balance closes by construction.
     outside : float
-        Part of the radiation that is more than a clear sky gives at the stated time, on the side of the day to
-        which the record is shifted. Haze and fog that change over a day look like a small shift, but they never
-        make the low sun brighter. [-]
+        Part of the radiation that is more than a clear sky gives at the stated time, on the side of the
+        day to which the record is shifted. Haze and fog that change over a day look like a small shift,
+        but they never make the low sun brighter. [-]
     """
 
     late: float
@@ -90,7 +92,8 @@ class ClockShift:
     @property
     def minutes(self) -> str:
         """Shift and uncertainty as text. [min]"""
-        return f"{abs(self.late) / 60.0:.0f} min (standard uncertainty {max(self.uncertainty / 60.0, 0.1):.1f} min)"
+        own, uncertain = abs(self.late) / 60.0, self.uncertainty / 60.0
+        return f"{own:.0f} min (standard uncertainty {uncertain:.1f} min)"
 
     def exceeds(self, limit: float) -> bool:
         """Whether the shift exceeds a limit [s] and three times its uncertainty."""
@@ -165,10 +168,11 @@ def _days_of(record: WeatherRecord, latitude: float, longitude: float) -> _Days 
     if count < 1:
         return None
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_DAYS)).astype(int))
-    names = [name for name in ("global_horizontal", "direct_normal", "diffuse_horizontal") if name in record.columns
-             and name not in record.assumed]  # fmt: skip
+    names = [name for name in RADIATION if name in record.columns and name not in record.assumed]
     values = {
-        name: record.columns[name][skipped : skipped + count * rows * per].reshape(count, rows, per)[chosen].mean(axis=2)
+        name: record.columns[name][skipped : skipped + count * rows * per]
+        .reshape(count, rows, per)[chosen]
+        .mean(axis=2)
         for name in names
     }
     early = 0.5 * step if record.kinds["global_horizontal"] == "instant" else 0.0
@@ -221,7 +225,7 @@ def _by_balance(days: _Days) -> ClockShift | None:
     sizes = np.abs(residuals[used[enough]])
     typical = float(np.median(sizes[:, int(np.argmin((sizes**2).mean(axis=0)))]))
     limit = max(6.0 * typical, 1.0)  # single wrong rows decide nothing
-    scores = -np.minimum(np.abs(residuals), limit) ** 2
+    scores = -(np.minimum(np.abs(residuals), limit) ** 2)
     floor = _FLOOR if diffuse is not None else _FLOOR_WITHOUT_DIFFUSE
     late, uncertainty = _with_uncertainty(np.where(used[enough][..., None], scores, 0.0).sum(axis=1), floor)
     split = diffuse is not None and _is_split(days, used, round(late / _NODE))
@@ -250,7 +254,9 @@ def _residuals(days: _Days, used: Flags, late: int) -> Array:
 
 def _is_split(days: _Days, used: Flags, late: int) -> bool:
     """Whether the components close more exactly than instruments do: one was calculated from the others."""
-    total, beam, diffuse = (days.values[name] for name in ("global_horizontal", "direct_normal", "diffuse_horizontal"))
+    total, beam, diffuse = (
+        days.values[name] for name in ("global_horizontal", "direct_normal", "diffuse_horizontal")
+    )
     ends = [days.means(days.sines, late)]
     middle = np.arange(total.shape[1]) * days.width + _MOST - late + days.width // 2
     ends.append(days.sines[:, middle])

@@ -155,7 +155,7 @@ def _day_of_year(stage: Array, grid: Grid) -> Array:
 
 def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
     if name in record.columns:
-        if name != "infrared":
+        if name != "infrared" or not record.of_year:
             return column_values(record, name, steps)
         # Rows without a value are no fault where the building has a model of the sky.
         with contextlib.suppress(InputError):

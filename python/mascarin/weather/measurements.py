@@ -114,7 +114,8 @@ class Measurements(RecordView[Record]):
         """
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
-            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance, "shift": shift,
+            "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
+            "shift": shift,
         }  # fmt: skip
         wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
         choice = (wanted, tuple(mean), stamps)

@@ -1,7 +1,8 @@
 """Infrared radiation of the sky in the intervals in which a record has none, by the default model of a site.
 
-The laws of the engine (``crates/engine/src/physics/longwave/sky.rs``) with the values of `MartinBerdahlSky` and
-`CloudLayer`: a building that gives a model of the sky itself takes that in all intervals.
+The laws of the engine (``crates/engine/src/physics/longwave/sky.rs``) with the values of
+`MartinBerdahlSky` and `CloudLayer`: a building that gives a model of the sky itself takes that in all
+intervals.
 
 References
 ----------
@@ -54,7 +55,9 @@ def sky_emission(air: Array, dew_point: Array, cloud_cover: Array) -> Array:
 
 
 def with_whole_infrared(record: WeatherRecord) -> WeatherRecord:
-    """A record whose missing infrared radiation is that of the model; others as they are.
+    """A weather file of a year whose missing infrared radiation is that of the model; others as they are.
+
+    In a measured table a missing value is a gap: it is refused with its line, or filled on request.
 
     Parameters
     ----------
@@ -68,7 +71,7 @@ def with_whole_infrared(record: WeatherRecord) -> WeatherRecord:
     """
     values = record.columns.get("infrared")
     needed = ("air_temperature", "dew_point", "cloud_cover")
-    if values is None or any(name not in record.columns for name in needed):
+    if not record.of_year or values is None or any(name not in record.columns for name in needed):
         return record
     missing = np.isnan(values)
     if not missing.any() or missing.all():
@@ -102,7 +105,8 @@ def sky_of_runs(record: WeatherRecord) -> str:
         return f"no infrared radiation in the file: a model in all rows, site.sky, by default {model}"
     if gaps:
         return (
-            f"infrared radiation of the file; in {gaps} of {len(record.lines)} rows, which have none, the model "
+            f"infrared radiation of the file; in {gaps} of {len(record.lines)} rows, which have none, "
+            f"the model "
             f"of {model}. A building with site.sky takes its model in all rows"
         )
     return "infrared radiation of the file in all rows; a building with site.sky takes its model instead"

@@ -44,9 +44,10 @@ class WeatherRecord(Record):
         said = [note for note in self.provenance if self.of_year and ": warning: " in note]
         infrared = self.columns.get("infrared", np.zeros(0))
         gaps = int(np.isnan(infrared).sum())
-        if 0 < gaps < len(infrared):
+        if self.of_year and 0 < gaps < len(infrared):
             said.append(
-                f"{self.file}: infrared has no value in {gaps} of {len(infrared)} rows: in these a run takes the "
+                f"{self.file}: infrared has no value in {gaps} of {len(infrared)} rows: in these a "
+                f"run takes the "
                 "model of the sky of Martin & Berdahl (1984), unless the building gives site.sky."
             )
         return tuple(note.replace(": warning: ", ": ", 1) for note in said)

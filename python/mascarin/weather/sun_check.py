@@ -84,7 +84,18 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     digest = hashlib.sha256(b"".join(record.columns[name].tobytes() for name in RADIATION if name in
                                      record.columns)).hexdigest()  # fmt: skip
     kind, given = record.kinds[_name(record)], sorted({*RADIATION} & {*record.columns} - record.assumed)
-    key = ("clock", digest, kind, given, record.file, grid.start, grid.interval, zone_name(grid.zone), latitude, longitude)
+    key = (
+        "clock",
+        digest,
+        kind,
+        given,
+        record.file,
+        grid.start,
+        grid.interval,
+        zone_name(grid.zone),
+        latitude,
+        longitude,
+    )
 
     def passed() -> Cached:
         return Cached({"said": _refuse(record, values, latitude, longitude)})
@@ -155,10 +166,12 @@ def _shift_text(record: WeatherRecord, shift: ClockShift, latitude: float, longi
     also = f" Or {', or '.join(hints)}." if hints else ""
     return (
         f"{record.file}: the radiation does not follow the sun at latitude {latitude:g}, longitude "
-        f"{longitude:g}: {_shift_sentence(shift)}; expected less than {_LARGEST_SHIFT / 60.0:g} min. Check the "
+        f"{longitude:g}: {_shift_sentence(shift)}; expected less than {_LARGEST_SHIFT / 60.0:g} min. "
+        f"Check the "
         f"time zone (now {zone_name(record.grid.zone)}), whether stamps mark the start or the end of their "
         f"interval, and the place. If the clock was wrong, state shift: {minutes}min (on the command line "
-        f"--shift={minutes}min, in Python shift='{minutes}min').{also} If all of these are right, read the record "
+        f"--shift={minutes}min, in Python shift='{minutes}min').{also} If all of these are right, "
+        f"read the record "
         "as it is with check_sun: false (on the command line --no-check-sun, in Python check_sun=False)."
     )
 

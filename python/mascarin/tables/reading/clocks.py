@@ -90,6 +90,8 @@ def stamps_from(
         return _local(pd.DatetimeIndex(text), clock, zone, lines, where)
     if time_format is None and pd.api.types.is_numeric_dtype(text.dtype) and not text.isna().any():
         return _of_numbers(text, zone, clock, lines, where)
+    if time_format is None and (plain := _plain_iso(text)) is not None:
+        return _local(plain, clock, zone, lines, where)
     written = text.astype(str).str.strip()
     if written.str.contains(_BLANKS).any():
         written = written.str.replace(r"\s+", " ", regex=True)
@@ -116,6 +118,23 @@ def stamps_from(
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
     found = _local(index, clock, zone, lines, where)
     return Stamped(found.times, (*notes, *found.notes))
+
+
+#: ISO 8601 without an offset.
+_ISO_TEXT: Final = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:\.\d+)?)?")
+
+
+def _plain_iso(text: pd.Series[Any]) -> pd.DatetimeIndex | None:
+    """Stamps all of which are ISO 8601 without an offset, read at once; None where one is not."""
+    import pandas as pd
+
+    if not len(text) or not isinstance(text.iloc[0], str) or not _ISO_TEXT.fullmatch(text.iloc[0]):
+        return None
+    try:
+        index = pd.DatetimeIndex(pd.to_datetime(text, format="ISO8601"))
+    except (ValueError, TypeError):  # an offset, 24:00, another order: read with care
+        return None
+    return None if index.tz is not None or index.hasnans else index
 
 
 def _without_midnight(written: pd.Series[str], time_format: str | None) -> tuple[pd.Series[str], Flags]:

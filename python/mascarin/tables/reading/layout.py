@@ -160,7 +160,9 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
     start = next((k for k, line in enumerate(lines) if line.strip()), 0)
     marks = [separator] if separator else list(_MARKS)
     third = lines[start + 2] if start + 2 < len(lines) else ""
-    if any(_begins_with_names(lines[start : start + 2], mark) and not _are_names(third, mark) for mark in marks):
+    if any(
+        _begins_with_names(lines[start : start + 2], mark) and not _are_names(third, mark) for mark in marks
+    ):
         return start
     found = [(block[1], -block[0], mark) for mark in marks if (block := _first_block(lines, mark))]
     if not found:
@@ -205,9 +207,13 @@ def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
 
 
 def _are_names(line: str, mark: str) -> bool:
-    """Whether a line below two others has the names of columns: the two are of a preamble, as that of NSRDB."""
+    """Whether a line below two others has names of columns: the two are a preamble, as that of NSRDB."""
     cells = _cells(line, mark)
-    return len(cells) > 1 and all(cells) and not any(_DIGIT.match(cell) or cell.lower() in EMPTY for cell in cells)
+    return (
+        len(cells) > 1
+        and all(cells)
+        and not any(_DIGIT.match(cell) or cell.lower() in EMPTY for cell in cells)
+    )
 
 
 def footer_of(lines: Sequence[str], first: int, separator: str) -> int:

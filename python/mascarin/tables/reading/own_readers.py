@@ -1,8 +1,8 @@
 """Readers of one's own for files of tables, and NetCDF.
 
-A package offers a function under the entry point ``mascarin.table_readers``; the name of the entry is the ending
-of the files, such as ``dtf``. In Python `register_reader` does the same for the running program. The function takes
-a path and returns a `pandas.DataFrame` with a column or an index of times; units may stand in
+A package offers a function under the entry point ``mascarin.table_readers``; the name of the entry is the
+ending of the files, such as ``dtf``. In Python `register_reader` does the same for the running program. The
+function takes a path and returns a `pandas.DataFrame` with a column or an index of times; units may stand in
 ``frame.attrs["units"]``, a mapping of column to unit.
 """
 
@@ -83,12 +83,24 @@ def reader_of(path: Path) -> Reader | None:
     if len(offered) > 1:
         names = " and ".join(entry.value for entry in offered)
         raise InputError(
-            f"{path.name}: found two readers for files ending in .{ending}, {names}; expected one. Uninstall the "
+            f"{path.name}: found two readers for files ending in .{ending}, {names}; expected one. "
+            f"Uninstall the "
             "package of the other one, or choose in Python with register_reader"
         )
     if offered:
         return _loaded(offered[0])
     return _netcdf if ending in _NETCDF else None
+
+
+def name_of(reader: Reader) -> str:
+    """Name of a reader with its module.
+
+    Parameters
+    ----------
+    reader : callable
+        From `reader_of`.
+    """
+    return f"{getattr(reader, '__module__', '')}.{getattr(reader, '__name__', type(reader).__name__)}"
 
 
 def read_own(path: Path, reader: Reader) -> pd.DataFrame:
@@ -140,7 +152,8 @@ def _loaded(entry: EntryPoint) -> Reader:
         reader: Reader = entry.load()
     except Exception as error:  # a package of others
         raise InputError(
-            f"{GROUP}: the reader {entry.value} cannot be imported ({type(error).__name__}: {error}); expected a "
+            f"{GROUP}: the reader {entry.value} cannot be imported ({type(error).__name__}: {error}); "
+            f"expected a "
             "function. Repair or uninstall its package"
         ) from error
     return reader
@@ -158,14 +171,17 @@ def _netcdf(path: Path) -> pd.DataFrame:
     times = [name for name, index in data.indexes.items() if index.dtype.kind == "M"]
     if len(times) != 1:
         raise InputError(
-            f"{path.name}: found {len(times)} coordinates of time ({', '.join(map(str, data.dims))}); expected one"
+            f"{path.name}: found {len(times)} coordinates of time ({', '.join(map(str, data.dims))}); "
+            f"expected one"
         )
     names = [str(name) for name in data.data_vars if data[name].dims == (times[0],)]
     if not names:
         sizes = ", ".join(f"{name} ({size})" for name, size in data.sizes.items())
         raise InputError(
-            f"{path.name}: found no variable that varies with {times[0]!r} alone (dimensions {sizes}); expected the "
-            "series of one place: select it first, such as data.sel(latitude=..., longitude=...).to_netcdf(...)"
+            f"{path.name}: found no variable that varies with {times[0]!r} alone (dimensions "
+            f"{sizes}); expected the "
+            "series of one place: select it first, such as data.sel(latitude=..., "
+            "longitude=...).to_netcdf(...)"
         )
     frame = data[names].drop_vars([name for name in data.coords if name != times[0]]).to_dataframe()
     frame.index.name = "time"

@@ -106,14 +106,18 @@ def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array
     left = "" if stated is None or settled.unit is not None else stated.unit
     stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
     of_interval = settled.unit in ENERGIES or settled.unit in HEATS
-    return values, Origin(left, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval)
+    return values, Origin(
+        left, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval
+    )
 
 
 def _is_meter(values: Array) -> bool:
-    """Whether a column never falls and is far above its steps: the total of a meter, not the heat of intervals."""
+    """Whether a column never falls and is far above its steps: the total of a meter."""
     there = values[np.isfinite(values)]
     steps = np.diff(there)
-    return bool(len(there) > 5 and np.all(steps >= 0.0) and there[-1] > there[0] and there[-1] > 3.0 * steps.max())
+    return bool(
+        len(there) > 5 and np.all(steps >= 0.0) and there[-1] > there[0] and there[-1] > 3.0 * steps.max()
+    )
 
 
 def _as_read(
@@ -123,4 +127,6 @@ def _as_read(
     plain = replace(column, unit=None)
     unit = str(column.unit)
     line = plain.line(name, "", raw, stated, table.empty_words(column.column))
-    return raw * column.scale + column.offset, Origin(unit, True, f"{line} It never falls: the total of a meter in {unit}.")
+    return raw * column.scale + column.offset, Origin(
+        unit, True, f"{line} It never falls: the total of a meter in {unit}."
+    )

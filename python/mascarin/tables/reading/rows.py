@@ -110,7 +110,8 @@ def parts_of_time(frame: pd.DataFrame) -> tuple[list[str], str] | None:
             return [str(name) for name in frame.columns[k : k + 3]], "%Y %j %H%M"
     count = next((k for k, part in enumerate(_PARTS) if names[k : k + 1] != [part]), len(_PARTS))
     if count >= 4:
-        return [str(name) for name in frame.columns[:count]], " ".join("%Y %m %d %H %M %S".split()[:count])
+        form = " ".join(["%Y", "%m", "%d", "%H", "%M", "%S"][:count])
+        return [str(name) for name in frame.columns[:count]], form
     return None
 
 

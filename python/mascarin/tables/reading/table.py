@@ -15,7 +15,7 @@ from mascarin._io import memory
 from mascarin._io.arguments import require_type
 from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
-from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
 from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
@@ -250,7 +250,7 @@ def read_table(
         read = read_frame(path, separator, decimal, skip_lines)
         frame, said = read.frame, read.notes
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
-    empty = frame.isna().all(axis=1).to_numpy()
+    empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
         raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
@@ -278,6 +278,16 @@ def read_table(
     return table if read is None else replace(table, **read.said_of_itself)
 
 
+def _empty_rows(frame: pd.DataFrame) -> Flags:
+    """Which rows have no entry at all; most tables have a column without a gap, which settles it."""
+    empty = np.ones(len(frame), dtype=bool)
+    for k in range(frame.shape[1] - 1, -1, -1):  # the times, which are texts, last
+        if not empty.any():
+            break
+        empty &= frame.iloc[:, k].isna().to_numpy()
+    return empty
+
+
 def _zone(
     source: str | Path | pd.DataFrame, timezone: str | None, time: str | Sequence[str] | None
 ) -> tzinfo | None:
@@ -300,7 +310,11 @@ def _is_time(index: pd.Index[Any]) -> bool:
 
 
 def _clock(
-    names: Sequence[Hashable], text: pd.Series[Any], zone: tzinfo | None, where: str, preamble: tuple[str, int]
+    names: Sequence[Hashable],
+    text: pd.Series[Any],
+    zone: tzinfo | None,
+    where: str,
+    preamble: tuple[str, int],
 ) -> tuple[tzinfo, tzinfo, tuple[str, ...]]:
     """Zone of the result and zone of the stamps: that which the time column or a line above it states."""
     stated = [hours for name in names if (hours := offset_in_name(str(name))) is not None]
@@ -317,11 +331,10 @@ def _clock(
         return clock, clock, (f"{where}: {said} {zone_name(clock)}.",)
     years = sorted(set(re.findall(r"\b(?:19|20)\d{2}\b", f"{text.iloc[0]} {text.iloc[-1]}"))) or ["2024"]
     if stated[0] != 0.0:  # UTC is a clock of its own, which no zone of a place contradicts
-        require_zone_has(zone, stated[0], (int(years[0]), int(years[-1])), said.removesuffix(" states"), where)
-    note = (
-        f"{where}: {said} {zone_name(clock)}: its stamps were turned into "
-        f"the clock of {zone_name(zone)}."
-    )
+        require_zone_has(
+            zone, stated[0], (int(years[0]), int(years[-1])), said.removesuffix(" states"), where
+        )
+    note = f"{where}: {said} {zone_name(clock)}: its stamps were turned into the clock of {zone_name(zone)}."
     return zone, clock, () if zone_name(zone) == zone_name(clock) else (note,)
 
 
