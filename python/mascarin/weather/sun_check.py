@@ -169,9 +169,9 @@ def _shift_text(record: WeatherRecord, shift: ClockShift, latitude: float, longi
         f"{longitude:g}: {_shift_sentence(shift)}; expected less than {_LARGEST_SHIFT / 60.0:g} min. "
         f"Check the "
         f"time zone (now {zone_name(record.grid.zone)}), whether stamps mark the start or the end of their "
-        f"interval, and the place. If the clock was wrong, state shift: {minutes}min (on the command line "
-        f"--shift={minutes}min, in Python shift='{minutes}min').{also} If all of these are right, "
-        f"read the record "
+        f"interval, and the place (east is positive). If the clock was wrong, state shift: {minutes}min "
+        f"(on the command line --shift={minutes}min, in Python shift='{minutes}min').{also} "
+        "If all of these are right, read the record "
         "as it is with check_sun: false (on the command line --no-check-sun, in Python check_sun=False)."
     )
 
