@@ -134,27 +134,23 @@ def hoboware() -> list[File]:
         ]
 
     good = made("GMT+00:00", "°C", TRUE, "%m/%d/%y %I:%M:%S %p", False)
-    options = {"columns": None}
     return [
         _file(
             "hobo_us.csv",
             made("GMT+00:00", "°F", FAHRENHEIT, "%m/%d/%y %I:%M:%S %p", False),
             "Temp, °F (LGR S/N: 1, SEN S/N: 1)",
             encoding="utf-8-sig",
-            **options,
         ),
         _file(
             "hobo_de.csv",
             made("GMT+00:00", "°C", TRUE, "%d.%m.%y %H:%M:%S", True),
             "Temp, °C (LGR S/N: 1, SEN S/N: 1)",
-            **options,
         ),
         _file(
             "hobo_bad.csv",
             _damage(good, 30, good[30].replace(".", "?", 1)),
             "Temp, °C (LGR S/N: 1, SEN S/N: 1)",
             damaged=True,
-            **options,
         ),
     ]
 
@@ -265,7 +261,7 @@ def hukseflux() -> list[File]:
     """Single-logger CSV with units in brackets (heat flux and temperature)."""
 
     def made(mark: str, form: str, comma: bool) -> list[str]:
-        def flux(k):
+        def flux(k: int) -> list[str]:
             return [f"{3.5 + 0.01 * k:.2f}".replace(".", ",") if comma else f"{3.5 + 0.01 * k:.2f}"]
 
         return [

@@ -109,16 +109,9 @@ def run(
     require_html("--report", report)
     with writing(out), writing(report), lines_named(building):
         climate, measured = run_inputs(
-            described,
-            weather,
-            measurements,
-            columns=columns or [],
-            timezone=timezone,
-            stamps=stamps,
-            allow_outside=allow_outside,
-            check_sun=check_sun,
-            shift=shift,
-        )
+            described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
+            allow_outside=allow_outside, check_sun=check_sun, shift=shift,
+        )  # fmt: skip
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
             scheme=scheme, initial=_start(initial), more=report is not None,

@@ -10,7 +10,8 @@ from typing import Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.materials.dsc import DscMaterial, Melting, from_dsc
+from mascarin.materials.dsc import DscMaterial, from_dsc
+from mascarin.materials.dsc_melting import Melting
 from mascarin.materials.laws import LAWS, fit
 
 _EQUAL: Final = 0.1

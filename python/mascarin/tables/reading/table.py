@@ -231,12 +231,8 @@ def read_table(
     """
     import pandas as pd
 
-    require_type(
-        "table",
-        source,
-        (str, Path, pd.DataFrame),
-        "the path of a file or a pandas.DataFrame (Series.to_frame())",
-    )
+    expected = "the path of a file or a pandas.DataFrame (Series.to_frame())"
+    require_type("table", source, (str, Path, pd.DataFrame), expected)
     zone = _zone(source, timezone, time)
     digest: str | None = None
     read: Read | None = None
