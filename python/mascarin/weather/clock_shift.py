@@ -121,7 +121,7 @@ class _Days:
     @property
     def rows(self) -> int:
         """Rows of a day."""
-        return next(iter(self.values.values())).shape[1]
+        return int(next(iter(self.values.values())).shape[1])
 
     def means(self, nodes: Array, late: int) -> Array:
         """Means over the rows of what is known at the nodes, for a record that is late by some nodes."""
@@ -129,7 +129,7 @@ class _Days:
             [np.zeros((len(nodes), 1)), np.cumsum(0.5 * (nodes[:, 1:] + nodes[:, :-1]), axis=1)], axis=1
         )
         first = np.arange(self.rows) * self.width + _MOST - late
-        return (total[:, first + self.width] - total[:, first]) / self.width
+        return np.asarray((total[:, first + self.width] - total[:, first]) / self.width)
 
 
 def shifts_of(record: WeatherRecord, latitude: float, longitude: float) -> tuple[ClockShift, ...]:
@@ -221,7 +221,7 @@ def _by_balance(days: _Days) -> ClockShift | None:
     enough = used.sum(axis=1) >= least
     if not enough.any():
         return None
-    residuals = np.stack([_residuals(days, used, late) for late in _LAGS], axis=-1)[enough]
+    residuals = np.stack([_residuals(days, used, lag) for lag in _LAGS.tolist()], axis=-1)[enough]
     sizes = np.abs(residuals[used[enough]])
     typical = float(np.median(sizes[:, int(np.argmin((sizes**2).mean(axis=0)))]))
     limit = max(6.0 * typical, 1.0)  # single wrong rows decide nothing
@@ -274,14 +274,14 @@ def _by_symmetry(days: _Days) -> ClockShift | None:
     total = days.values["global_horizontal"][:, lit]
     scores = np.zeros((len(total), len(_LAGS)))
     forms = [_CLEAR * days.sines * np.exp(-decay / np.maximum(days.sines, 1e-3)) for decay in _DECAYS]
-    for place, late in enumerate(_LAGS):
-        usable = (days.means(days.sines, int(late))[:, lit] > _LOW) & (total > 0.0)
+    for column, lag in enumerate(_LAGS.tolist()):
+        usable = (days.means(days.sines, lag)[:, lit] > _LOW) & (total > 0.0)
         for form in forms:
-            clear = days.means(form, int(late))[:, lit]
-            ratio = np.log(np.where(usable, total, 1.0) / np.where(usable, clear, 1.0))
+            expected = days.means(form, lag)[:, lit]
+            ratio = np.log(np.where(usable, total, 1.0) / np.where(usable, expected, 1.0))
             apart = (ratio[:, :, None] - ratio[:, None, :]) / _WIDTH
             near = np.exp(-0.5 * apart * apart) * (usable[:, None, :] & usable[:, :, None])
-            scores[:, place] = np.maximum(scores[:, place], near.sum(axis=2).max(axis=1))
+            scores[:, column] = np.maximum(scores[:, column], near.sum(axis=2).max(axis=1))
     rows = np.maximum((days.means(days.sines, 0) > _LOW).sum(axis=1), 1)
     clear = (scores.max(axis=1) >= _CLEAR_PART * rows) & (rows >= 4)
     if not clear.any():

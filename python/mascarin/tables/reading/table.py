@@ -131,8 +131,8 @@ class Table:
                 f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
             )
         if row is not None:
-            line = f"the row of units (line {self.units_line})" if self.units_line else "the file"
-            return StatedUnit(row, text, line)
+            spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
+            return StatedUnit(row, text, spot)
         if name is not None:
             return StatedUnit(*name, "the name of the column")
         if column in self.preamble_units:
