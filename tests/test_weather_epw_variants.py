@@ -12,7 +12,8 @@ import pytest
 from mascarin import Climate, cli, simulate
 from mascarin.errors import InputError
 from mascarin.examples import box
-from mascarin.weather import CHANNELS, Place
+from mascarin.weather import CHANNELS, Place, write_epw
+from mascarin.weather.missing_infrared import sky_emission
 from mascarin.weather.shipped import SHIPPED, content, found
 
 Fields = list[str]
@@ -90,18 +91,56 @@ def test_empty_fields_are_missing_values(chicago: list[Fields], tmp_path: Path) 
     assert "cloud_cover" in read.completed().data
 
 
-def test_infrared_that_is_missing_in_some_hours_is_said_and_a_model_runs(tmp_path: Path) -> None:
+def test_infrared_that_is_missing_in_some_hours_is_that_of_the_model_there(tmp_path: Path) -> None:
     golden = [line.split(",") for line in content(found("shipped:golden")).decode("utf-8-sig").splitlines()]
     read = climate(changed(golden, set_to((12, "9999")), slice(4000, 4030)), tmp_path)
-    assert any("warning: infrared has no value in 30 of 8760 rows" in note for note in read.provenance)
+    whole = Climate.shipped("golden")
+    rows = np.arange(3992, 4022)  # lines 4001 to 4030
+    filled = read.completed().data
+    other = np.setdiff1d(np.arange(8760), rows)
+    assert np.array_equal(filled["infrared"].to_numpy()[other], whole.data["infrared"].to_numpy()[other])
+    middle = {name: 0.5 * (filled[name].to_numpy()[rows] + filled[name].to_numpy()[rows + 1])
+              for name in ("air_temperature", "dew_point", "cloud_cover")}  # fmt: skip
+    model = sky_emission(middle["air_temperature"], middle["dew_point"], middle["cloud_cover"])
+    assert filled["infrared"].to_numpy()[rows] == pytest.approx(model, rel=1e-12)
+    assert np.abs(model - whole.data["infrared"].to_numpy()[rows]).max() < 60.0
     first, last = (f"{read.index[row]:%Y-%m-%d}" for row in (3960, 4060))
     building = box().replace({"site.latitude": 39.74, "site.longitude": -105.18})
     plain = simulate(building, read, start=first, end=last, step="1h", initial=20.0)
-    assert any("infrared has no value in 30" in text for text in plain.warnings)
-    none = climate(changed(golden, set_to((12, "9999"))), tmp_path, "none.epw")
-    model = simulate(building, none, start=first, end=last, step="1h", initial=20.0)
-    name = "zones.room.air_temperature" if "zones.room.air_temperature" in list(plain) else next(iter(plain))
-    assert np.array_equal(plain[name].to_numpy(), model[name].to_numpy())
+    assert any("infrared has no value in 30 of 8760 rows: in these" in text for text in plain.warnings)
+    channel = CHANNELS.index("infrared")
+    place = Place(39.74, -105.18)
+    days = ("2001-06-01", "2001-06-05")  # the model is not asked for outside of the gap
+    assert np.array_equal(read.forcing(place, *days, 3600.0)[..., channel],
+                          whole.forcing(place, *days, 3600.0)[..., channel])  # fmt: skip
+
+
+def test_the_model_of_missing_infrared_is_that_of_the_engine() -> None:
+    index = pd.date_range("2024-01-10", periods=49, freq="1h", tz="UTC")
+    still = {"air_temperature": 3.0, "dew_point": -2.0, "wind_speed": 1.0, "wind_direction": 0.0,
+             "global_horizontal": 0.0, "cloud_cover": 4.0}  # fmt: skip
+    frame = pd.DataFrame(still, index=index)
+    columns = {name: name for name in still}
+    sky = float(sky_emission(np.array([3.0]), np.array([-2.0]), np.array([4.0]))[0])
+    runs = []
+    for table, names in ((frame, columns), (frame.assign(infrared=sky), {**columns, "infrared": "infrared"})):
+        weather = Climate.from_table(table, columns=names)
+        runs.append(simulate(box(), weather, start="2024-01-10", end="2024-01-12", step="1h", initial=20.0))
+    for name in runs[0]:
+        assert runs[0][name].to_numpy() == pytest.approx(runs[1][name].to_numpy(), abs=1e-8)
+
+
+def test_the_sky_of_a_run_is_said_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    golden = [line.split(",") for line in content(found("shipped:golden")).decode("utf-8-sig").splitlines()]
+    climate(changed(golden, set_to((12, "9999")), slice(4000, 4030)), tmp_path)
+    climate(changed(golden, set_to((12, "9999"))), tmp_path, "none.epw")
+    for file, words in (
+        ("shipped:golden", "infrared radiation of the file in all rows"),
+        (str(tmp_path / "a.epw"), "in 30 of 8760 rows, which have none, the model"),
+        (str(tmp_path / "none.epw"), "no infrared radiation in the file: a model in all rows"),
+    ):
+        assert cli.main(["weather", file]) == 0
+        assert f"sky of a run: {words}" in capsys.readouterr().out
 
 
 def quarters(lines: list[Fields]) -> list[Fields]:
@@ -219,3 +258,91 @@ def test_the_polar_night_is_no_stuck_sensor() -> None:
     )  # fmt: skip
     assert [part for part in read.quality() if part.channel == "global_horizontal"] == []
     assert isinstance(read.site, Place)
+
+
+def test_rows_of_the_log_w01_w02_leap_years(chicago: list[Fields], tmp_path: Path) -> None:
+    """W01: February of a leap year with 28 days. W02: 8784 hours of 2020 keep 29 February."""
+
+    def leap_year(fields: Fields) -> None:
+        fields[0] = "2020" if fields[1] == "2" else fields[0]
+
+    typical = climate(changed(chicago, leap_year), tmp_path)
+    assert len(typical.data) == 8760
+    assert typical.grid.periodic
+    rows = [list(fields) for fields in chicago]
+    for fields in rows[8:]:
+        fields[0] = "2020"
+    added = [
+        [*fields[:2], "29", *fields[3:6], "33.3", *fields[7:]] for fields in rows[8 + 58 * 24 : 8 + 59 * 24]
+    ]
+    leap = climate([*rows[: 8 + 59 * 24], *added, *rows[8 + 59 * 24 :]], tmp_path)
+    assert len(leap.data) == 8784
+    day = leap.data.loc["2020-02-29 01:00":"2020-02-29 23:00", "air_temperature"]
+    assert (day == 33.3).all()
+
+
+def test_row_w04_no_infrared_runs_with_the_model(tmp_path: Path) -> None:
+    golden = [line.split(",") for line in content(found("shipped:golden")).decode("utf-8-sig").splitlines()]
+    none = climate(changed(golden, set_to((12, "9999"))), tmp_path)
+    building = box().replace({"site.latitude": 39.74, "site.longitude": -105.18})
+    span = {"start": "2001-07-01", "end": "2001-07-04", "step": "1h", "initial": 20.0}
+    plain = simulate(building, none, **span)
+    stated = simulate(building.replace({"site.sky": "martin_berdahl"}), Climate.shipped("golden"), **span)
+    for name in plain:
+        assert np.array_equal(plain[name].to_numpy(), stated[name].to_numpy())
+
+
+def test_row_w12_written_and_read_again(tmp_path: Path) -> None:
+    for name in ("golden", "chicago"):
+        first = Climate.shipped(name)
+        write_epw(first, tmp_path / "again.epw")
+        again = Climate.from_epw(tmp_path / "again.epw")
+        assert again.grid == first.grid
+        for channel in ("air_temperature", "global_horizontal", "direct_normal", "infrared"):
+            assert again.data[channel].to_numpy() == pytest.approx(first.data[channel].to_numpy(), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("latitude", "longitude", "zone"),
+    [
+        (28.6, 77.2, 5.5),
+        (69.7, 18.9, 1.0),
+        (-37.7, 144.8, 10.0),
+        (-0.2, -78.5, -5.0),
+        (65.0, 179.9, 12.0),
+        (-18.0, -179.0, 12.0),
+    ],
+)
+def test_rows_w15_w16_w17_places_of_the_world(
+    chicago: list[Fields], tmp_path: Path, latitude: float, longitude: float, zone: float
+) -> None:
+    """A zone of 5.5 h, midnight sun, date line, south, equator: a clear sky with pvlib's sun passes."""
+    import pvlib
+
+    time = pd.date_range("2023-01-01 00:00", periods=8760 * 6, freq="10min", tz="UTC") + pd.Timedelta("5min")
+    time -= pd.Timedelta(hours=zone)
+    sine = np.sin(
+        np.radians(pvlib.solarposition.get_solarposition(time, latitude, longitude)["elevation"].to_numpy())
+    )
+    sine = np.maximum(sine, 0.0)
+    beam = 1361.0 * np.exp(-0.2 / np.maximum(sine, 0.02)) * (sine > 0.0)
+    diffuse = 90.0 * np.sqrt(sine)
+    means = [x.reshape(8760, 6).mean(axis=1) for x in (beam * sine + diffuse, beam, diffuse)]
+    rows = [list(fields) for fields in chicago]
+    rows[0][6:9] = [str(latitude), str(longitude), str(zone)]
+    for k, fields in enumerate(rows[8:]):
+        fields[0] = "2023"
+        fields[13:16] = [f"{column[k]:.2f}" for column in means]
+    read = climate(rows, tmp_path)
+    place = read.site
+    assert place is not None
+    day = read.completed().forcing(place, "2023-06-20", "2023-06-22", 3600.0)
+    total = day[..., CHANNELS.index("global_horizontal")].mean()
+    first = int((pd.Timestamp("2023-06-20") - pd.Timestamp("2023-01-01")) / pd.Timedelta("1h"))
+    assert total == pytest.approx(means[0][first : first + 48].mean(), rel=0.01)
+    dark = [
+        part
+        for part in read.quality()
+        if part.channel in ("global_horizontal", "direct_normal") and part.kind == "stuck"
+    ]
+    assert not dark

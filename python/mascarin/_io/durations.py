@@ -19,6 +19,8 @@ _SECONDS: Final = {
 _SHORTEST: Final = 1e-6
 _LONGEST: Final = 400 * 366 * 86400.0
 
+_DAY: Final = 86400.0
+
 _TIMES: Final = "a positive time such as 900, 15min or 1h"
 
 _LENGTH_OF_TIME: Final = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(_SECONDS)})?", re.IGNORECASE)
@@ -58,3 +60,41 @@ def seconds_of(step: str | float, where: str = "step") -> float:
             f"{where}: found {step!r}; expected {_TIMES}, from {_SHORTEST:g} s to {_LONGEST:g} s"
         )
     return seconds
+
+
+def shift_of(shift: str | float, where: str = "shift") -> float:
+    """A shift of a clock, which may be negative.
+
+    Parameters
+    ----------
+    shift : str or float
+        Text such as `30min` or `-1h`, or a number of seconds [s].
+    where : str
+        Name of the shift, for the error.
+
+    Returns
+    -------
+    float
+        Shift [s].
+
+    Raises
+    ------
+    InputError
+        No time of at most a day can be read.
+
+    Examples
+    --------
+    >>> shift_of("-30min"), shift_of("1h"), shift_of(0)
+    (-1800.0, 3600.0, 0.0)
+    """
+    text = str(shift).strip()
+    sign = -1.0 if text[:1] in ("-", "\u2212") else 1.0
+    plain = text.lstrip("+-\u2212")
+    match = _LENGTH_OF_TIME.fullmatch(plain)
+    seconds = float(match[1]) * _SECONDS[(match[2] or "s").lower()] if match is not None else -1.0
+    if isinstance(shift, bool) or len(text) - len(plain) > 1 or not 0.0 <= seconds <= _DAY:
+        raise InputError(
+            f"{where}: found {shift!r}; expected a time of at most one day with or without a sign, such as "
+            "30min or -1h"
+        )
+    return sign * seconds if seconds else 0.0

@@ -6,7 +6,7 @@ import contextlib
 import csv
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, TextIO
 
 from mascarin.errors import InputError
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 _EXACT: Final = (3, 1)
 
 
-def read_csv(path: Path | TextIO, **options: Any) -> pd.DataFrame:
+def read_csv(path: Path | TextIO | BinaryIO, **options: Any) -> pd.DataFrame:
     r"""Read a CSV file; each number is the floating-point number nearest to its text.
 
     Older versions of pandas read some numbers with an error in the last digit, unless asked not to.
 
     Parameters
     ----------
-    path : Path or text file
+    path : Path or file
         The file.
     **options
         Passed to `pandas.read_csv`.

@@ -19,6 +19,7 @@ from mascarin.commands.inputs import (
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,
@@ -63,6 +64,7 @@ def explore(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
 ) -> None:
     """Move sliders and see the curves of a building.
 
@@ -102,7 +104,7 @@ def explore(
     with lines_named(building), identity.outputs(target):
         climate, measured = run_inputs(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
-            allow_outside=allow_outside, check_sun=check_sun,
+            allow_outside=allow_outside, check_sun=check_sun, shift=shift,
         )  # fmt: skip
         options: dict[str, Any] = {
             "start": start,

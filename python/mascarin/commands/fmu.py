@@ -14,6 +14,7 @@ from mascarin.commands.inputs import (
     CheckSun,
     Outside,
     Settings,
+    Shift,
     Step,
     matching_outputs,
     read_building,
@@ -47,6 +48,7 @@ def fmu(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     fmi: Literal["3.0", "2.0"] = "3.0",
 ) -> int:
     """Write a building as a unit for co-simulation (FMU).
@@ -111,6 +113,7 @@ def fmu(
             stamps=stamps,
             allow_outside=allow_outside,
             check_sun=check_sun,
+            shift=shift,
         )
         simulation = Simulation(
             described, climate, measurements=measured, step=seconds(step), start=start, end=end,

@@ -65,6 +65,15 @@ CheckSun = Annotated[
     bool,
     Parameter(help="Refuse a weather file or table whose radiation does not follow the sun of its place."),
 ]
+Shift = Annotated[
+    str | None,
+    Parameter(
+        negative="",
+        help="Added to all times of the weather and of measured tables, such as 30min; a negative "
+        "one is written "
+        "--shift=-30min.",
+    ),
+]
 Stamps = Annotated[
     Literal["start", "end"],
     Parameter(help="Which end of its interval a stamp of a measured table marks."),
@@ -176,7 +185,7 @@ def _suggestion(pattern: str, names: Sequence[str]) -> str:
     return did_you_mean(pattern, candidates or names)
 
 
-def read_weather(file: Path, *, check_sun: bool = True) -> Climate:
+def read_weather(file: Path, *, check_sun: bool = True, shift: str | None = None) -> Climate:
     """Read a weather file, whose name gives its format, or a climate that comes with Mascarin.
 
     Raises
@@ -188,12 +197,12 @@ def read_weather(file: Path, *, check_sun: bool = True) -> Climate:
     from mascarin.weather.shipped import PREFIX
 
     if str(file).startswith(PREFIX):
-        return Climate.from_epw(file, check_sun=check_sun)
+        return Climate.from_epw(file, check_sun=check_sun, shift=shift)
     match file.suffix.lower():
         case ".epw":
-            return Climate.from_epw(file, check_sun=check_sun)
+            return Climate.from_epw(file, check_sun=check_sun, shift=shift)
         case ".csv":
-            return Climate.from_tmy(file, check_sun=check_sun)
+            return Climate.from_tmy(file, check_sun=check_sun, shift=shift)
         case suffix:
             raise InputError(
                 f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "

@@ -207,7 +207,7 @@ def described(product: Product) -> dict[str, Any]:
 
 
 def dsc(
-    file: Path,
+    files: tuple[Path, ...],
     /,
     *,
     out: Annotated[Path | None, Parameter(name=("--out", "-o"))] = None,
@@ -233,8 +233,9 @@ def dsc(
 
     Parameters
     ----------
-    file : Path
-        File of the measurement (differential scanning calorimeter).
+    files : tuple of Path
+        Files of the measurement (differential scanning calorimeter). Of several files of one material the
+        slowest runs are averaged, and their spread is stated.
     out : Path
         File for the material, in the form of a building file.
     name : str
@@ -259,12 +260,12 @@ def dsc(
     plot : Path
         File for a figure of enthalpy and apparent specific heat: SVG, PNG or PDF.
     """
-    from mascarin.materials.dsc import from_dsc
+    from mascarin.materials.dsc_several import from_dsc_files
 
     _require_format(plot)
     span = _interval(melting)
-    material = from_dsc(
-        file,
+    material = from_dsc_files(
+        files,
         unit=unit,
         rate=rate,
         mass=mass,

@@ -19,6 +19,7 @@ from mascarin.commands.inputs import (
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,
@@ -66,6 +67,7 @@ def run(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -107,15 +109,9 @@ def run(
     require_html("--report", report)
     with writing(out), writing(report), lines_named(building):
         climate, measured = run_inputs(
-            described,
-            weather,
-            measurements,
-            columns=columns or [],
-            timezone=timezone,
-            stamps=stamps,
-            allow_outside=allow_outside,
-            check_sun=check_sun,
-        )
+            described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
+            allow_outside=allow_outside, check_sun=check_sun, shift=shift,
+        )  # fmt: skip
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
             scheme=scheme, initial=_start(initial), more=report is not None,

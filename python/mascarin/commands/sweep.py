@@ -19,6 +19,7 @@ from mascarin.commands.inputs import (
     MeasuredTable,
     Outside,
     Settings,
+    Shift,
     Stamps,
     Step,
     Weather,
@@ -63,6 +64,7 @@ def sweep(
     settings: Settings = None,
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with many parameter values.
@@ -116,7 +118,7 @@ def sweep(
     statistics = {text: Statistic.read(text) for text in objectives or ()}
     climate, measured = run_inputs(
         described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
-        allow_outside=allow_outside, check_sun=check_sun,
+        allow_outside=allow_outside, check_sun=check_sun, shift=shift,
     )  # fmt: skip
     with lines_named(building), Progress("members") as progress:
         store = sweep_into(

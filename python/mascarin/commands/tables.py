@@ -32,6 +32,7 @@ def run_inputs(
     stamps: Stamps,
     allow_outside: bool = False,
     check_sun: bool = True,
+    shift: str | None = None,
 ) -> tuple[Climate, Measurements | None]:
     """Read the weather of a run, and the measured columns that its building names.
 
@@ -53,6 +54,8 @@ def run_inputs(
         Whether a YAML file may name files outside its folder.
     check_sun : bool
         Whether radiation that does not follow the sun is refused.
+    shift : str or None
+        Added to all times of the weather and of the tables.
 
     Raises
     ------
@@ -71,6 +74,12 @@ def run_inputs(
                 f"--no-check-sun: found beside {weather}; expected check_sun: false in that file, under "
                 "climate"
             )
+        if shift is not None:
+            raise InputError(
+                f"--shift: found beside {weather}; expected shift: {shift} in that file, beside the "
+                f"table, or "
+                "under climate for a weather file"
+            )
         if columns:
             raise InputError(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"
@@ -85,12 +94,12 @@ def run_inputs(
             )
         climate, measured = open_run_inputs(weather, building, allow_outside=allow_outside)
     elif columns or weather.suffix.lower() in _TABLES[1:]:
-        climate = _measured_weather(building, weather, columns, zone, stamps, check_sun)
+        climate = _measured_weather(building, weather, columns, zone, stamps, check_sun, shift)
         table = table or weather
     else:
-        climate = read_weather(weather, check_sun=check_sun)
+        climate = read_weather(weather, check_sun=check_sun, shift=shift)
     if table is not None and needed:
-        measured = Measurements.from_table(table, columns=needed, timezone=zone, stamps=stamps)
+        measured = Measurements.from_table(table, columns=needed, timezone=zone, stamps=stamps, shift=shift)
     if needed and measured is None:
         raise InputError(
             f"--measurements: not given; expected a table with the measured columns of this building: "
@@ -126,7 +135,13 @@ def show_columns(
 
 
 def _measured_weather(
-    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps, check_sun: bool
+    building: Building,
+    file: Path,
+    columns: Sequence[str],
+    zone: str,
+    stamps: Stamps,
+    check_sun: bool,
+    shift: str | None,
 ) -> Climate:
     from mascarin.tables.reading.table import read_table
     from mascarin.weather import Climate
@@ -144,7 +159,7 @@ def _measured_weather(
     try:
         return Climate.from_table(
             file, columns=chosen, absent=absent, timezone=zone, stamps=stamps, latitude=float(site.latitude),
-            longitude=float(site.longitude), altitude=float(site.altitude), check_sun=check_sun,
+            longitude=float(site.longitude), altitude=float(site.altitude), check_sun=check_sun, shift=shift,
         )  # fmt: skip
     except InputError as error:
         if "absent: [" not in str(error):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, CheckSun, read_weather
+from mascarin.commands.inputs import AsJson, CheckSun, Shift, read_weather
 from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError
 
@@ -30,6 +30,7 @@ def weather(
     heating_base: float = 18.0,
     cooling_base: float = 24.0,
     check_sun: CheckSun = True,
+    shift: Shift = None,
     as_json: AsJson = False,
 ) -> None:
     """Show and check a weather file.
@@ -64,7 +65,7 @@ def weather(
     from mascarin.weather import MonthlyChanges, morphed, overview, write_epw
 
     changes = None if morph is None else MonthlyChanges.read(morph)
-    climate = _checked(file, check_sun)
+    climate = _checked(file, check_sun, shift)
     if changes is not None:
         climate = morphed(climate, changes)
     summary = overview(climate, heating_base=heating_base, cooling_base=cooling_base)
@@ -82,7 +83,7 @@ def weather(
         _show(climate, summary, result)
 
 
-def _checked(file: Path, check_sun: bool) -> Climate:
+def _checked(file: Path, check_sun: bool, shift: str | None) -> Climate:
     """The climate, after a check that its radiation follows the sun."""
     from mascarin.errors import did_you_mean
     from mascarin.weather import SHIPPED
@@ -94,7 +95,7 @@ def _checked(file: Path, check_sun: bool) -> Climate:
         raise InputError(
             f"{file}: no such file; give the path from the folder you work in, or shipped:NAME. {hint}"
         )
-    climate = read_weather(file, check_sun=check_sun)
+    climate = read_weather(file, check_sun=check_sun, shift=shift)
     if climate.site is None:
         return climate
     completed = climate.completed()
@@ -116,11 +117,13 @@ def _list(as_json: bool) -> None:
 def _result(climate: Climate, overall: Overview) -> dict[str, Any]:
     from mascarin.comfort.outdoors import hours_in_givoni_zones
     from mascarin.weather import summary
+    from mascarin.weather.missing_infrared import sky_of_runs
 
     zones = hours_in_givoni_zones(climate) if "dew_point" in climate.data else {}
     months = {str(month): row.to_dict() for month, row in overall.months.iterrows()}
     return {
         **summary(climate),
+        "sky": sky_of_runs(climate.record),
         "quality": [
             {"column": defect.channel, "kind": defect.kind, "start": str(defect.start),
              "end": str(defect.end), "count": defect.count, "detail": defect.detail}
@@ -139,7 +142,9 @@ def _show(climate: Climate, summary: Overview, result: dict[str, Any]) -> None:
     if site is not None:
         print(f"{site.name}: {site.latitude:g} deg north, {site.longitude:g} deg east, {site.altitude:g} m")
     kind = "a typical year" if climate.grid.periodic else climate.grid.span()
-    print(f"{kind}, every {climate.grid.interval:g} s, {climate.timezone}\n")
+    print(f"{kind}, every {climate.grid.interval:g} s, {climate.timezone}")
+    print(f"sky of a run: {result['sky']}")
+    print(*(f"warning: {note}" for note in _warnings(climate)), "", sep="\n")
     _show_quality(result["quality"])
     table = summary.months.round(1)
     header = ["month", *(name.replace(", horizontal", "").replace(" [", "\n[") for name in table.columns)]
@@ -160,6 +165,13 @@ def _show(climate: Climate, summary: Overview, result: dict[str, Any]) -> None:
         zones = result["outdoor_hours_in_givoni_zones"]
         keys = list(next(iter(zones.values())))
         print_table(("air speed", *keys), [(speed, *hours.values()) for speed, hours in zones.items()])
+
+
+def _warnings(climate: Climate) -> list[str]:
+    """Warnings of the file and of its clock."""
+    used = climate.used.record
+    clock = [note.replace(": warning: ", ": ", 1) for note in used.provenance if ": warning: " in note]
+    return list(dict.fromkeys([*clock, *climate.record.warnings]))
 
 
 _SHORT = {

@@ -97,6 +97,48 @@ def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Fi
     return figure
 
 
+class Analysis(NamedTuple):
+    """What was done to the signal of a run.
+
+    Attributes
+    ----------
+    family : int
+        Number of the color.
+    temperature, baseline : array-like, shape (n,)
+        Sensible heat below the peak. [degC, J/(kg K)]
+    marks : sequence of float
+        Onset and end. [degC]
+    """
+
+    family: int
+    temperature: Any
+    baseline: Any
+    marks: Sequence[float]
+
+
+def draw_analysis(axes: Axes, runs: Sequence[Analysis]) -> None:
+    """Draw baseline, onset and end into the specific heat.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        With the apparent specific heat.
+    runs : sequence of Analysis
+        The runs.
+    """
+    import numpy as np
+
+    for run in runs:
+        color = colors.look(run.family).color
+        axes.plot(
+            run.temperature, np.asarray(run.baseline) / 1000.0, color=color, linewidth=0.8, linestyle="-.",
+            label="baseline; onset, end" if run is runs[0] else None,
+        )  # fmt: skip
+        for mark in run.marks:
+            axes.axvline(mark, color=color, linewidth=0.6, linestyle=":")
+    axes.legend(frameon=False, fontsize="small")
+
+
 def panels(groups: Mapping[str, Sequence[Curve]]) -> Figure:
     """Draw the enthalpy of many materials, each in a panel of its own, with the same scale upwards.
 

@@ -1,14 +1,7 @@
-"""A material from a calorimeter file: sensible and latent heat, the curve as a table, fitted laws.
-
-The signal becomes an apparent specific heat. Beside the peak it is that of the solid and of the liquid;
-below the peak the sensible heat changes from one to the other with the liquid fraction (Hemminger & Sarge
-1991, J. Thermal Anal. 37, 1455), so that ``h(T, xi) = c_s (T - Tr) + xi [L + (c_l - c_s)(T - Tr)]`` is valid
-for the file as for the engine. The rest is melting.
-"""
+"""A material from a calorimeter file: its curve as a table, fitted laws, heating and cooling compared."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -16,9 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.materials.dsc_file import Scan, Settings, read
-from mascarin.materials.laws import LAWS, LawFit, fit
-from mascarin.materials.units import check_heat
+from mascarin.materials.dsc_file import Settings, read
+from mascarin.materials.dsc_melting import Melting, melting_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -27,69 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from mascarin.figures.melting import Curve
+    from mascarin.figures.melting import Analysis, Curve
 
     Array = npt.NDArray[np.float64]
 
-EDGE: Final = 0.08
-"""Fraction of the temperatures at each end without melting, unless a range is given."""
-
 MOST_POINTS: Final = 60
 """Points of the curve in a description."""
-
-SLOW: Final = 0.5
-"""A faster heating rate broadens and shifts the curve; walls change by some kelvins an hour [K/min]."""
-
-TAIL: Final = 0.002
-"""Liquid fraction at which melting has started; it is complete this far below one."""
-
-
-@dataclass(frozen=True)
-class Melting:
-    """Results of one run.
-
-    Attributes
-    ----------
-    direction : str
-        ``heating`` or ``cooling``.
-    temperature, fraction : ndarray, shape (N,)
-        Liquid fraction over temperature, from 0 to 1 [degC, -].
-    heat : ndarray, shape (N,)
-        Apparent specific heat, sensible part included [J/(kg K)].
-    specific_heat : tuple of float
-        Of solid and liquid [J/(kg K)].
-    latent_heat : float
-        At the temperature at which half is liquid [J/kg].
-    onset, peak, end : float
-        Extrapolated onset and end (tangents at the steepest flanks), largest specific heat [degC].
-    rate : float or None
-        Heating rate [K/min].
-    fits : tuple of LawFit
-        Fitted laws, the best first.
-    """
-
-    direction: str
-    temperature: Array
-    fraction: Array
-    heat: Array
-    specific_heat: tuple[float, float]
-    latent_heat: float
-    onset: float
-    peak: float
-    end: float
-    rate: float | None
-    fits: tuple[LawFit, ...]
-
-    @property
-    def half(self) -> float:
-        """Temperature at which half is liquid [degC]."""
-        return float(np.interp(0.5, self.fraction, self.temperature))
-
-    @property
-    def melting_range(self) -> tuple[float, float]:
-        """Temperatures at which melting has started and is complete, within `TAIL` [degC]."""
-        low, high = np.interp([TAIL, 1.0 - TAIL], self.fraction, self.temperature)
-        return float(low), float(high)
 
 
 @dataclass(frozen=True)
@@ -184,6 +119,8 @@ class DscMaterial:
     def plot(self, *, ax: Sequence[Axes] | None = None) -> Figure:
         """Plot the runs and the best law: enthalpy above, apparent specific heat below.
 
+        Below also the sensible heat that was taken as the baseline, and onset and end.
+
         Parameters
         ----------
         ax : sequence of two matplotlib.axes.Axes, optional
@@ -196,7 +133,9 @@ class DscMaterial:
         """
         from mascarin.figures import melting
 
-        return melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
+        figure = melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
+        melting.draw_analysis((ax or figure.axes)[1], [_analysis(n, run) for n, run in enumerate(self.runs)])
+        return figure
 
 
 def from_dsc(
@@ -263,130 +202,11 @@ def from_dsc(
         if value is not None and not value > 0.0:
             raise InputError(f"{name}: found {value:g}; expected a positive number")
     scans = read(file, Settings(unit, rate, mass, tuple(map(str, segments))))
-    found = [_melting(scan, specific_heat, melting_range, scan.place) for scan in scans]
+    found = [melting_of(scan, specific_heat, melting_range, scan.place) for scan in scans]
     runs = tuple(sorted((run for run, _ in found), key=lambda run: run.direction != "heating"))
     remarks = [remark for scan in scans for remark in scan.remarks]
     remarks += [remark for _, one in found for remark in one]
     return DscMaterial(file.stem, runs, (*dict.fromkeys(remarks), *_compared(runs)))
-
-
-def _melting(
-    scan: Scan,
-    given: tuple[float, float] | None,
-    span: tuple[float, float] | None,
-    where: str,
-) -> tuple[Melting, list[str]]:
-    t, heat = scan.temperature, scan.heat
-    low, high = _edges(t, span, f"{where}: {scan.direction}")
-    solid, liquid = (float(np.median(heat[part])) for part in (t <= low, t >= high))
-    remarks = []
-    height = float(heat.max()) - 0.5 * (solid + liquid)
-    if max(abs(solid), abs(liquid)) < 0.02 * height and max(abs(solid), abs(liquid)) < 100.0:
-        if given is None:
-            raise InputError(
-                f"{where}: {scan.direction}: found no sensible heat beside the peak: the baseline was "
-                "subtracted; expected specific_heat=(solid, liquid) in J/(kg K)"
-            )
-        heat = heat + np.interp(t, [low, high], given)
-        solid, liquid = given
-    for base in (solid, liquid):
-        check_heat(base, scan.column, where, scan.factor)
-    if not height > 0.2 * max(solid, liquid):
-        raise InputError(
-            f"{where}: {scan.direction}: found no peak above the sensible heat ({heat.max():.4g} against "
-            f"{max(solid, liquid):.4g} J/(kg K)); expected a run through the whole melting range"
-        )
-    with np.errstate(all="ignore"):  # a curve that cannot be used is refused below
-        fraction, latent = _fractions(t, heat, (solid, liquid), (low, high))
-    if not (np.isfinite(fraction).all() and math.isfinite(latent) and latent > 0.0):
-        raise InputError(
-            f"{where}: {scan.direction}: found no latent heat that is positive between {low:.4g} and "
-            f"{high:.4g} degC (the signal is {heat.min():.4g} to {heat.max():.4g} J/(kg K)); expected a peak "
-            "above the sensible heat of solid and liquid. Remove rows that are wrong, or give melting_range"
-        )
-    steepest = 0.03 * height
-    for part, name in ((t <= low, "begins"), (t >= high, "ends")):
-        if span is None and np.ptp(heat[part]) > steepest + 0.1 * max(solid, liquid):
-            remarks.append(
-                f"{scan.direction}: the file {name} where the specific heat still changes: latent heat "
-                "and tails are uncertain; measure further, or give melting_range"
-            )
-    if scan.rate is not None and scan.rate > SLOW:
-        remarks.append(
-            f"{scan.direction}: {scan.rate:g} K/min is faster than in any wall: the sample lags behind the "
-            "oven, which broadens the curve and shifts it in the direction of the run; expect a kelvin "
-            "or more, and vary temperature_shift or the melting temperature"
-        )
-    onset, end = _tangents(t, heat, (solid, liquid))
-    fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda one: one.residual))
-    peak = float(t[np.argmax(heat)])
-    melting = Melting(
-        scan.direction, t, fraction, heat, (solid, liquid), latent, onset, peak, end, scan.rate, fits
-    )
-    return melting, remarks
-
-
-def _edges(t: Array, span: tuple[float, float] | None, where: str) -> tuple[float, float]:
-    if span is None:
-        return float(t[0] + EDGE * np.ptp(t)), float(t[-1] - EDGE * np.ptp(t))
-    low, high = span
-    if not t[0] < low < high < t[-1]:
-        raise InputError(
-            f"{where}: melting_range: found {low:g} to {high:g} degC; expected a range inside the file's "
-            f"{t[0]:g} to {t[-1]:g} degC"
-        )
-    return low, high
-
-
-def _fractions(
-    t: Array, heat: Array, heats: tuple[float, float], edges: tuple[float, float]
-) -> tuple[Array, float]:
-    """Liquid fraction and latent heat by iteration: baseline and fraction depend on each other."""
-    solid, liquid = heats
-    inside = (t > edges[0]) & (t < edges[1])
-    fraction = np.clip((t - edges[0]) / (edges[1] - edges[0]), 0.0, 1.0)
-    latent, centre = 1.0, 0.5 * (edges[0] + edges[1])
-    for _ in range(100):
-        excess = np.where(inside, heat - solid - (liquid - solid) * fraction, 0.0)
-        taken = _integral(t, excess)
-        before, latent = latent, _latent(t, excess, liquid - solid, centre, max(float(taken[-1]), 1.0))
-        rise = np.maximum(excess / (latent + (liquid - solid) * (t - centre)), 0.0)
-        grown = _integral(t, rise)
-        fraction = grown / grown[-1]
-        centre = float(np.interp(0.5, fraction, t))
-        if abs(latent - before) < 1e-9 * latent:
-            break
-    return fraction, latent
-
-
-def _latent(t: Array, excess: Array, difference: float, centre: float, guess: float) -> float:
-    """Latent heat at the centre for which the fraction ends at one."""
-    latent = guess
-    for _ in range(50):
-        whole = float(_integral(t, excess / (latent + difference * (t - centre)))[-1])
-        latent *= whole
-        if abs(whole - 1.0) < 1e-12:
-            break
-    return latent
-
-
-def _integral(t: Array, y: Array) -> Array:
-    """Integral from the first point, by the trapezoidal rule."""
-    return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))])
-
-
-def _tangents(t: Array, heat: Array, heats: tuple[float, float]) -> tuple[float, float]:
-    """Extrapolated onset and end: the steepest tangents of the flanks intersect the sensible heat."""
-    # Rows that are much closer than the others, such as those of a hold, have slopes of noise.
-    apart = np.concatenate([[True], np.diff(t) > 0.2 * float(np.median(np.diff(t)))])
-    t, heat = t[apart], heat[apart]
-    slope = np.gradient(heat, t)
-    top = int(np.argmax(heat))
-    up = int(np.argmax(slope[: top + 1]))
-    down = top + int(np.argmin(slope[top:]))
-    onset = t[up] - (heat[up] - heats[0]) / slope[up] if slope[up] > 0 else t[0]
-    end = t[down] - (heat[down] - heats[1]) / slope[down] if slope[down] < 0 else t[-1]
-    return float(max(onset, t[0])), float(min(end, t[-1]))
 
 
 def table(run: Melting) -> tuple[list[float], list[float]]:
@@ -426,6 +246,13 @@ def _compared(runs: Sequence[Melting]) -> list[str]:
         lines.append(
             f"latent heat on heating and cooling differ by {apart:.0%}: different integration limits, or "
             "a run that did not melt or freeze everything"
+        )
+    if cooling.freezing is not None:
+        begins, rise = cooling.freezing
+        lines.append(
+            f"supercooling: freezing begins at {begins:.2f} degC, {heating.onset - begins:.2f} K "
+            f"below the onset of "
+            f"melting ({heating.onset:.2f} degC), and the sample warms by {rise:.2f} K (recalescence)"
         )
     gap = heating.half - cooling.half
     if gap > 0.5:
@@ -468,6 +295,7 @@ def _summary(run: Melting) -> dict[str, Any]:
         "half": run.half,
         "melting_range": list(run.melting_range),
         "rate": run.rate,
+        "freezing": None if run.freezing is None else {"begins": run.freezing[0], "rise": run.freezing[1]},
         "fits": {
             one.law.name: {
                 "rms": one.residual,
@@ -482,6 +310,15 @@ def _summary(run: Melting) -> dict[str, Any]:
 
 def _listed(value: float | tuple[float, float]) -> float | list[float]:
     return [float(x) for x in value] if isinstance(value, tuple | list) else float(value)
+
+
+def _analysis(number: int, run: Melting) -> Analysis:
+    """What was done to the signal of a run."""
+    from mascarin.figures import melting
+
+    solid, liquid = run.specific_heat
+    baseline = solid + (liquid - solid) * run.fraction
+    return melting.Analysis(number, run.temperature, baseline, (run.onset, run.end))
 
 
 def _curves(number: int, run: Melting) -> Iterator[Curve]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -11,7 +12,7 @@ import numpy as np
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 from mascarin.materials.dsc_formats import Export, export_of
-from mascarin.materials.dsc_segments import segments_of, supercooling
+from mascarin.materials.dsc_segments import recalescence, segments_of, supercooling
 from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
 from mascarin.tables.reading.layout import decoded
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 LEAST_ROWS: Final = 10
 #: Larger numbers are no measurement in any unit: water has 4e6 J/(kg K) at its sharpest peaks.
 LARGEST: Final = 1e9
+_SAMPLE: Final = re.compile(r"sample|probe", re.IGNORECASE)
+_BASELINE: Final = re.compile(r"baseline", re.IGNORECASE)
 SIGNALS: Final = ("heat flow", "specific heat", "enthalpy")
 
 
@@ -48,6 +51,8 @@ class Scan:
         Decisions that were made while reading.
     place : str
         File, and line of the names of its columns.
+    freezing : (float, float) or None
+        Temperature at which a supercooled sample begins to freeze [degC], and rise from there [K].
     """
 
     direction: str
@@ -58,6 +63,7 @@ class Scan:
     factor: float
     remarks: tuple[str, ...]
     place: str
+    freezing: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -107,6 +113,7 @@ def read(path: Path, settings: Settings) -> list[Scan]:
             f"{place}: found the columns {', '.join(names)}; expected a signal such as 'cp [J/(g K)]', "
             "'DSC/(mW/mg)' or 'enthalpy [J/g]'"
         )
+    signals = [column for column in signals if not _BASELINE.search(column.name)] or signals
     quantities = dict.fromkeys(column.quantity for column in signals)
     if len(quantities) > 1:
         raise InputError(
@@ -169,6 +176,9 @@ def _export(path: Path) -> Export:
 
 def _one(columns: list[Column], quantity: str, names: list[str], place: str) -> Column:
     found = [column for column in columns if column.quantity == quantity]
+    if len(found) > 1:
+        # PerkinElmer and Setaram give the temperature of the program or furnace, too.
+        found = [column for column in found if _SAMPLE.search(column.name)] or found
     if len(found) != 1:
         raise InputError(
             f"{place}: found {len(found)} columns of {quantity} among {', '.join(names)}; expected one, "
@@ -250,7 +260,9 @@ def _scan(
                 f"{direction}: the file says that heat given off points {'up' if exothermal_up else 'down'}, "
                 "but the peak points the other way: the peak was followed"
             )
-    return Scan(direction, t, heat, rate, signal, factor, tuple(remarks), place)
+    return Scan(
+        direction, t, heat, rate, signal, factor, tuple(remarks), place, recalescence(values[:, 0], direction)
+    )
 
 
 def _upside_down(heat: Array) -> bool:

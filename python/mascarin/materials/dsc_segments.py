@@ -189,6 +189,34 @@ def _turning_point(temperature: Array, place: str) -> int:
     return turn
 
 
+def recalescence(temperature: Array, direction: str) -> tuple[float, float] | None:
+    """Where freezing begins in a cooling run whose temperature rises, and by how much it rises.
+
+    Parameters
+    ----------
+    temperature : ndarray, shape (N,)
+        Of one run, in the order of the file [degC].
+    direction : str
+        ``heating`` or ``cooling``.
+
+    Returns
+    -------
+    (float, float) or None
+        Temperature of nucleation [degC] and rise [K]; None where it does not rise.
+
+    Examples
+    --------
+    >>> recalescence(np.array([25.0, 22.0, 20.0, 22.5, 22.0, 15.0]), "cooling")
+    (20.0, 2.5)
+    """
+    if direction != "cooling" or temperature[-1] > temperature[0]:
+        return None
+    lowest = np.minimum.accumulate(temperature)
+    rise = temperature - lowest
+    top = int(np.argmax(rise))
+    return (float(lowest[top]), float(rise[top])) if rise[top] > _RISE else None
+
+
 def supercooling(temperature: Array, direction: str) -> list[str]:
     """What is to be said of a temperature that rises while the oven cools: the sample was supercooled.
 
@@ -204,15 +232,12 @@ def supercooling(temperature: Array, direction: str) -> list[str]:
     >>> supercooling(np.array([25.0, 22.0, 20.0, 22.5, 22.0, 15.0]), "cooling")
     ['cooling: the temperature rises by 2.5 K from 20.00 degC on: the sample was ...
     """
-    if direction != "cooling" or temperature[-1] > temperature[0]:
-        return []
-    lowest = np.minimum.accumulate(temperature)
-    rise = temperature - lowest
-    top = int(np.argmax(rise))
-    if rise[top] <= _RISE:
+    freezing = recalescence(temperature, direction)
+    if freezing is None:
         return []
     return [
-        f"cooling: the temperature rises by {rise[top]:.1f} K from {lowest[top]:.2f} degC on: the sample was "
+        f"cooling: the temperature rises by {freezing[1]:.1f} K from {freezing[0]:.2f} degC on: the "
+        f"sample was "
         "supercooled, and the curve over temperature does not show how it freezes; use the heating run, or "
         "give the law its supercooling"
     ]

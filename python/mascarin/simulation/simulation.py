@@ -33,6 +33,7 @@ from mascarin.simulation.run_summary import Finished, StoredRun
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
 from mascarin.weather.brightness import findings
+from mascarin.weather.sun_check import check_clock
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -444,7 +445,9 @@ class Simulation(VectorRuns):
         from mascarin.building.checks import plausibility  # pydantic, as above
 
         site = self.building.site
-        sun = findings(self.climate.record, float(site.latitude), float(site.longitude))
+        place = float(site.latitude), float(site.longitude)
+        record = self.climate.record
+        sun = (*findings(record, *place), *(check_clock(record, *place) if record.check_sun else ()))
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:

@@ -6,8 +6,13 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
-from mascarin.building.base.part import Part, fault, insist
-from mascarin.study.field_types import Columns, Duration, TimeZone
+from mascarin.building.base.part import Part
+from mascarin.building.base.part import fault
+from mascarin.building.base.part import insist
+from mascarin.study.field_types import Columns
+from mascarin.study.field_types import Duration
+from mascarin.study.field_types import TimeZone
+from mascarin.study.field_types import Shift
 
 if TYPE_CHECKING:
     from typing import Self
@@ -15,7 +20,7 @@ if TYPE_CHECKING:
 #: Keys of a table that hold for weather and measurements where both are in it.
 OF_THE_TABLE: Final = (
     "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
-    "tolerance",
+    "tolerance", "shift",
 )  # fmt: skip
 
 #: Keys of a study that name files.
@@ -53,6 +58,9 @@ class Table(Part):
         description="Largest deviation of a stamp from the regular grid, to which it is moved; by default a "
         "tenth of the step",
     )
+    shift: Shift | None = Field(
+        None, description="Added to every stamp, such as -30min where the clock of the logger was fast"
+    )
     fill_gaps: Duration | None = Field(
         None,
         description="Gaps up to this length are filled by linear interpolation in the inputs of the model, "
@@ -78,6 +86,7 @@ class Table(Part):
             "mean",
             "missing",
             "tolerance",
+            "shift",
         )
         return {key: getattr(self, key) for key in keys}
 
@@ -113,10 +122,16 @@ class ClimateSource(Part):
     tmy: str | None = Field(None, description="TMY3 file")
     measured: MeasuredWeather | None = Field(None, description="A measured table")
     check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
+    shift: Shift | None = Field(
+        None, description="Added to all times of a weather file; that of a table is stated beside its columns"
+    )
 
     @model_validator(mode="after")
     def _one(self) -> Self:
         given = [key for key in ("epw", "tmy", "measured") if getattr(self, key) is not None]
         if len(given) != 1:
             insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
+        if self.shift is not None and self.measured is not None:
+            insist(fault(("shift",), f"{self.shift} beside measured", "the shift of a table under measured",
+                         f"Write shift: {self.shift} under measured."))  # fmt: skip
         return self

@@ -23,6 +23,17 @@ def _duration(text: str) -> str:
     return text
 
 
+def _shift(text: str) -> str:
+    """A shift of a clock that can be read."""
+    from mascarin._io.durations import shift_of
+
+    try:
+        shift_of(text)
+    except InputError:
+        raise problem(f"'{text}'", "a time of at most one day", "Write 30min, -1h or 90s.") from None
+    return text
+
+
 def _seconds(given: Any) -> Any:
     """A number without a unit is a number of seconds."""
     return f"{given}s" if isinstance(given, int | float) and not isinstance(given, bool) else given
@@ -110,6 +121,12 @@ Duration = Annotated[
     str,
     BeforeValidator(_seconds),
     AfterValidator(_duration),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
+]
+Shift = Annotated[
+    str,
+    BeforeValidator(_seconds),
+    AfterValidator(_shift),
     WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
 ]
 TimeZone = Annotated[str, BeforeValidator(_timezone)]

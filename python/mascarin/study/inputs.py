@@ -117,10 +117,11 @@ def open_climate(source: ClimateSource, beside: Beside, building: Building, plac
         with places.blame("climate", "epw"):
             shipped = source.epw.startswith(PREFIX)
             path = source.epw if shipped else find(source.epw, beside)
-            return Climate.from_epw(path, check_sun=source.check_sun)
+            return Climate.from_epw(path, check_sun=source.check_sun, shift=source.shift)
     if source.tmy is not None:
         with places.blame("climate", "tmy"):
-            return Climate.from_tmy(find(source.tmy, beside), check_sun=source.check_sun)
+            path = find(source.tmy, beside)
+            return Climate.from_tmy(path, check_sun=source.check_sun, shift=source.shift)
     if source.measured is not None:
         return _measured_climate(source.measured, beside, building.site, places, source.check_sun)
     raise InputError("climate: nothing given; expected one of epw, tmy, measured")

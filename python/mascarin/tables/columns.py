@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
-from mascarin.tables.units import CONVERTED, FACTORS, StatedUnit, conversion, parse_unit, units_of
+from mascarin.tables.units import CONVERTED, FACTORS, HEATS, StatedUnit, conversion, parse_unit, units_of
 
 
 @dataclass(frozen=True)
@@ -192,7 +193,10 @@ class Column:
             values = values * found[0] + found[1]
         return values * self.scale + self.offset
 
-    def line(self, name: str, unit: str, values: Array, stated: StatedUnit | None) -> str:
+    def line(
+        self, name: str, unit: str, values: Array, stated: StatedUnit | None,
+        words: Mapping[str, int] = MappingProxyType({}),
+    ) -> str:  # fmt: skip
         """What was read, in one line.
 
         Parameters
@@ -205,6 +209,8 @@ class Column:
             After the conversion.
         stated : StatedUnit or None
             What the file states.
+        words : mapping of str to int
+            Words for no value, and how often they stand in the column.
 
         Returns
         -------
@@ -212,7 +218,9 @@ class Column:
             Name, unit in the file, conversion, range, missing values, and whether all are equal.
         """
         own = self.unit or ""
-        after = unit or (FACTORS[own][0] if own in FACTORS else "W/m2" if own else "")
+        after = unit or (
+            FACTORS[own][0] if own in FACTORS else "W" if own in HEATS else "W/m2" if own else ""
+        )
         parts = [f"column {self.column!r}" if self.column != name else "column"]
         by = f" ({stated.place})" if stated is not None and not self.overrule else " (as stated)"
         if self.unit is not None and self.unit != after:
@@ -231,7 +239,9 @@ class Column:
         low, high = float(there.min()), float(there.max())
         extent = f"constant {low:.4g}" if low == high else f"{low:.4g} .. {high:.4g}"
         absent = len(values) - len(there)
-        return f"{name}: {', '.join(parts)}; {extent}{' ' * bool(after)}{after}, {absent} missing."
+        listed = ", ".join(f"{count} {word!r}" for word, count in words.items())
+        counted = f" ({listed})" if listed else ""
+        return f"{name}: {', '.join(parts)}; {extent}{' ' * bool(after)}{after}, {absent} missing{counted}."
 
 
 def _same(unit: str | None, other: str, interval: float) -> bool:

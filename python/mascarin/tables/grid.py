@@ -99,7 +99,10 @@ class Grid:
     def _in_any_year(self, seconds: Array) -> Rows:
         """Row of the same local time in the stored year; 29 February takes the values of 28 February."""
         offset = self.zone.utcoffset(datetime(2001, 1, 1))
-        local = seconds + (offset.total_seconds() if offset is not None else 0.0)
+        early = offset.total_seconds() if offset is not None else 0.0
+        # The first row begins at midnight, unless all times were shifted.
+        midnight = round((self.start + early) / _DAY) * _DAY
+        local = seconds + early - (self.start + early - midnight)
         days = np.floor(local / _DAY + 1e-9)
         date = days.astype(np.int64).astype("datetime64[D]")
         year = date.astype("datetime64[Y]")

@@ -30,11 +30,14 @@ class Origin:
         Whether the file or the user states the unit.
     line : str
         Name, unit in the file, conversion, range and missing values.
+    of_interval : bool
+        Whether the file has sums over intervals, which became means.
     """
 
     unit: str
     stated: bool
     line: str
+    of_interval: bool = False
 
 
 @dataclass(frozen=True, eq=False)

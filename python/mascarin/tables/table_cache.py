@@ -14,6 +14,7 @@ from mascarin.tables import columns, interval_labels, timezones, units
 from mascarin.tables.grid import Grid
 from mascarin.tables.reading import clocks, files, layout, numbers, records, rows, spreadsheets, table
 from mascarin.tables.reading.files import file_hash
+from mascarin.tables.reading.own_readers import reader_of
 from mascarin.tables.record import Origin, Record
 from mascarin.tables.timezones import parse_timezone
 
@@ -58,7 +59,8 @@ def cached_record(
     Record
         The same, whether it was kept or made.
     """
-    if not isinstance(source, str | Path) or timezone is None:
+    # What readers of others make depends on their code, which is not known.
+    if not isinstance(source, str | Path) or timezone is None or reader_of(Path(source)) is not None:
         return make()
     path = Path(source)
     zone = parse_timezone(timezone, f"{path.name}: timezone")
@@ -84,7 +86,9 @@ def _packed(record: Record) -> Cached:
         "closing": {name: float(value) for name, value in record.closing.items()},
         "sha256": record.sha256,
         "provenance": list(record.provenance),
-        "origins": {name: [one.unit, one.stated, one.line] for name, one in record.origins.items()},
+        "origins": {
+            name: [one.unit, one.stated, one.line, one.of_interval] for name, one in record.origins.items()
+        },
         "last": None if knots is None else int(knots[-1]),
     }
     notes |= {name: sorted(getattr(record, name)) for name in record.name_sets}

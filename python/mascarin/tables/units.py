@@ -55,6 +55,9 @@ ENERGIES: Final[Mapping[str, float]] = {
 }
 """Energies per interval, in J/m2; divided by the interval they become W/m2."""
 
+HEATS: Final[Mapping[str, float]] = {"Wh": 3600.0, "kWh": 3.6e6, "J": 1.0, "kJ": 1e3}
+"""Heat or electricity of an interval, in J; divided by the interval it becomes W."""
+
 _FRACTIONS: Final[Mapping[tuple[str, str], float]] = {("%", "tenths"): 0.1, ("1", "tenths"): 10.0}
 """Further conversions between a unit and the one that is wanted."""
 
@@ -62,8 +65,9 @@ CONVERTED: Final = frozenset({"degC", "W/m2", "m/s", "Pa"})
 """Units into which every measured column is converted, whatever it is used for."""
 
 _SPELLINGS: Final[Mapping[str, str]] = {
-    "degC": "degc °c c celsius degcelsius degreescelsius degreesc gradc gradcelsius",
-    "K": "k kelvin degk °k",
+    "degC": "degc °c c celsius degcelsius degreescelsius degreesc gradc gradcelsius degree_celsius "
+    "degrees_celsius",
+    "K": "k kelvin degk °k kelvins",
     "degF": "degf °f f fahrenheit degfahrenheit degreesf",
     "W/m2": "w/m2 wm-2 wm2 w/sqm w/qm watt/m2 watts/m2 w/msq",
     "kW/m2": "kw/m2 kwm-2 kwm2 kw/sqm",
@@ -221,7 +225,7 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     Parameters
     ----------
     unit : str
-        Key of `FACTORS` or `ENERGIES`.
+        Key of `FACTORS`, `ENERGIES` or `HEATS`.
     target : str
         Wanted unit; empty: that of `FACTORS`.
     interval : float
@@ -239,6 +243,8 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     """
     if unit in ENERGIES and target in ("W/m2", ""):
         return ENERGIES[unit] / interval, 0.0
+    if unit in HEATS and target in ("W", ""):
+        return HEATS[unit] / interval, 0.0
     if (unit, target) in _FRACTIONS:
         return _FRACTIONS[unit, target], 0.0
     if unit in FACTORS and target in (FACTORS[unit][0], ""):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -120,8 +121,26 @@ def with_findings(
     WeatherRecord
         The completed record itself where nothing was found, or nothing that it does not say.
     """
-    said = [one for one in findings(record, latitude, longitude) if one not in completed.provenance]
-    return replace(completed, provenance=(*completed.provenance, *said)) if said else completed
+    return with_notes(completed, findings(record, latitude, longitude))
+
+
+def with_notes(record: WeatherRecord, notes: Sequence[str]) -> WeatherRecord:
+    """A record whose provenance has further sentences.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        Any.
+    notes : sequence of str
+        Sentences.
+
+    Returns
+    -------
+    WeatherRecord
+        The record itself where it has all of them.
+    """
+    said = [note for note in notes if note not in record.provenance]
+    return replace(record, provenance=(*record.provenance, *said)) if said else record
 
 
 def bright_parts(record: WeatherRecord, index: pd.Index[pd.Timestamp]) -> list[Stretch]:

@@ -19,12 +19,13 @@ from mascarin.tables.reading.table import Stamps, read_table
 from mascarin.tables.steps import Steps
 from mascarin.tables.table_cache import cached_record
 from mascarin.weather import derive, measured
-from mascarin.weather.brightness import bright_parts, with_findings
+from mascarin.weather.brightness import bright_parts, with_findings, with_notes
 from mascarin.weather.channels import LIMITS
 from mascarin.weather.completion import complete
 from mascarin.weather.forcing import forcing, require_period
 from mascarin.weather.measured import Columns, record_of_table
 from mascarin.weather.measurements import Measurements
+from mascarin.weather.missing_infrared import with_whole_infrared
 from mascarin.weather.place_check import require_place
 from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
 from mascarin.weather.readers import read_epw, read_tmy3
@@ -33,7 +34,7 @@ from mascarin.weather.shipped import PREFIX, found
 from mascarin.weather.site import Place, SiteLike
 from mascarin.weather.sun_check import check_clock, is_polar_night
 from mascarin.weather.view import RecordView
-from mascarin.weather.yearly import record_of_year
+from mascarin.weather.yearly import record_of_year, shifted
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,6 +78,7 @@ class Climate(RecordView[WeatherRecord]):
         year: int | None = None,
         elsewhere: bool = False,
         check_sun: bool = True,
+        shift: str | float | None = None,
     ) -> Climate:
         r"""Read an EnergyPlus weather file (EPW).
 
@@ -93,6 +95,8 @@ class Climate(RecordView[WeatherRecord]):
             Allow a building at another place, which is otherwise refused.
         check_sun : bool
             Refuse radiation that does not follow the sun.
+        shift : str or float, optional
+            Added to all times of the file, such as `-30min`. [s]
 
         Returns
         -------
@@ -126,7 +130,7 @@ class Climate(RecordView[WeatherRecord]):
         """
         require_type("path", path, (str, Path), "the path of an EPW file")
         record = record_of_year(read_epw(found(path)), typical, year, elsewhere)
-        return cls(replace(record, check_sun=check_sun))
+        return cls(replace(shifted(record, shift), check_sun=check_sun))
 
     @classmethod
     def shipped(cls, name: str, *, elsewhere: bool = False) -> Climate:
@@ -142,6 +146,7 @@ class Climate(RecordView[WeatherRecord]):
         year: int | None = None,
         elsewhere: bool = False,
         check_sun: bool = True,
+        shift: str | float | None = None,
     ) -> Climate:
         """Read a TMY3 CSV file.
 
@@ -149,7 +154,7 @@ class Climate(RecordView[WeatherRecord]):
         ----------
         path : str or Path
             The file; hourly, one year.
-        typical, year, elsewhere, check_sun
+        typical, year, elsewhere, check_sun, shift
             As in `from_epw`.
 
         Returns
@@ -171,7 +176,7 @@ class Climate(RecordView[WeatherRecord]):
         """
         require_type("path", path, (str, Path), "the path of a TMY3 file")
         record = record_of_year(read_tmy3(Path(path)), typical, year, elsewhere)
-        return cls(replace(record, check_sun=check_sun))
+        return cls(replace(shifted(record, shift), check_sun=check_sun))
 
     @classmethod
     def from_table(
@@ -193,6 +198,7 @@ class Climate(RecordView[WeatherRecord]):
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
         tolerance: str | float | None = None,
+        shift: str | float | None = None,
         latitude: float | None = None,
         longitude: float | None = None,
         altitude: float = 0.0,
@@ -239,6 +245,8 @@ class Climate(RecordView[WeatherRecord]):
         tolerance : str or float
             Largest deviation of a stamp from the regular grid, to which it is moved; default a tenth of the
             step. [s]
+        shift : str or float, optional
+            Added to every stamp, such as `-30min` where the clock of the logger was half an hour fast. [s]
         latitude, longitude : float, optional
             Place of the measurement, positive north and east. [deg]
         altitude : float
@@ -278,6 +286,7 @@ class Climate(RecordView[WeatherRecord]):
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
             "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
+            "shift": shift,
         }  # fmt: skip
         further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
@@ -441,9 +450,10 @@ class Climate(RecordView[WeatherRecord]):
             )
         key = (float(place.latitude), float(place.longitude))
         if key not in self._completed:
-            if self.record.check_sun:
-                check_clock(self.record, *key)
-            made = Climate(with_findings(complete(self.record, *key), self.record, *key))
+            said = check_clock(self.record, *key) if self.record.check_sun else ()
+            filled_record = with_whole_infrared(complete(self.record, *key))
+            complete_record = with_findings(filled_record, self.record, *key)
+            made = Climate(with_notes(complete_record, said))
             made._completed[key] = self._completed[key] = made
         return self._completed[key]
 

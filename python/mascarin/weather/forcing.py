@@ -157,7 +157,7 @@ def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
     if name in record.columns:
         if name != "infrared" or not record.of_year:
             return column_values(record, name, steps)
-        # Hours without a value are no fault where the building has a model of the sky.
+        # Rows without a value are no fault where the building has a model of the sky.
         with contextlib.suppress(InputError):
             return column_values(record, name, steps)
     if name in ("infrared", "pressure"):

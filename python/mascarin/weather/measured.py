@@ -52,7 +52,7 @@ def record_of_table(
     """Record of a table; parameters are those of `Climate.from_table`."""
     chosen = _chosen(columns, extra, table)
     stated = _stated(absent, chosen, table.where)
-    kinds = _kinds(chosen, instant, mean, table.where)
+    kinds = _kinds(chosen, instant, mean, table.where, "instant" if table.of_pvgis else None)
     values, origins = _values(chosen, table)
     record = _on_grid(table, values, kinds, stamps, origins)
     return _with_humidity(_with_neutral(record, stated))
@@ -131,11 +131,14 @@ def _remedy(name: str) -> str:
 
 
 def _kinds(
-    chosen: Mapping[str, Column], instant: Iterable[str], mean: Iterable[str], where: str
-) -> dict[str, Kind]:
+    chosen: Mapping[str, Column], instant: Iterable[str], mean: Iterable[str], where: str,
+    of_radiation: Kind | None,
+) -> dict[str, Kind]:  # fmt: skip
     kinds: dict[str, Kind] = {}
     for name, column in chosen.items():
         usual: Kind = BY_NAME[name].kind if name in BY_NAME else "instant"
+        if of_radiation is not None and name in RADIATION:
+            usual = of_radiation
         kinds[name] = column.kind or usual
     for names, kind in ((tuple(instant), "instant"), (tuple(mean), "mean")):
         for name in names:

@@ -70,6 +70,7 @@ class Measurements(RecordView[Record]):
         skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
         tolerance: str | float | None = None,
+        shift: str | float | None = None,
     ) -> Measurements:
         """Read a table of measurements.
 
@@ -87,7 +88,7 @@ class Measurements(RecordView[Record]):
             Columns that are means over their interval; the others are values at the stamp.
         stamps : str
             `start` or `end`: which end of its interval a stamp marks.
-        step, time, time_format, separator, decimal, skip_lines, missing, tolerance
+        step, time, time_format, separator, decimal, skip_lines, missing, tolerance, shift
             As in `read_table`.
 
         Returns
@@ -114,6 +115,7 @@ class Measurements(RecordView[Record]):
         reading: dict[str, Any] = {
             "time": time, "time_format": time_format, "separator": separator, "decimal": decimal,
             "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
+            "shift": shift,
         }  # fmt: skip
         wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
         choice = (wanted, tuple(mean), stamps)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from mascarin.tables.record import Record
 from mascarin.weather.channels import RADIATION, Basis
 from mascarin.weather.site import Place
@@ -38,8 +40,16 @@ class WeatherRecord(Record):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings about a weather file of a year, which every run with it has."""
+        """Warnings about the weather, which every run with it has."""
         said = [note for note in self.provenance if self.of_year and ": warning: " in note]
+        infrared = self.columns.get("infrared", np.zeros(0))
+        gaps = int(np.isnan(infrared).sum())
+        if self.of_year and 0 < gaps < len(infrared):
+            said.append(
+                f"{self.file}: infrared has no value in {gaps} of {len(infrared)} rows: in these a "
+                f"run takes the "
+                "model of the sky of Martin & Berdahl (1984), unless the building gives site.sky."
+            )
         return tuple(note.replace(": warning: ", ": ", 1) for note in said)
 
     def measured(self, name: str) -> bool:

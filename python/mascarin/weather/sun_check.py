@@ -14,14 +14,22 @@ from mascarin.tables.arrays import Array
 from mascarin.tables.quality import Stretch
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
+from mascarin.weather import clock_shift
 from mascarin.weather import sun as sun_module
 from mascarin.weather.channels import RADIATION
+from mascarin.weather.clock_shift import ClockShift, shifts_of
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+_LARGEST_SHIFT: Final = 600.0
+"""A clock that is wrong by more than this and three times the uncertainty is refused. [s]"""
+_OUTSIDE: Final = 5e-4
+"""Part of the radiation above a clear sky from which clouds do not explain a shift. [-]"""
+_NAMED_SHIFT: Final = 180.0
+"""One that is wrong by more than this and three times the uncertainty is named. [s]"""
 _SHORTEST: Final = 2.0 * 86400.0
 _DARK: Final = -0.02
 """Sine of the elevation below which daylight is neglected (1.1 deg below the horizon)."""
@@ -40,14 +48,16 @@ _MOST_DAYS: Final = 21
 """Days on each side of such a movement. Clouds move the center of single weeks by up to 0.9 h."""
 
 
-def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> None:
+def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tuple[str, ...]:
     """Refuse a climate whose radiation does not follow the sun over the given place.
 
-    Three numbers are checked: the part of the radiation that is recorded while the sun is below the
-    horizon, the hour angle around which the radiation is centered, and in records of four weeks or more
-    how far this center moves at once, as with a clock that follows summer time. Clouds and hills shift the
-    center, by more than an hour where mornings are in fog: a center alone proves nothing. A wrong time zone
-    shifts it by whole hours and puts radiation into the night.
+    The shift of the clock is determined from the balance of measured irradiances and from the form of clear
+    hours (`mascarin.weather.clock_shift`), and refused where it exceeds ten minutes and three times its
+    uncertainty. Beside it three numbers are checked: the part of the radiation that is recorded while the sun
+    is below the horizon, the hour angle around which the radiation is centered, and in records of four weeks
+    or more how far this center moves at once, as with a clock that follows summer time. Clouds and hills
+    shift the center, by more than an hour where mornings are in fog: a center alone proves nothing. A wrong
+    time zone shifts it by whole hours and puts radiation into the night.
 
     Parameters
     ----------
@@ -55,6 +65,11 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
         With at least one irradiance; a record without radiation, or with a constant one, passes.
     latitude, longitude : float
         Positive north and east [deg].
+
+    Returns
+    -------
+    tuple of str
+        Warnings: smaller shifts, and such that are not certain.
 
     Raises
     ------
@@ -64,20 +79,105 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
     values = _radiation(record)
     grid = record.grid
     if values is None or grid.count * grid.interval < _SHORTEST or np.ptp(values) == 0.0:
-        return
+        return ()
     # The sun over a year takes half as long as a run over three months: what has passed once is remembered.
-    digest, kind = hashlib.sha256(values.tobytes()).hexdigest(), record.kinds[_name(record)]
-    key = ("clock", digest, kind, grid.start, grid.interval, zone_name(grid.zone), latitude, longitude)
+    digest = hashlib.sha256(b"".join(record.columns[name].tobytes() for name in RADIATION if name in
+                                     record.columns)).hexdigest()  # fmt: skip
+    kind, given = record.kinds[_name(record)], sorted({*RADIATION} & {*record.columns} - record.assumed)
+    key = (
+        "clock",
+        digest,
+        kind,
+        given,
+        record.file,
+        grid.start,
+        grid.interval,
+        zone_name(grid.zone),
+        latitude,
+        longitude,
+    )
 
     def passed() -> Cached:
-        _refuse(record, values, latitude, longitude)
-        return Cached()
+        return Cached({"said": _refuse(record, values, latitude, longitude)})
 
-    cached(key, [sys.modules[__name__], sun_module], passed)
+    return tuple(cached(key, [sys.modules[__name__], clock_shift, sun_module], passed).notes["said"])
 
 
-def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> None:
-    """Refuse radiation [W/m2] that does not follow the sun."""
+def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) -> list[str]:
+    """Warnings about the shift of the clock against the sun; one that is certain is refused."""
+    shifts = {shift.by: shift for shift in shifts_of(record, latitude, longitude)}
+    balance, symmetry = shifts.get("balance"), shifts.get("symmetry")
+    said = []
+    if balance is not None and not balance.split and not balance.exceeds(_NAMED_SHIFT):
+        symmetry = None  # instruments agree with the sun: what is not symmetrical are clouds
+    if balance is not None and _proves_nothing(balance, symmetry, record.grid.interval):
+        if abs(balance.late) > max(_LARGEST_SHIFT, 3.0 * balance.uncertainty):
+            said.append(
+                f"{record.file}: warning: global, direct and diffuse irradiance balance with a sun that is "
+                f"{balance.minutes} {'earlier' if balance.late > 0.0 else 'later'} than that of the stated "
+                "clock, and clear hours do not show the same shift: direct and diffuse irradiance were "
+                "probably calculated with the sun at another time of the interval."
+            )
+        balance = None
+    for shift in (balance, symmetry):
+        if shift is None:
+            continue
+        if shift.exceeds(_LARGEST_SHIFT) and shift.outside > _OUTSIDE:
+            raise InputError(_shift_text(record, shift, latitude, longitude))
+        if shift.exceeds(_NAMED_SHIFT) or abs(shift.late) > _LARGEST_SHIFT:
+            said.append(f"{record.file}: warning: {_shift_sentence(shift)}; the clock is used as stated.")
+    return said
+
+
+def _proves_nothing(balance: ClockShift, symmetry: ClockShift | None, interval: float) -> bool:
+    """Whether direct irradiance was calculated: the balance closes by construction, for any clock.
+
+    It does so with the sun at another time of the interval, too, which is no error of the clock.
+    """
+    contradicted = symmetry is not None and abs(balance.late - symmetry.late) > 3.0 * np.hypot(
+        balance.uncertainty, symmetry.uncertainty
+    )
+    at_an_end = abs(abs(balance.late) - 0.5 * interval) < 180.0 or abs(balance.late) < 180.0
+    return bool(contradicted or (balance.split and at_an_end and symmetry is None))
+
+
+def _shift_sentence(shift: ClockShift) -> str:
+    reason = (
+        "the balance of global, direct and diffuse irradiance closes"
+        if shift.by == "balance"
+        else "clear hours are symmetrical"
+    )
+    side = "later" if shift.late > 0.0 else "earlier"
+    return (
+        f"the radiation is {shift.minutes} {side} than the sun: {reason} with this shift ({shift.days} days)"
+    )
+
+
+def _shift_text(record: WeatherRecord, shift: ClockShift, latitude: float, longitude: float) -> str:
+    """Text of the refusal of a shifted clock."""
+    minutes = -round(shift.late / 60.0)
+    instant = record.kinds[_name(record)] == "instant"
+    half = 0.5 * record.grid.interval
+    hints = []
+    if abs(abs(shift.late) - 2.0 * half) < 300.0 and not instant:
+        hints.append(f"stamps: {'end' if shift.late > 0.0 else 'start'}, if stamps mark that end")
+    if abs(abs(shift.late) - half) < 300.0 and not instant and not record.of_year:
+        hints.append("kind: instant in the columns of irradiance, if values are those at the stamp")
+    also = f" Or {', or '.join(hints)}." if hints else ""
+    return (
+        f"{record.file}: the radiation does not follow the sun at latitude {latitude:g}, longitude "
+        f"{longitude:g}: {_shift_sentence(shift)}; expected less than {_LARGEST_SHIFT / 60.0:g} min. "
+        f"Check the "
+        f"time zone (now {zone_name(record.grid.zone)}), whether stamps mark the start or the end of their "
+        f"interval, and the place (east is positive). If the clock was wrong, state shift: {minutes}min "
+        f"(on the command line --shift={minutes}min, in Python shift='{minutes}min').{also} "
+        "If all of these are right, read the record "
+        "as it is with check_sun: false (on the command line --no-check-sun, in Python check_sun=False)."
+    )
+
+
+def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> list[str]:
+    """Refuse radiation [W/m2] that does not follow the sun; warnings about smaller shifts."""
     grid = record.grid
     shift = 0.0 if record.kinds[_name(record)] == "instant" else 0.5
     middle = grid.start + grid.interval * (np.arange(grid.count) + shift)
@@ -87,9 +187,10 @@ def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: fl
     if night > 0.0:
         _refuse_jump(record, middle, turns)
     late = float(np.degrees(np.angle(turns.sum())) / 15.0)
+    said = _shift_findings(record, latitude, longitude)
     # Clouds and hills move the center as far as they like: what lies at night alone shows a wrong clock.
     if night <= _NIGHT_MOST and (night <= _NIGHT_TRACE or abs(late) <= _NOON_OFF):
-        return
+        return said
     when = "after" if late > 0.0 else "before"
     raise InputError(
         f"{record.file}: the radiation does not follow the sun at latitude {latitude:g}, longitude "

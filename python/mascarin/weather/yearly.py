@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import date
 from typing import cast
 
 import numpy as np
 
+from mascarin._io.durations import shift_of
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid
@@ -76,6 +78,29 @@ def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere
     return _of_year(read, grid, values, lines, notes, elsewhere)
 
 
+def shifted(record: WeatherRecord, shift: str | float | None) -> WeatherRecord:
+    """A record of a year all of whose times are later.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        As read.
+    shift : str or float or None
+        Added to the times; None: nothing. [s]
+
+    Raises
+    ------
+    InputError
+        No time can be read.
+    """
+    seconds = 0.0 if shift is None else shift_of(shift, f"{record.file}: shift")
+    if not seconds:
+        return record
+    note = f"{record.file}: {seconds / 60.0:+g} min were added to all times, as stated (shift)."
+    grid = replace(record.grid, start=record.grid.start + seconds)
+    return replace(record, grid=grid, provenance=(*record.provenance, note))
+
+
 def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -> dict[str, Array]:
     """Without irradiances that the file does not have: they are derived from the others and the sun."""
     empty = {name for name in RADIATION if name in values and np.isnan(values[name]).all()}
@@ -85,13 +110,6 @@ def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -
             f"{where}: {' and '.join(sorted(empty))} have no value in any hour: derived from the others."
         )
         values = {name: column for name, column in values.items() if name not in empty}
-    infrared = values.get("infrared", np.zeros(0))
-    gaps = int(np.isnan(infrared).sum())
-    if 0 < gaps < len(infrared):
-        notes.append(
-            f"{where}: warning: infrared has no value in {gaps} of {len(infrared)} rows: a run takes the "
-            "model of the sky (site.sky) in all hours, not the infrared of the file. Repair it to use it."
-        )
     return values
 
 

@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from pydantic import Field, StringConstraints, model_validator
 
 from mascarin.building.base.names import Name
-from mascarin.building.base.part import Part, fault, insist
+from mascarin.building.base.part import Part
+from mascarin.building.base.part import fault
+from mascarin.building.base.part import insist
 from mascarin.design.evaluation.objectives import AnyObjective
-from mascarin.study.field_types import Duration, Time
+from mascarin.study.field_types import Duration
+from mascarin.study.field_types import Time
+from mascarin.study.field_types import Shift
 
 if TYPE_CHECKING:
     from typing import Self
@@ -33,6 +37,7 @@ class ClimateFile(Part):
     epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
     check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
+    shift: Shift | None = Field(None, description="Added to all times of the file, such as -30min")
     start: Time | None = Field(
         None, description="Start: 12-01 or 2023-12-01, local time; by default that of `period`"
     )

@@ -169,7 +169,7 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, locat
         text = str(climate_file.epw or climate_file.tmy)
         weather = found(text) if text.startswith(PREFIX) else find(text, beside)
         read = Climate.from_epw if climate_file.epw is not None else Climate.from_tmy
-        climate = read(weather, check_sun=climate_file.check_sun)
+        climate = read(weather, check_sun=climate_file.check_sun, shift=climate_file.shift)
     with locations.blame("climates", name, "set"):
         moved = building.replace({**_location_changes(climate), **climate_file.set})
     with locations.blame("climates", name):

@@ -27,8 +27,10 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     Returns
     -------
     Building
-        With ``site.sky: measured``, if the weather has infrared radiation in every interval and the building
-        gives neither ``site.sky`` nor ``site.cloud``; else the same building.
+        With ``site.sky: measured``, if the weather has infrared radiation in every interval, or in some of
+        those of a weather file of a year, and the building gives neither ``site.sky`` nor ``site.cloud``;
+        else the same building. Hours of a weather file without a value have that of the default model
+        (`mascarin.weather.missing_infrared`).
 
     Examples
     --------
@@ -41,6 +43,7 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     if stated or any(path.startswith(_MODEL) for path in used):
         return building
     values = climate.data.get("infrared")
-    if values is None or not bool(values.notna().all()):
+    known = None if values is None else values.notna()
+    if known is None or not bool(known.all() or (climate.record.of_year and known.any())):
         return building
     return building.replace({"site.sky": "measured"})

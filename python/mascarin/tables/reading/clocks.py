@@ -90,6 +90,8 @@ def stamps_from(
         return _local(pd.DatetimeIndex(text), clock, zone, lines, where)
     if time_format is None and pd.api.types.is_numeric_dtype(text.dtype) and not text.isna().any():
         return _of_numbers(text, zone, clock, lines, where)
+    if time_format is None and (plain := _plain_iso(text)) is not None:
+        return _local(plain, clock, zone, lines, where)
     written = text.astype(str).str.strip()
     if written.str.contains(_BLANKS).any():
         written = written.str.replace(r"\s+", " ", regex=True)
@@ -116,6 +118,23 @@ def stamps_from(
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
     found = _local(index, clock, zone, lines, where)
     return Stamped(found.times, (*notes, *found.notes))
+
+
+#: ISO 8601 without an offset.
+_ISO_TEXT: Final = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:\.\d+)?)?")
+
+
+def _plain_iso(text: pd.Series[Any]) -> pd.DatetimeIndex | None:
+    """Stamps all of which are ISO 8601 without an offset, read at once; None where one is not."""
+    import pandas as pd
+
+    if not len(text) or not isinstance(text.iloc[0], str) or not _ISO_TEXT.fullmatch(text.iloc[0]):
+        return None
+    try:
+        index = pd.DatetimeIndex(pd.to_datetime(text, format="ISO8601"))
+    except (ValueError, TypeError):  # an offset, 24:00, another order: read with care
+        return None
+    return None if index.tz is not None or index.hasnans else index
 
 
 def _without_midnight(written: pd.Series[str], time_format: str | None) -> tuple[pd.Series[str], Flags]:
@@ -368,6 +387,9 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
 _ZONE: Final = re.compile(r"\b(?:GMT|UTC)\s*(?P<sign>[-+−])\s*(?P<hours>\d{1,2})(?::?(?P<minutes>\d{2}))?\b")
 
 
+_PLAIN_ZONE: Final = re.compile(r"(?:^|[\s,(\[_])(?:GMT|UTC)\s*[)\]]?\s*$", re.IGNORECASE)
+
+
 def offset_in_name(name: str) -> float | None:
     """Offset of the clock that the name of a column states.
 
@@ -383,12 +405,12 @@ def offset_in_name(name: str) -> float | None:
 
     Examples
     --------
-    >>> offset_in_name("Date Time, GMT-05:00"), offset_in_name("Date Time")
-    (-5.0, None)
+    >>> offset_in_name("Date Time, GMT-05:00"), offset_in_name("time(UTC)"), offset_in_name("Date Time")
+    (-5.0, 0.0, None)
     """
     found = _ZONE.search(name)
     if found is None:
-        return None
+        return 0.0 if _PLAIN_ZONE.search(name) else None
     hours = int(found["hours"]) + int(found["minutes"] or 0) / 60.0
     if hours > 14.0:
         return None
@@ -407,7 +429,7 @@ def require_zone_has(zone: tzinfo, hours: float, years: tuple[int, int], name: s
     years : (int, int)
         First and last year of the record.
     name : str
-        Name of the column that states the offset.
+        Where the offset is stated, in words.
     where : str
         File, for errors.
 
@@ -423,7 +445,7 @@ def require_zone_has(zone: tzinfo, hours: float, years: tuple[int, int], name: s
         sign = "+" if hours >= 0.0 else "-"
         stated = f"UTC{sign}{int(abs(hours))}" + (f":{round(abs(hours) % 1 * 60):02d}" if hours % 1 else "")
         raise InputError(
-            f"{where}: found the timezone {zone_name(zone)}, but the name of the time column, {name!r}, says "
+            f"{where}: found the timezone {zone_name(zone)}, but {name} says "
             f"{stated}, which that zone never has; expected one of them. Write timezone: {stated}, or a zone "
             "of the place with that offset; correct the name in the file where it is wrong."
         )

@@ -7,9 +7,9 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from io import StringIO
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -17,8 +17,10 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
-from mascarin.tables.reading.layout import Layout, decoded, find_layout
+from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
+from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
+from mascarin.tables.reading.preamble import clock_of_preamble, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 
 if TYPE_CHECKING:
@@ -74,6 +76,10 @@ class Read:
         Whether the user states it.
     decimal_evident : bool
         Whether entries of the file can have this one alone.
+    preamble_units : mapping of str to (str, int)
+        Units that lines above the names state, and the number of the line.
+    clock : (str, int)
+        Clock that they state, and the number of the line.
     """
 
     frame: pd.DataFrame
@@ -84,11 +90,13 @@ class Read:
     decimal: str = "."
     decimal_stated: bool = False
     decimal_evident: bool = False
+    preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    clock: tuple[str, int] = ("", 0)
 
     @property
     def said_of_itself(self) -> dict[str, Any]:
         """What the file says of its units and marks, for `Table`."""
-        names = ("units", "units_line", "decimal", "decimal_stated", "decimal_evident")
+        names = ("units", "units_line", "decimal", "decimal_stated", "decimal_evident", "preamble_units")
         return {name: getattr(self, name) for name in names}
 
 
@@ -116,6 +124,13 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     """
     import pandas as pd
 
+    reader = reader_of(path)
+    if reader is not None:
+        frame = read_own(path, reader)
+        units = {str(name): str(unit) for name, unit in dict(frame.attrs.get("units", {})).items()}
+        frame = with_time_column(frame)
+        said = (f"{path.name}: read by {name_of(reader)}.",)
+        return Read(frame, 1 + np.arange(len(frame), dtype=np.int64), said, units)
     if path.suffix.lower() in {".parquet", ".pq"}:
         try:
             frame = with_time_column(pd.read_parquet(path))
@@ -133,30 +148,99 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
     else:
         text, encoding = decoded(path.read_bytes(), path.name)
-    lines = text.splitlines()
-    last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
+    body = _large_body(text, path.name, separator, decimal, skip_lines) or _body(
+        text, path.name, separator, decimal, skip_lines
+    )
     del text  # a large table is in memory once, as far as that is possible
-    layout = find_layout(lines, path.name, separator, decimal, skip_lines)
-    rows, repeated = _rows(lines, layout)
-    notes = (*sheet, *_notes(layout, encoding, lines, path.name))
-    if repeated:
-        notes += (f"{path.name}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
-                  "were left out.",)  # fmt: skip
-    header = lines[layout.header] if layout.header < len(lines) else ""
-    header = layout.separator.join(layout.names) or header
-    data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
-    body = "\n".join([header + layout.separator * layout.trailing, *data])
-    del lines, data
-    frame = _parsed(body, rows, layout, path.name, doubt=decimal is None)
+    layout, rows = body.layout, body.rows
+    notes = (*sheet, *_notes(layout, encoding, body.head, path.name), *body.notes)
+    frame = _parsed(body.text, rows, layout, path.name, doubt=decimal is None)
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     if layout.trailing:
         frame = frame.iloc[:, :-1]
-    _refuse_cut(last, layout, len(frame.columns), path.name, count)
+    _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
+    preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
     stated = decimal is not None
+    said_units = {
+        name: (text, 1 + k) for name, (text, k) in units_of_preamble(preamble, list(frame.columns)).items()
+    }
+    words, line = clock_of_preamble(preamble)
     return Read(
-        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated, layout.evident
-    )
+        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated,
+        layout.evident, said_units, (words, line + 1),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Body:
+    """The rows of a text file below a line with the names."""
+
+    layout: Layout
+    text: str
+    rows: Lines
+    head: Sequence[str]
+    last: str
+    count: int
+    notes: tuple[str, ...] = ()
+
+
+def _body(text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None) -> _Body:
+    """Line by line: heads that a restart repeats, and remarks at the end, are left out."""
+    lines = text.splitlines()
+    last, count = text[max(text.rfind("\n"), text.rfind("\r")) + 1 :], len(lines)
+    layout = find_layout(lines, where, separator, decimal, skip_lines)
+    end = footer_of(lines, layout.first, layout.separator)
+    notes: tuple[str, ...] = ()
+    if end < len(lines):
+        notes += (
+            f"{where}: {len(lines) - end} lines below the table, from line {end + 1} on, were left out.",
+        )
+        lines, last = lines[:end], ""
+    rows, repeated = _rows(lines, layout)
+    if repeated:
+        notes += (f"{where}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
+                  "were left out.",)  # fmt: skip
+    data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
+    body = "\n".join([_names_line(lines, layout), *data])
+    return _Body(layout, body, rows, lines[: layout.first], last, count, notes)
+
+
+def _names_line(lines: Sequence[str], layout: Layout) -> str:
+    header = lines[layout.header] if layout.header < len(lines) else ""
+    return (layout.separator.join(layout.names) or header) + layout.separator * layout.trailing
+
+
+def _large_body(
+    text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
+) -> _Body | None:
+    """A large file without a loop over its lines; None where it is small, repeats heads or has remarks."""
+    if len(text) < _LARGE or "\n" not in text[:_HEAD] or (skip_lines or 0) > _HEAD_LINES:
+        return None
+    lines = text[: text.rfind("\n", 0, _HEAD)].splitlines()
+    layout = find_layout(lines, where, separator, decimal, skip_lines)
+    if layout.first > _HEAD_LINES or layout.first >= len(lines):
+        return None
+    first = 0
+    for _ in range(layout.first):
+        first = text.find("\n", first) + 1
+    starts = {line[:8] for line in lines[: layout.first] if line.strip()}
+    tail = text[text.find("\n", len(text) - _HEAD) + 1 :].splitlines()
+    if any(text.find("\n" + start, max(first - 1, 0)) >= 0 for start in starts) or footer_of(
+        tail, 0, layout.separator
+    ) < len(tail):
+        return None
+    last = text[text.rfind("\n") + 1 :]
+    count = text.count("\n", first) + bool(last)
+    rows = layout.first + np.arange(count, dtype=np.int64)
+    body = f"{_names_line(lines, layout)}\n{text[first:]}"
+    return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
+
+
+#: Characters from which on a file is not read line by line; characters at both ends that are looked at.
+_LARGE: Final = 2_000_000
+_HEAD: Final = 200_000
+_HEAD_LINES: Final = 150
 
 
 def _rows(lines: Sequence[str], layout: Layout) -> tuple[Lines, list[int]]:
@@ -191,7 +275,7 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(StringIO(body), **options)
+            frame = read_csv(BytesIO(body.encode()), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
             f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
@@ -212,7 +296,7 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(StringIO(body), dtype=str, **options)
+        texts = read_csv(BytesIO(body.encode()), dtype=str, **options)
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
     return frame

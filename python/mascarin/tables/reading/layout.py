@@ -159,7 +159,10 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
     """Number of the line with the names of the columns."""
     start = next((k for k, line in enumerate(lines) if line.strip()), 0)
     marks = [separator] if separator else list(_MARKS)
-    if any(_begins_with_names(lines[start : start + 2], mark) for mark in marks):
+    third = lines[start + 2] if start + 2 < len(lines) else ""
+    if any(
+        _begins_with_names(lines[start : start + 2], mark) and not _are_names(third, mark) for mark in marks
+    ):
         return start
     found = [(block[1], -block[0], mark) for mark in marks if (block := _first_block(lines, mark))]
     if not found:
@@ -201,6 +204,48 @@ def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
     """Whether the first line of a table holds names and the second one data."""
     names, data = (_cells(line, mark) for line in lines) if len(lines) == 2 else ([], [])
     return 1 < len(names) == len(data) and not _is_data(names) and _is_data(data)
+
+
+def _are_names(line: str, mark: str) -> bool:
+    """Whether a line below two others has names of columns: the two are a preamble, as that of NSRDB."""
+    cells = _cells(line, mark)
+    return (
+        len(cells) > 1
+        and all(cells)
+        and not any(_DIGIT.match(cell) or cell.lower() in EMPTY for cell in cells)
+    )
+
+
+def footer_of(lines: Sequence[str], first: int, separator: str) -> int:
+    """Number of the line from which on a file has no data any more but remarks, such as those of PVGIS.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Lines of the file.
+    first : int
+        First line with data, from 0.
+    separator : str
+        Between entries.
+
+    Returns
+    -------
+    int
+        The number of lines where there are no remarks.
+
+    Examples
+    --------
+    >>> footer_of(["time,T", "2024-01-01,3", "", "T: air temperature"], 1, ",")
+    2
+    """
+    place = len(lines)
+    while place > first:
+        line = lines[place - 1]
+        if line.strip() and (_DIGIT.match(line.strip(" \"'")) or line.count(separator) > 3):
+            break
+        place -= 1
+    blank = place < len(lines) and not lines[place].strip()
+    return place if blank and any(line.strip() for line in lines[place:]) else len(lines)
 
 
 def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:

@@ -26,6 +26,8 @@ _GROUPS: Final = re.compile(r"(?<=\d)['\u2019\u00a0\u202f\u2009 ](?=\d{3}(?!\d))
 _NUMBER: Final = re.compile(r"[-+\u2212]?(?:\d+(?:[.,]\d*)*|[.,]\d+)(?:[eE][-+]?\d+)?")
 #: Values from which on a number without a mark shows that there are no groups of thousands.
 _GROUPED: Final = 1000.0
+#: Entries of a long column that are looked at first.
+_SAMPLE: Final = 10_000
 #: Difference of the sizes, as a logarithm, that decides between two readings: a factor of five.
 _CLEAR: Final = math.log(5.0)
 
@@ -304,10 +306,17 @@ def suspicious_decimals(values: Array) -> bool:
     >>> suspicious_decimals(np.array([998.0, 1.5, 1.523])), suspicious_decimals(np.array([0.5, 3.0]))
     (True, False)
     """
+    # Some entries are enough to show that a long column could not.
+    if len(values) > _SAMPLE and not _could_be_groups(values[:_SAMPLE]):
+        return False
     there = np.abs(values[np.isfinite(values)])
     whole = there == np.floor(there)
-    parts = there[~whole]
-    if not len(parts) or not np.any(there[whole] >= 100.0):
-        return False
+    return bool(np.any(~whole) and np.any(there[whole] >= 100.0)) and _could_be_groups(values)
+
+
+def _could_be_groups(values: Array) -> bool:
+    """Whether all numbers with decimals are between 1 and 1000, and have at most three."""
+    there = np.abs(values[np.isfinite(values)])
+    parts = there[there != np.floor(there)]
     thousandths = np.abs(parts * 1e3 - np.round(parts * 1e3)) < 1e-6
     return bool(np.all((parts >= 1.0) & (parts < _GROUPED)) and np.all(thousandths))

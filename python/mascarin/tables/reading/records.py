@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array
@@ -10,6 +13,7 @@ from mascarin.tables.columns import Column
 from mascarin.tables.interval_labels import knot_lines, to_starts
 from mascarin.tables.reading.table import Stamps, Table
 from mascarin.tables.record import Kind, Origin, Record
+from mascarin.tables.units import ENERGIES, HEATS, StatedUnit
 
 Columns = Mapping[str, str | Column | Mapping[str, object]]
 
@@ -54,6 +58,8 @@ def record_of_columns(
     values, origins = {}, {}
     for name, column in chosen.items():
         values[name], origins[name] = converted(table, column, name, "")
+        if column.kind is None and origins[name].of_interval:
+            kinds[name] = "mean"
     kept, closing, grid, note = to_starts(table, values, kinds, stamps)
     left_out = [f"{table.where}: left out, without a number: {', '.join(words)}."] if words else []
     said = (*table.notes, note, *left_out, *(f"{table.where}: {origin.line}" for origin in origins.values()))
@@ -93,7 +99,34 @@ def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array
     raw = table.numbers(column.column, name, compass=unit == "deg")
     stated = None if column.overrule else table.stated_unit(column.column)
     settled = column.settled(stated, unit, table.interval, table.names, where)
+    if settled.unit in HEATS and _is_meter(raw):
+        return _as_read(raw, settled, stated, name, table)
     values = settled.convert(raw, unit, table.interval, where)
+    words = table.empty_words(column.column)
     left = "" if stated is None or settled.unit is not None else stated.unit
     stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
-    return values, Origin(left, stated_somewhere, settled.line(name, unit, values, stated))
+    of_interval = settled.unit in ENERGIES or settled.unit in HEATS
+    return values, Origin(
+        left, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval
+    )
+
+
+def _is_meter(values: Array) -> bool:
+    """Whether a column never falls and is far above its steps: the total of a meter."""
+    there = values[np.isfinite(values)]
+    steps = np.diff(there)
+    return bool(
+        len(there) > 5 and np.all(steps >= 0.0) and there[-1] > there[0] and there[-1] > 3.0 * steps.max()
+    )
+
+
+def _as_read(
+    raw: Array, column: Column, stated: StatedUnit | None, name: str, table: Table
+) -> tuple[Array, Origin]:
+    """The total of a meter without a conversion; a power that a user wants from it is refused elsewhere."""
+    plain = replace(column, unit=None)
+    unit = str(column.unit)
+    line = plain.line(name, "", raw, stated, table.empty_words(column.column))
+    return raw * column.scale + column.offset, Origin(
+        unit, True, f"{line} It never falls: the total of a meter in {unit}."
+    )

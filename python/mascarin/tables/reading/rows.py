@@ -76,8 +76,13 @@ def _time_names(frame: pd.DataFrame) -> list[Hashable]:
     return [names[first]]
 
 
-def year_day_hour(frame: pd.DataFrame) -> list[str]:
-    """Columns of year, day of the year and hhmm, as Campbell's older loggers write them.
+_PARTS: Final = ("year", "month", "day", "hour", "minute", "second")
+
+
+def parts_of_time(frame: pd.DataFrame) -> tuple[list[str], str] | None:
+    """Columns of the parts of the time: year, month, day, hour and so on, or year, day of the year and hhmm.
+
+    The first as NSRDB and many models write them, the second as Campbell's older loggers do.
 
     Parameters
     ----------
@@ -86,8 +91,14 @@ def year_day_hour(frame: pd.DataFrame) -> list[str]:
 
     Returns
     -------
-    list of str
-        Names of the three columns; empty where they are not there.
+    (list of str, str) or None
+        Names of the columns and the format of the joined texts; None where they are not there.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> parts_of_time(pd.DataFrame(columns=["Year", "Month", "Day", "Hour", "Minute", "GHI"]))
+    (['Year', 'Month', 'Day', 'Hour', 'Minute'], '%Y %m %d %H %M')
     """
     names = [str(name).strip().lower() for name in frame.columns]
     for k in range(min(3, len(names) - 2)):
@@ -96,8 +107,12 @@ def year_day_hour(frame: pd.DataFrame) -> list[str]:
             and names[k + 1] in ("day", "doy", "jday", "julian_day", "day_rtm", "dayofyear")
             and names[k + 2] in ("hhmm", "hrmn", "time", "hour_minute", "hour_minute_rtm")
         ):
-            return [str(name) for name in frame.columns[k : k + 3]]
-    return []
+            return [str(name) for name in frame.columns[k : k + 3]], "%Y %j %H%M"
+    count = next((k for k, part in enumerate(_PARTS) if names[k : k + 1] != [part]), len(_PARTS))
+    if count >= 4:
+        form = " ".join(["%Y", "%m", "%d", "%H", "%M", "%S"][:count])
+        return [str(name) for name in frame.columns[:count]], form
+    return None
 
 
 #: A date without a time, and a time of day.

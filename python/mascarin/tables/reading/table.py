@@ -13,18 +13,18 @@ import numpy as np
 
 from mascarin._io import memory
 from mascarin._io.arguments import require_type
-from mascarin._io.durations import seconds_of
+from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
-from mascarin.tables.arrays import Array, Lines
+from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
 from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
-from mascarin.tables.reading.numbers import parse_numbers, points_as_degrees
+from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
     has_words,
+    parts_of_time,
     rows_with_values,
     time_text,
     without_entries,
-    year_day_hour,
 )
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 Stamps = Literal["start", "end"]
 """Which end of its interval a stamp marks."""
 
+#: Stamps of PVGIS (Joint Research Centre, user manual of PVGIS 5.3): the time of the satellite's image.
+_PVGIS: Final = re.compile(r"\d{8}:\d{4}")
 #: Jitter of a clock that is allowed, as a part of the step.
 _JITTER: Final = 0.1
 
@@ -76,6 +78,10 @@ class Table:
         Whether the user states it.
     decimal_evident : bool
         Whether entries of the file can have this one alone.
+    of_pvgis : bool
+        Whether the stamps have the form of PVGIS, whose irradiances are values at the stamp (such as 00:10).
+    preamble_units : mapping of str to (str, int)
+        Units that lines above the names state, and their lines.
     """
 
     frame: pd.DataFrame
@@ -90,6 +96,8 @@ class Table:
     decimal: str = "."
     decimal_stated: bool = False
     decimal_evident: bool = False
+    of_pvgis: bool = False
+    preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -123,8 +131,25 @@ class Table:
                 f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
             )
         if row is not None:
-            return StatedUnit(row, text, f"the row of units (line {self.units_line})")
-        return None if name is None else StatedUnit(*name, "the name of the column")
+            spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
+            return StatedUnit(row, text, spot)
+        if name is not None:
+            return StatedUnit(*name, "the name of the column")
+        if column in self.preamble_units:
+            words, line = self.preamble_units[column]
+            return StatedUnit(str(parse_unit(words)), words, f"line {line} above the names")
+        return None
+
+    def empty_words(self, column: str) -> dict[str, int]:
+        """How often each word for no value stands in a column; empty entries are not counted."""
+        import pandas as pd
+
+        entries = self.frame[column]
+        if pd.api.types.is_numeric_dtype(entries.dtype):
+            return {}
+        words = entries.dropna().astype(str).str.strip()
+        counts = words[words.str.lower().isin(EMPTY) & (words != "")].value_counts()
+        return {str(word): int(count) for word, count in counts.items()}
 
     def numbers(self, column: str, what: str, *, compass: bool = False) -> Array:
         """A column as numbers, NaN where empty; with `compass`, points such as NNE are directions. [deg]
@@ -162,6 +187,7 @@ def read_table(
     step: str | float | None = None,
     missing: Sequence[str | float] = (),
     tolerance: str | float | None = None,
+    shift: str | float | None = None,
 ) -> Table:
     """Read a table and put it on a regular grid of times.
 
@@ -190,11 +216,13 @@ def read_table(
     tolerance : str or float, optional
         Largest deviation of a stamp from the regular grid, to which it is moved, such as `30s` or seconds
         [s]. Default: a tenth of the step.
+    shift : str or float, optional
+        Added to every stamp, such as `-30min` where the clock of the logger was half an hour fast. [s]
 
     Returns
     -------
     Table
-        The table; stamps unchanged.
+        The table; stamps unchanged but for `shift`.
 
     Raises
     ------
@@ -203,12 +231,8 @@ def read_table(
     """
     import pandas as pd
 
-    require_type(
-        "table",
-        source,
-        (str, Path, pd.DataFrame),
-        "the path of a file or a pandas.DataFrame (Series.to_frame())",
-    )
+    expected = "the path of a file or a pandas.DataFrame (Series.to_frame())"
+    require_type("table", source, (str, Path, pd.DataFrame), expected)
     zone = _zone(source, timezone, time)
     digest: str | None = None
     read: Read | None = None
@@ -222,24 +246,42 @@ def read_table(
         read = read_frame(path, separator, decimal, skip_lines)
         frame, said = read.frame, read.notes
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
-    empty = frame.isna().all(axis=1).to_numpy()
+    empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
         raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
-    if time is None and time_format is None and (parts := year_day_hour(frame)):
-        time, time_format = parts, "%Y %j %H%M"
+    if time is None and time_format is None and (parts := parts_of_time(frame)):
+        time, time_format = parts
     text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
     if missing:
         frame = without_entries(frame, missing)
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
-    zone, clock, of_zone = _clock(used, text, zone, where)
+    stated = read.clock if read is not None else ("", 0)
+    zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
     said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
+    if shift is not None and (moved := shift_of(shift, f"{where}: shift")):
+        frame.index = stamps_of(epoch_seconds(pd.DatetimeIndex(frame.index)) + moved, zone)
+        said = (*said, f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift).")
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
+    of_pvgis = bool(_PVGIS.fullmatch(str(text.iloc[0])))
+    if of_pvgis:
+        note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
+        table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     return table if read is None else replace(table, **read.said_of_itself)
+
+
+def _empty_rows(frame: pd.DataFrame) -> Flags:
+    """Which rows have no entry at all; most tables have a column without a gap, which settles it."""
+    empty = np.ones(len(frame), dtype=bool)
+    for k in range(frame.shape[1] - 1, -1, -1):  # the times, which are texts, last
+        if not empty.any():
+            break
+        empty &= frame.iloc[:, k].isna().to_numpy()
+    return empty
 
 
 def _zone(
@@ -264,23 +306,31 @@ def _is_time(index: pd.Index[Any]) -> bool:
 
 
 def _clock(
-    names: Sequence[Hashable], text: pd.Series[Any], zone: tzinfo | None, where: str
+    names: Sequence[Hashable],
+    text: pd.Series[Any],
+    zone: tzinfo | None,
+    where: str,
+    preamble: tuple[str, int],
 ) -> tuple[tzinfo, tzinfo, tuple[str, ...]]:
-    """Zone of the result and zone of the stamps: that which the name of the time column states."""
+    """Zone of the result and zone of the stamps: that which the time column or a line above it states."""
     stated = [hours for name in names if (hours := offset_in_name(str(name))) is not None]
+    said = f"the time column {str(names[0])!r} states"
+    if not stated and preamble[0]:
+        stated = [hours for hours in (offset_in_name(preamble[0]),) if hours is not None]
+        said = f"line {preamble[1]}, {preamble[0]!r}, states"
     if not stated:
         if zone is None:
             zone = parse_timezone(None, f"{where}: timezone")
         return zone, zone, ()
     clock = fixed_zone(stated[0])
     if zone is None:
-        return clock, clock, (f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}.",)
+        return clock, clock, (f"{where}: {said} {zone_name(clock)}.",)
     years = sorted(set(re.findall(r"\b(?:19|20)\d{2}\b", f"{text.iloc[0]} {text.iloc[-1]}"))) or ["2024"]
-    require_zone_has(zone, stated[0], (int(years[0]), int(years[-1])), str(names[0]), where)
-    note = (
-        f"{where}: the time column {str(names[0])!r} states {zone_name(clock)}: its stamps were turned into "
-        f"the clock of {zone_name(zone)}."
-    )
+    if stated[0] != 0.0:  # UTC is a clock of its own, which no zone of a place contradicts
+        require_zone_has(
+            zone, stated[0], (int(years[0]), int(years[-1])), said.removesuffix(" states"), where
+        )
+    note = f"{where}: {said} {zone_name(clock)}: its stamps were turned into the clock of {zone_name(zone)}."
     return zone, clock, () if zone_name(zone) == zone_name(clock) else (note,)
 
 

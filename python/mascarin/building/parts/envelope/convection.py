@@ -1,6 +1,7 @@
 """Surface heat transfer coefficients: the published laws of the engine's table, measured ones, formulas.
 
-Each law of the table (`mascarin.building.parts.envelope.law_table`) is a class here: `Constant`, `Tarp` and so on.
+Each law of the table (`mascarin.building.parts.envelope.law_table`) is a class here: `Constant`, `Tarp`
+and so on.
 """
 
 from __future__ import annotations
