@@ -72,7 +72,7 @@ def test_the_report_is_written_with_every_form_as_the_used_one(
     with Workspace(out, study.inputs()) as workspace, study.keeping(workspace):
         for place, choice in enumerate(choices):
             # The forms are calibrated once; what is kept serves all that follow.
-            monkeypatch.setattr(findings, "most_parsimonious", lambda *_, place=place: place)
+            monkeypatch.setattr(findings, "used_form", lambda *_, place=place: place)
             results = study._carried_out(workspace, None)
             assert results.combination is not None
             assert results.combination.forms[0].choice == choice

@@ -56,7 +56,7 @@ def study(
     lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
     if results.sensitivity is not None:
         lines += [f"sensitivity analysis: {line}" for line in results.sensitivity.warnings]
-    _print_warnings(lines)
+    _print_warnings([*(one.text for one in results.contradictions), *lines])
     _print_summary(opened, results, out)
     verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
     return _exit_code(verdicts, lines)
@@ -129,7 +129,7 @@ def calibrate(
     from mascarin.study import steps
 
     content = steps.calibration(_open(file, allow_outside), out)
-    _print_warnings(content["warnings"])
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
     else:
@@ -137,7 +137,7 @@ def calibrate(
             (
                 path,
                 "" if found["nominal"] is None else number(found["nominal"]),
-                *with_interval(found["fitted"], found["low"], found["high"]),
+                *_with_interval(found),
                 found["unit"] or "",
             )
             for path, found in content["parameters"].items()
@@ -174,7 +174,7 @@ def validate(
     from mascarin.study import steps
 
     content = steps.validation(_open(file, allow_outside), out)
-    _print_warnings(content["warnings"])
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
     else:
@@ -204,6 +204,17 @@ def _open(file: str, allow_outside: bool) -> Study:
     if lines:
         print("\n".join(lines), file=sys.stderr)
     return opened
+
+
+def _with_interval(found: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Estimate and interval of a parameter, which may not be stated."""
+    shown = with_interval(found["fitted"], found["low"], found["high"])
+    return shown if found.get("stated", True) else (shown[0], "not stated", "")
+
+
+def _texts(contradictions: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What the model or the study contradicts, in sentences."""
+    return [str(one["text"]) for one in contradictions]
 
 
 def _print_warnings(lines: Sequence[str]) -> None:

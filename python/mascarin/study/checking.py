@@ -119,7 +119,7 @@ def _errors(study: Setup) -> None:
                 f"found {plan.independent}, but the identification lasts {hours:g} h; expected errors that "
                 "last shorter than it: make the identification longer, or independent shorter"
             )
-    if not study.estimates_errors:
+    if not study.states_errors:
         return
     leave_out = "or leave out discrepancy, alternatives and the errors of the sensors"
     if plan.method == "emcee":
