@@ -180,8 +180,8 @@ class JointPosterior:
 
         ratio = np.abs(self.left_out) / self.left_out_sd
         assumed = float(stats.norm.ppf(0.5 + 0.5 * confidence))
-        found = np.nanquantile(ratio.reshape(-1, ratio.shape[2]), confidence, axis=0) / assumed
-        return np.asarray(np.clip(found, *_CROSS_VALIDATED))
+        ratio_of_days = np.nanquantile(ratio.reshape(-1, ratio.shape[2]), confidence, axis=0) / assumed
+        return np.asarray(np.clip(ratio_of_days, *_CROSS_VALIDATED))
 
     def widened(self, confidence: float = 0.95) -> Floats:
         """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
@@ -285,13 +285,15 @@ def joint_posterior(
     covariance = covariance * np.outer(scale[:shared_count], scale[:shared_count])
     low, high = ends_of(count, stated_count - linear.further.shape[2] - count, stated_count)
     bounded_count = int(np.isfinite(high).sum())
-    kept = slice(bounded_count)
-    drawn = within_bounds(mean[:, kept], covariance[:, kept, kept], low[kept], high[kept])
+    limited = slice(bounded_count)
+    bounded_sample = within_bounds(
+        mean[:, limited], covariance[:, limited, limited], low[limited], high[limited]
+    )
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
-    bounded_mean, bounded = moments_within(middle, together, drawn)
-    sample = drawn[:, :count]
+    bounded_mean, bounded = moments_within(middle, together, bounded_sample)
+    sample = bounded_sample[:, :count]
     of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
     names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
     z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
@@ -429,8 +431,8 @@ def _priors(problem: CalibrationProblem) -> tuple[Floats, Floats]:
 
 def _least(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
     """Smallest standard deviation of the error of the model within a day (S,), see `LEAST_ERROR`. [unit]"""
-    whole = np.array([math.sqrt(float(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
-    return np.asarray(np.minimum(LEAST_ERROR * whole, stated.limit))
+    total = np.array([math.sqrt(float(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
+    return np.asarray(np.minimum(LEAST_ERROR * total, stated.limit))
 
 
 def _scale(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
@@ -439,6 +441,6 @@ def _scale(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
     An offset is an error of its own: were the scale the whole uncertainty, the errors of the model would have
     it once more, on every day and at every hour.
     """
-    whole = np.array([float(np.mean(s.sigma[s.mask] ** 2)) for s in problem.sensors])
+    total = np.array([float(np.mean(s.sigma[s.mask] ** 2)) for s in problem.sensors])
     shared = np.array([error.offset**2 + error.common**2 for error in stated.sensors])
-    return np.asarray(np.sqrt(np.maximum(whole - shared, _LEAST_SCATTER**2 * whole)))
+    return np.asarray(np.sqrt(np.maximum(total - shared, _LEAST_SCATTER**2 * total)))

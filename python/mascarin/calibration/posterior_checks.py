@@ -83,7 +83,7 @@ class Contradiction:
         }
 
 
-def widening(found: Sequence[Contradiction]) -> float:
+def widening(contradictions: Sequence[Contradiction]) -> float:
     """Return the factor of all intervals for some contradictions; infinite where none is to be stated.
 
     Examples
@@ -93,7 +93,7 @@ def widening(found: Sequence[Contradiction]) -> float:
     >>> widening([Contradiction("offset", "room", "", 4.0)])
     inf
     """
-    factor = max([1.0, *(one.factor for one in found)])
+    factor = max([1.0, *(entry.factor for entry in contradictions)])
     return factor if factor <= LARGEST_FACTOR else math.inf
 
 
@@ -158,10 +158,10 @@ def judged(
     joint, stated, days
         As for `of_errors`.
     """
-    found = of_errors(joint, [sensor.name for sensor in fit.problem.sensors], stated, days)
-    found += of_estimates(fit.problem.parameters, fit.x, fit.on_bound)
-    texts = (one.text for one in found)
-    return replace(with_wider_intervals(fit, widening(found)), warnings=(*texts, *fit.warnings))
+    contradictions = of_errors(joint, [sensor.name for sensor in fit.problem.sensors], stated, days)
+    contradictions += of_estimates(fit.problem.parameters, fit.x, fit.on_bound)
+    texts = (entry.text for entry in contradictions)
+    return replace(with_wider_intervals(fit, widening(contradictions)), warnings=(*texts, *fit.warnings))
 
 
 def of_errors(
@@ -185,7 +185,7 @@ def of_errors(
 
 def _offsets(joint: JointPosterior, stated: Mapping[str, float]) -> list[Contradiction]:
     """Errors of sensors that would be larger than stated, and numbers far from the building as described."""
-    found, first = [], joint.z.size
+    contradictions, first = [], joint.z.size
     for k, name in enumerate(joint.names):
         if k < joint.unlimited.size:
             away = float(joint.unlimited[k])
@@ -198,50 +198,50 @@ def _offsets(joint: JointPosterior, stated: Mapping[str, float]) -> list[Contrad
                 "than "
                 "stated, or the model has an error that looks like it"
             )
-            found.append(Contradiction("offset", name, text, abs(away) / _MOST_STATED))
+            contradictions.append(Contradiction("offset", name, text, abs(away) / _MOST_STATED))
         elif abs(joint.mean[first + k]) > _MOST_DESCRIBED:
             away = float(abs(joint.mean[first + k]))
             text = (
                 f"{name}: {away:.1f} standard uncertainties from the building as described: a number that is "
                 "not estimated has another value, or the model has an error that looks like it"
             )
-            found.append(Contradiction("offset", name, text, away / _MOST_DESCRIBED))
-    return found
+            contradictions.append(Contradiction("offset", name, text, away / _MOST_DESCRIBED))
+    return contradictions
 
 
 def _days(joint: JointPosterior, days: Sequence[str]) -> list[Contradiction]:
     """Days that the other days do not predict as well as they should."""
     from scipy import stats
 
-    found = []
+    contradictions = []
     for name, white in zip(days, joint.whitened, strict=True):
-        there = white[np.isfinite(white)]
-        if there.size == 0:
+        present = white[np.isfinite(white)]
+        if present.size == 0:
             continue
-        mean_square = float(np.mean(there**2))
-        p = float(stats.chi2.sf(there @ there, there.size)) * len(days)
+        mean_square = float(np.mean(present**2))
+        p = float(stats.chi2.sf(present @ present, present.size)) * len(days)
         if mean_square > _SLIGHTLY_LARGER and p < _RARE:
             text = (
                 f"{name}: the other days of the identification predict this day {math.sqrt(mean_square):.1f} "
                 "times worse than the errors of all days allow: something differs on it"
             )
-            found.append(Contradiction("day", name, text, math.sqrt(mean_square)))
-    return found
+            contradictions.append(Contradiction("day", name, text, math.sqrt(mean_square)))
+    return contradictions
 
 
 def _order(joint: JointPosterior, sensors: Sequence[str]) -> list[Contradiction]:
     """Sensors whose errors follow each other otherwise than assumed."""
     from scipy import stats
 
-    found, limit = [], float(stats.norm.isf(0.5 * _RARE / max(len(sensors), 1)))
+    contradictions, limit = [], float(stats.norm.isf(0.5 * _RARE / max(len(sensors), 1)))
     for s, name in enumerate(sensors):
         first, second = joint.whitened[:, :-1, s], joint.whitened[:, 1:, s]
-        there = np.isfinite(first) & np.isfinite(second)
-        count = int(there.sum())
+        present = np.isfinite(first) & np.isfinite(second)
+        count = int(present.sum())
         if count < 24:
             continue
         square = float(np.mean(joint.whitened[:, :, s][np.isfinite(joint.whitened[:, :, s])] ** 2))
-        correlation = float(np.mean(first[there] * second[there])) / max(square, 1e-300)
+        correlation = float(np.mean(first[present] * second[present])) / max(square, 1e-300)
         if abs(correlation) > max(limit / math.sqrt(count), _SLIGHT):
             text = (
                 f"{name}: errors of neighbouring hours are correlated ({correlation:+.2f}) beyond what the "
@@ -249,8 +249,10 @@ def _order(joint: JointPosterior, sensors: Sequence[str]) -> list[Contradiction]
             )
             # Errors that follow each other are worth fewer values: (1 + r) / (1 - r) times fewer.
             lasting = math.sqrt((1.0 + abs(correlation)) / (1.0 - min(abs(correlation), 0.95)))
-            found.append(Contradiction("autocorrelation", name, text, lasting if correlation > 0.0 else 1.0))
-    return found
+            contradictions.append(
+                Contradiction("autocorrelation", name, text, lasting if correlation > 0.0 else 1.0)
+            )
+    return contradictions
 
 
 def of_estimates(
@@ -267,7 +269,7 @@ def of_estimates(
     on_bound : mapping of str to str
         Reasons of estimates on the end of their range, by path.
     """
-    found = [
+    contradictions = [
         Contradiction("bound", path, f"{path} is {reason}: the intervals of all others depend on this end")
         for path, reason in on_bound.items()
     ]
@@ -279,5 +281,5 @@ def of_estimates(
                 f"{said}. "
                 "It makes up for an error of the model, or the material is another one"
             )
-            found.append(Contradiction("material", parameter.path, text))
-    return found
+            contradictions.append(Contradiction("material", parameter.path, text))
+    return contradictions

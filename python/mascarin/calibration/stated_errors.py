@@ -124,10 +124,10 @@ def shared_errors(sensor: States, stated: SensorUncertainty, random: float = mat
     0.4
     """
     scatters = sensor.repeatability if sensor.repeatability is not None else random
-    known = math.hypot(scatters if math.isfinite(scatters) else 0.0, sensor.common)
-    rest = math.sqrt(max(stated.absolute**2 - known**2, 0.0))
+    random_and_common = math.hypot(scatters if math.isfinite(scatters) else 0.0, sensor.common)
+    offset = math.sqrt(max(stated.absolute**2 - random_and_common**2, 0.0))
     return SensorError(
-        offset=rest if sensor.offset is None else sensor.offset,
+        offset=offset if sensor.offset is None else sensor.offset,
         common=sensor.common,
         gain=sensor.gain if sensor.gain else stated.relative,
         reference=sensor.reference,
@@ -248,15 +248,15 @@ def with_sensor_errors(
     def effects_of_depths(values: Floats) -> Floats:
         effects = np.zeros((*observation.measured.shape, len(depths)))
         if depths:
-            at = dict(zip(fit.problem.paths, values.tolist(), strict=True))
-            _, slopes = simulation.jacobian_vector(list(depths), simulation.vector(at))
+            parameters = dict(zip(fit.problem.paths, values.tolist(), strict=True))
+            _, slopes = simulation.jacobian_vector(list(depths), simulation.vector(parameters))
             for k, uncertainty in enumerate(depths.values()):
                 effects[..., k] = uncertainty * observation.simulated(simulation.index, slopes[k])
         return effects
 
-    found, joint = estimate_jointly(fit, stated, options, effects_of_depths)
+    estimates, joint = estimate_jointly(fit, stated, options, effects_of_depths)
     days = [f"{day:%Y-%m-%d}" for day in local.normalize().unique()]
-    return judged(found, joint, sizes_of(list(sensors), errors), days)
+    return judged(estimates, joint, sizes_of(list(sensors), errors), days)
 
 
 def sizes_of(names: Sequence[str], errors: Sequence[SensorError]) -> dict[str, float]:
@@ -267,14 +267,14 @@ def sizes_of(names: Sequence[str], errors: Sequence[SensorError]) -> dict[str, f
     >>> sizes_of(["room"], [SensorError(offset=0.15)])
     {'room offset': 0.15}
     """
-    found = {
+    sizes = {
         f"{name} {what}": getattr(error, what)
         for name, error in zip(names, errors, strict=True)
         for what in ("offset", "gain", "clock")
         if getattr(error, what)
     }
     common = max((error.common for error in errors), default=0.0)
-    return found | ({"common offset": common} if common else {})
+    return sizes | ({"common offset": common} if common else {})
 
 
 def depth_paths(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, float]:

@@ -15,8 +15,9 @@ from mascarin.calibration.posterior_checks import (
     widening,
     with_wider_intervals,
 )
-from mascarin.calibration.stated_errors import counted_as_scatter, only_scatter
+from mascarin.calibration.stated_errors import counted_as_scatter
 from mascarin.study.error_model import local_hours, scatter_of, stated_sizes
+from mascarin.study.error_rule import all_scatter, reason_of
 from mascarin.study.prediction_intervals import coverage_of
 
 if TYPE_CHECKING:
@@ -243,9 +244,8 @@ def _priors(study: Setup) -> Iterator[Contradiction]:
 
 def _not_estimated(study: Setup) -> Iterator[Contradiction]:
     """Why stated uncertainties count as scatter, where they should not."""
-    used = [sensor for sensor in study.plan.sensors.values() if sensor.use]
-    if study.plan.identification is None or study.estimates_errors or all(map(only_scatter, used)):
+    if study.estimates_errors or all_scatter(study.plan):
         return
-    reason = study.reason_not_to_estimate
+    reason = reason_of(study.plan, study.hours)
     if reason is not None:
         yield Contradiction("statement", "sensors", counted_as_scatter(reason))

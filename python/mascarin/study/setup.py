@@ -15,12 +15,12 @@ import numpy as np
 from mascarin import __version__
 from mascarin._io.durations import seconds_of
 from mascarin.building.ties import expanded, with_ties
-from mascarin.calibration.stated_errors import only_scatter, reason_not_to_estimate
 from mascarin.errors import InputError
 from mascarin.simulation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
+from mascarin.study.error_rule import estimates_errors
 from mascarin.study.forms import Choice, Forms, label
 from mascarin.study.patterns import ties_of
 from mascarin.study.periods import Timeline
@@ -289,35 +289,14 @@ class Setup:
         return name
 
     @property
-    def states_errors(self) -> bool:
-        """Whether the study itself says that errors of sensors and model are estimated."""
-        plan = self.plan.identification
-        stated = any(sensor.states_errors for sensor in self.plan.sensors.values())
-        return plan is not None and (plan.discrepancy is not None or stated or bool(self.plan.alternatives))
-
-    @property
     def estimates_errors(self) -> bool:
-        """Whether errors of sensors and model are estimated together with the parameters.
-
-        The uncertainty of a sensor is that of an offset unless the study says otherwise.
-        """
-        if self.plan.identification is None or self.states_errors:
-            return self.states_errors
-        used = [sensor for sensor in self.plan.sensors.values() if sensor.use]
-        return not all(map(only_scatter, used)) and self.reason_not_to_estimate is None
+        """Whether errors of sensors and model are estimated together with the parameters."""
+        return self.plan.identification is not None and estimates_errors(self.plan, self.hours)
 
     @cached_property
-    def reason_not_to_estimate(self) -> str | None:
-        """Why errors of sensors cannot be estimated; None if they can, or the study states none."""
-        plan = self.plan.identification
-        if plan is None:
-            return None
-        if plan.profiles:
-            return "the profiles hold them at zero"
-        if any(variant.candidate for variant in self.plan.variants.values()):
-            return "the candidates are compared by their cost"
-        count = int(np.count_nonzero(self.during["identification"]))
-        return reason_not_to_estimate(plan.method, plan.cost, count * self.observation.interval / 3600.0)
+    def hours(self) -> float:
+        """Length of all identification periods together. [h]"""
+        return float(np.count_nonzero(self.during["identification"]) * self.observation.interval / 3600.0)
 
     def whole(self, variant: str | None = None) -> Simulation:
         """A model over the whole record, with the state of its phase-change layers."""

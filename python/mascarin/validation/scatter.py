@@ -33,7 +33,7 @@ _PRODUCT: Final = -15.0
 #: Readings are equal to this part of their range.
 _EQUAL: Final = 1e-9
 #: Relative distance from a whole number that rounding may leave.
-_WHOLE: Final = 1e-4
+_ROUNDED: Final = 1e-4
 
 
 def scatter(readings: ArrayLike) -> float:
@@ -96,8 +96,8 @@ def resolution(readings: ArrayLike) -> float:
     if apart.size == 0:
         return 0.0
     steps = apart / apart.min()
-    whole = bool(np.all(np.abs(steps - np.round(steps)) < _WHOLE * np.round(steps)))
-    return float(apart.min()) if whole else 0.0
+    multiples = bool(np.all(np.abs(steps - np.round(steps)) < _ROUNDED * np.round(steps)))
+    return float(apart.min()) if multiples else 0.0
 
 
 def _share_of_quiet() -> float:
