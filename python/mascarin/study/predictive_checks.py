@@ -158,11 +158,11 @@ def _periods(study: Setup, intervals: PredictionIntervals) -> Iterator[Contradic
 
 def _reasons(study: Setup, fit: Calibration) -> dict[str, str]:
     """Reasons of estimates on a bound, those of the study first."""
-    given = study.sought.parameters
-    return {
-        path: f"on its bound, {given[path].at_bound}" if path in given and given[path].at_bound else reason
-        for path, reason in fit.on_bound.items()
-    }
+    reasons = dict(fit.on_bound)
+    for path, free in study.sought.parameters.items():
+        if path in reasons and free is not None and free.at_bound:
+            reasons[path] = f"on its bound, {free.at_bound}"
+    return reasons
 
 
 def _days(study: Setup) -> list[str]:
