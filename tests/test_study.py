@@ -316,7 +316,7 @@ def _left(done: Done) -> str:
 #: The least that a study can say.
 LEAST = {
     "criteria:\n  - {metric: rmse, limit: 0.25}\n": "",
-    "  joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}\n": "",
+    "  joint: {column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}\n": "",
     "    materials.insulation.conductivity:\n": "",
     "    materials.brick.conductivity:\n": "",
     "    surfaces.wall.outside.absorptance:\n": "",

@@ -26,8 +26,8 @@ alternatives:
   site.ground_reflectance: [0.2, 0.5]
 """
 STATED = (
-    ("uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
-    ("uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03, clock: 5min, depth: 0.001}"),
+    ("offset: 0, uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03, clock: 5min, depth: 0.001}"),
     ("sensitivity: {replicates: 3, interval: 1h}\n", ""),
     ("  starts: 2", "  starts: 1\n  discrepancy: {limit: 0.05}"),
 )

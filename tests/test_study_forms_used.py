@@ -39,8 +39,8 @@ alternatives:
       parameters: {surfaces.wall.outside.convection.constant: {}}
 """
 STATED = (
-    ("uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
-    ("uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03}"),
     ("sensitivity: {replicates: 3, interval: 1h}\n", ""),
     ("  starts: 2", "  starts: 1\n  discrepancy: {limit: 0.05}"),
     ("limit: 0.25", "limit: 0.001"),  # missed, so that all steps are done

@@ -16,7 +16,7 @@ from study_support import BUILDING, STUDY, Bench, logger_table
 def bench(tmp_path: Path) -> Bench:
     found = Bench(tmp_path)
     found.building.write_text(BUILDING, encoding="utf-8")
-    found.study.write_text(STUDY, encoding="utf-8")
+    found.study.write_text(STUDY.replace("offset: 0, ", ""), encoding="utf-8")
     logger_table(found.building).to_csv(found.table)
     return found
 
