@@ -60,8 +60,8 @@ measurements:
   table: logger.csv
   timezone: UTC+1
 sensors:
-  joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}
-  core: {column: core, output: core.temperature, uncertainty: 0.3}
+  joint: {column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}
+  core: {column: core, output: core.temperature, offset: 0, uncertainty: 0.3}
 step: 30min
 periods:
   warm_up: ["2023-03-01 00:00", "2023-03-02 00:00"]

@@ -19,7 +19,7 @@ from mascarin.calibration.discrepancy import (
 )
 from mascarin.calibration.joint_estimation import estimate_jointly
 from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
-from mascarin.calibration.pseudo_bma_weights import most_parsimonious, pseudo_bma_weights, weighted_quantiles
+from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
 from mascarin.calibration.sensor_errors import SensorError, error_columns
 from mascarin.calibration.truncated_normal import within_bounds
 from mascarin.errors import InputError
@@ -303,10 +303,43 @@ def test_days_that_disagree_leave_the_choice_open() -> None:
     assert 0.5 < open_[0] < 0.95
 
 
-def test_a_more_complex_form_is_used_only_if_it_is_clearly_better() -> None:
-    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [5.0, -4.0, 5.0]]), [0, 1]) == 0
-    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [5.0, 4.0, 5.0]]), [0, 1]) == 1
-    assert most_parsimonious(np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]), [0, 1]) == 0
+def _used(by_day: list[list[float]], free: list[int]) -> int:
+    densities = np.array(by_day)
+    return used_form(densities, pseudo_bma_weights(densities), [(count,) for count in free])
+
+
+def test_a_simpler_form_is_used_only_if_it_predicts_every_day_as_well() -> None:
+    assert _used([[0.0, 0.0, 0.0], [0.4, 0.4, 0.4]], [4, 5]) == 0
+    assert _used([[0.0, 0.0, 0.0], [0.4, 0.4, 0.4]], [5, 4]) == 1
+    # The sum is the same, but one day differs: it is not said by the days that they are alike.
+    assert _used([[0.0, 0.0, 0.0], [0.0, 0.0, 1.2]], [4, 5]) == 1
+
+
+def test_one_outlying_day_does_not_save_a_form_that_is_far_behind() -> None:
+    """Five days, 20 log units a day behind but for one: two standard errors of the sum are 90 there."""
+    worse = [-20.0, -22.0, -19.0, -21.0, 0.0]
+    assert _used([worse, [0.0] * 5], [4, 8]) == 1
+    assert _used([[-20.0] * 5, [0.0] * 5], [4, 8]) == 1
+    assert _used([[-50.0, 10.0, -1.0, -1.0, -1.0], [0.0] * 5], [4, 8]) == 1
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_form_used_is_never_far_behind_the_best(seed: int) -> None:
+    """Drawn densities with heavy tails: within 3 over all days, and with a twentieth of the best weight."""
+    rng = np.random.default_rng(seed)
+    for _ in range(25):
+        forms, days = int(rng.integers(2, 13)), int(rng.integers(1, 21))
+        by_day = 2.0 * rng.standard_t(1.5, size=(forms, days))
+        weights = pseudo_bma_weights(by_day)
+        free = [(int(count),) for count in rng.integers(3, 9, forms)]
+        used, total = used_form(by_day, weights, free), by_day.sum(axis=1)
+        assert total[used] >= total.max() - 3.0
+        assert weights[used] >= 0.05 * weights.max()
+        counted = (total >= total.max() - 3.0) & (weights >= 0.05 * weights[total.argmax()])
+        heaviest = int(np.flatnonzero(counted)[weights[counted].argmax()])
+        if used != heaviest:  # for its simplicity, and only where every day is predicted as well
+            assert free[used] <= free[heaviest]
+            assert np.abs(by_day[heaviest] - by_day[used]).max() <= 0.5
 
 
 def test_quantiles_of_a_mixture_are_those_of_its_distribution() -> None:

@@ -107,6 +107,27 @@ def test_plain_intervals_would_be_far_too_narrow() -> None:
     assert np.all((fit.high - fit.low) / (2.0 * 1.96 * plain) > 2.0)
 
 
+def test_an_interval_does_not_depend_on_which_bound_another_estimate_has_reached() -> None:
+    """Two columns that are nearly the same, such as a conductivity and an infiltration in a short record."""
+    hours = np.arange(96.0)
+    f, g = np.sin(hours * np.pi / 12.0), 0.1 * np.cos(hours * np.pi / 5.0)
+    design = np.stack([f, f + g], axis=1)
+    inside, on_bound = 0, 0
+    for seed in range(16):
+        measured = design @ np.array([0.1, 0.5]) + 0.2 * np.random.default_rng(seed).normal(size=96)
+        problem = CalibrationProblem(
+            (FitParameter("first", 0.0, 1.0), FitParameter("second", 0.0, 1.0)),
+            (FitSensor("room", measured, 0.2),),
+            lambda x: np.einsum("mp,tp->mt", x, design)[:, :, None],
+        )
+        fit = solve(problem, options=SearchOptions(starts=1))
+        if fit.on_bound:
+            on_bound += 1
+            inside += int(fit.low[1] <= 0.5 <= fit.high[1])
+    assert on_bound >= 3
+    assert inside == on_bound
+
+
 @pytest.mark.parametrize("cost", ["rmse", "sd"])
 def test_other_costs_have_intervals_of_the_same_size(cost: str) -> None:
     design = _design(384, 3)

@@ -316,7 +316,7 @@ def _left(done: Done) -> str:
 #: The least that a study can say.
 LEAST = {
     "criteria:\n  - {metric: rmse, limit: 0.25}\n": "",
-    "  joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}\n": "",
+    "  joint: {column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}\n": "",
     "    materials.insulation.conductivity:\n": "",
     "    materials.brick.conductivity:\n": "",
     "    surfaces.wall.outside.absorptance:\n": "",
@@ -630,7 +630,12 @@ def static_regression(data_dir: Path, series: pd.DataFrame, column: str, sensor:
 
 def test_the_wall_bench_is_accurate_on_blind_days(wall: Done, data_dir: Path) -> None:
     sensors, series = wall.content["sensors"], wall.table("series")
-    blind = {name: sensors[name]["blind"]["rmse"] for name in ("interface", "insulation")}
+    # The expected reading has the estimated offset of the sensor, which is no error of the model.
+    seen = pd.to_datetime(series["time"], utc=True) < pd.Timestamp("2024-09-11", tz="Etc/GMT-2")
+    blind = {
+        name: float(np.sqrt(((series[f"{name}.expected"] - series[f"{name}.measured"])[~seen] ** 2).mean()))
+        for name in ("interface", "insulation")
+    }
     assert blind["interface"] <= 0.15
     assert blind["insulation"] <= 0.35
     for name, column in (("interface", "T_interface_2"), ("insulation", "T_ins_2")):

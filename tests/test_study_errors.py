@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from mascarin import cli
+from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form
 from mascarin.study import Study, model_runs
 from mascarin.study.forms import comparable
 from mascarin.study.model_runs import ModelRuns
@@ -25,8 +26,8 @@ alternatives:
   site.ground_reflectance: [0.2, 0.5]
 """
 STATED = (
-    ("uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
-    ("uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03, clock: 5min, depth: 0.001}"),
+    ("offset: 0, uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03, clock: 5min, depth: 0.001}"),
     ("sensitivity: {replicates: 3, interval: 1h}\n", ""),
     ("  starts: 2", "  starts: 1\n  discrepancy: {limit: 0.05}"),
 )
@@ -185,3 +186,52 @@ def test_incomplete_files_of_a_killed_study_are_removed(folder: Path, tmp_path: 
     with Workspace(tmp_path, study.inputs()):
         assert not any(file.exists() for file in left)
         assert all(file.exists() for file in others)
+
+
+def test_the_form_and_its_words_follow_from_the_stored_densities(content: dict[str, Any]) -> None:
+    forms = content["alternatives"]
+    by_day = np.array([form["left_out"] for form in forms])
+    weights = pseudo_bma_weights(by_day)
+    np.testing.assert_allclose(weights, [form["weight"] for form in forms], atol=2e-3)
+    complexity = [(form["free_numbers"], len(form["choice"])) for form in forms]
+    assert used_form(by_day, weights, complexity) == 0
+    total = by_day.sum(axis=1)
+    assert total[0] >= total.max() - 3.0
+    assert weights[0] >= 0.05 * weights.max()
+    said = next(n["text"] for n in content["notes"] if n["text"].startswith("Form of the model"))
+    assert f"'{forms[0]['label']}' is used (weight {100 * weights[0]:.0f} %)" in said
+    sentences = said.split(". ")
+    alike = next((one for one in sentences if "does not tell it from" in one), "")
+    rest = next((one for one in sentences if "not excluded" in one), "")
+    near = (total[0] - total <= 3.0) & (weights >= 0.05 * weights[0])
+    for k, form in enumerate(forms[1:], start=1):
+        assert (f"'{form['label']}' (" in alike) == near[k], form["label"]
+        assert (f"'{form['label']}' (" in rest) == (not near[k] and weights[k] >= 0.05)
+
+
+def test_the_bands_of_the_report_hold_what_it_says(content: dict[str, Any], folder: Path) -> None:
+    series = pd.read_csv(folder / "out" / "tables" / "series.csv")
+    stamps = pd.to_datetime(series["time"]).dt.tz_localize(None)
+    rows = {table["title"]: table for table in content["tables"]}["Prediction intervals"]["rows"]
+    for name, row in zip(("joint", "core"), rows, strict=True):
+        away = (series[f"{name}.measured"] - series[f"{name}.expected"]).abs()
+        assert row[2] == pytest.approx(series[f"{name}.band"].mean(), rel=1e-3)
+        for period, start, end in (
+            ("identification", "2023-03-02", "2023-03-06"),
+            ("corroboration", "2023-03-06", "2023-03-08"),
+        ):
+            use = (stamps >= start) & (stamps < end) & away.notna()
+            share = float((away[use] <= series[f"{name}.band"][use]).mean())
+            assert content["band"][name]["held"][period] == pytest.approx(share, abs=0.01)
+
+
+def test_what_contradicts_the_model_is_said_first_and_widens_what_it_says(
+    content: dict[str, Any], folder: Path
+) -> None:
+    assert next(iter(content)) == "contradictions"
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert ("Read first." in page) == bool(content["contradictions"])
+    factor = max([1.0, *(one["factor"] for one in content["contradictions"])])
+    method = dict(content["identification"])["uncertainty"]
+    assert ("times wider" in method) == (1.0 < factor <= 3.0)
+    assert ("not stated" in method) == (factor > 3.0)

@@ -39,8 +39,8 @@ alternatives:
       parameters: {surfaces.wall.outside.convection.constant: {}}
 """
 STATED = (
-    ("uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
-    ("uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
+    ("offset: 0, uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03}"),
     ("sensitivity: {replicates: 3, interval: 1h}\n", ""),
     ("  starts: 2", "  starts: 1\n  discrepancy: {limit: 0.05}"),
     ("limit: 0.25", "limit: 0.001"),  # missed, so that all steps are done
@@ -72,7 +72,7 @@ def test_the_report_is_written_with_every_form_as_the_used_one(
     with Workspace(out, study.inputs()) as workspace, study.keeping(workspace):
         for place, choice in enumerate(choices):
             # The forms are calibrated once; what is kept serves all that follow.
-            monkeypatch.setattr(findings, "most_parsimonious", lambda *_, place=place: place)
+            monkeypatch.setattr(findings, "used_form", lambda *_, place=place: place)
             results = study._carried_out(workspace, None)
             assert results.combination is not None
             assert results.combination.forms[0].choice == choice

@@ -26,7 +26,7 @@ from mascarin.validation.sensors import Sensor
 from mascarin.weather import Measurements
 from study_support import BUILDING, STUDY, TRUTH, Bench, logger_table, open_climate
 
-JOINT = "joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}"
+JOINT = "joint: {column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}"
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ from study_support import BUILDING, STUDY, Bench, logger_table
 WARM_UP = '  warm_up: ["2023-03-01 00:00", "2023-03-02 00:00"]\n'
 KNOWN = '  identification: ["2023-03-02 00:00", "2023-03-06 00:00"]\n'
 HELD = '  corroboration: ["2023-03-06 00:00", "2023-03-08 00:00"]\n'
-CORE = "core: {column: core, output: core.temperature, uncertainty: 0.3}"
+CORE = "core: {column: core, output: core.temperature, offset: 0, uncertainty: 0.3}"
 
 
 @pytest.fixture(scope="module")
@@ -163,7 +163,7 @@ def test_periods_that_are_refused(
 def test_errors_are_estimated_from_several_periods(bench: Bench) -> None:
     bench.edit(KNOWN, '  identification: [["2023-03-02", "2023-03-04"], ["2023-03-06", "2023-03-07"]]\n')
     bench.edit(HELD, '  corroboration: [["2023-03-04", "2023-03-06"], ["2023-03-07", "2023-03-09"]]\n')
-    bench.edit(CORE, CORE.replace("uncertainty: 0.3", "standard_uncertainty: 0.1, offset: 0.05"))
+    bench.edit(CORE, CORE.replace("offset: 0, uncertainty: 0.3", "standard_uncertainty: 0.1, offset: 0.05"))
     results = Study.from_yaml(bench.study).run()
     assert results.combination is not None
     assert results.combination.forms[0].joint.by_day.shape == (5,)

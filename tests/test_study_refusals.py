@@ -116,7 +116,7 @@ CASES = {
         ("variants.other.candidate", "expected alternatives", "leave candidate out"),
     ),
     "an offset without an uncertainty in another unit": Refused(
-        "{column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}",
+        "{column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}",
         "{column: joint, output: wall.inside_flux, clock: 5min}",
         "clock: 5min",
         ("sensors.joint", "found no uncertainty, expected one, because the unit is W/m2"),
@@ -473,8 +473,8 @@ CASES = {
         ("found: '../core'", "letters"),
     ),
     "no sensor takes part": Refused(
-        "  joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}\n"
-        "  core: {column: core, output: core.temperature, uncertainty: 0.3}",
+        "  joint: {column: joint, output: wall.interface_1_temperature, offset: 0, uncertainty: 0.2}\n"
+        "  core: {column: core, output: core.temperature, offset: 0, uncertainty: 0.3}",
         "  joint: {column: joint, output: wall.interface_1_temperature, use: false}",
         "sensors:",
         ("use: false on every sensor",),

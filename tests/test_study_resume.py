@@ -20,7 +20,7 @@ from study_support import BUILDING, STUDY, Bench, logger_table
 @pytest.fixture
 def bench(tmp_path: Path) -> Bench:
     (tmp_path / "building.yaml").write_text(BUILDING, encoding="utf-8")
-    text = STUDY.replace("uncertainty: 0.2}", "standard_uncertainty: 0.05, offset: 0.03}")
+    text = STUDY.replace("offset: 0, uncertainty: 0.2}", "standard_uncertainty: 0.05, offset: 0.03}")
     (tmp_path / "study.yaml").write_text(text.replace("limit: 0.25", "limit: 0.01"), encoding="utf-8")
     logger_table(tmp_path / "building.yaml").to_csv(tmp_path / "logger.csv")
     return Bench(tmp_path)

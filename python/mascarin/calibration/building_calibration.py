@@ -18,7 +18,14 @@ from mascarin.calibration.problem import FitParameter
 from mascarin.calibration.result import Calibration
 from mascarin.calibration.search import solve
 from mascarin.calibration.search_options import MethodName, SearchOptions
-from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
+from mascarin.calibration.stated_errors import (
+    counted_as_scatter,
+    depth_paths,
+    only_scatter,
+    reason_not_to_estimate,
+    require_supported,
+    with_sensor_errors,
+)
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.progress import ProgressOption
@@ -80,9 +87,11 @@ def calibrate(
     sensors : mapping of str to str or Sensor
         Output of the model -> column of the table, or `Sensor` with its uncertainty. The key of a sensor with
         an ``output`` of its own is its name. A sensor in degC without uncertainty has an expanded uncertainty
-        of 0.5 degC; every other unit needs one. Where a sensor states an ``offset``, ``common``, ``gain``,
-        ``clock`` or ``depth``, these errors and those of the model are estimated together with the
-        parameters, as in a study; the period then has at least two days.
+        of 0.5 degC; every other unit needs one. Its uncertainty is that of an offset, less the scatter of the
+        record, unless the sensor states ``offset`` or ``repeatability``; ``offset=0`` means none. Offsets and
+        what ``common``, ``gain``, ``clock`` and ``depth`` state are estimated together with the parameters
+        and the errors of the model, as in a study. This needs the cost ``nll``, two days, and a method other
+        than ``emcee``; otherwise what is stated is refused, and what is not is said in the warnings.
     vary : sequence of str or FitParameter, or mapping of str to (float, float) or FitParameter
         Parameters to estimate by path, within the ranges of the building, with bounds (low, high), or from
         `fit_parameter` with start, scale and prior. A path with ``*`` stands for all that it matches, which
@@ -175,7 +184,7 @@ def calibrate(
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
-    errors = _states_errors(simulation, named, method, cost, begin)
+    errors, not_estimated = _estimates_errors(simulation, named, method, cost, begin)
     observation = observe(simulation, measurements, named, begin)
     all_samples = np.ones(len(observation.times), dtype=np.bool_)
     fit = solve(
@@ -189,7 +198,7 @@ def calibrate(
     )
     if errors:
         fit = with_sensor_errors(fit, simulation, observation, named, options or SearchOptions())
-    notes = (*fit.warnings, *_said_of_the_run(simulation, fit))
+    notes = (*not_estimated, *fit.warnings, *_said_of_the_run(simulation, fit))
     return replace(fit, nominal_building=chosen, times=observation.times, warnings=notes)
 
 
@@ -213,15 +222,22 @@ def _beginning(
     return lead, climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
 
 
-def _states_errors(
+def _estimates_errors(
     simulation: Simulation, sensors: Mapping[str, Sensor], method: str, cost: str, start: pd.Timestamp
-) -> bool:
-    """Whether errors of sensors are estimated; what cannot estimate them is refused."""
-    if not any(sensor.states_errors for sensor in sensors.values()):
-        return False
-    require_supported(method, cost, (simulation.end - start).total_seconds() / 3600.0)
-    depth_paths(simulation, sensors)
-    return True
+) -> tuple[bool, list[str]]:
+    """Whether errors of sensors are estimated, and why not where they should be.
+
+    What a sensor states and cannot be estimated is refused.
+    """
+    hours = (simulation.end - start).total_seconds() / 3600.0
+    if any(sensor.states_errors for sensor in sensors.values()):
+        require_supported(method, cost, hours)
+        depth_paths(simulation, sensors)
+        return True, []
+    if all(only_scatter(sensor) for sensor in sensors.values()):
+        return False, []
+    reason = reason_not_to_estimate(method, cost, hours)
+    return reason is None, [] if reason is None else [counted_as_scatter(reason)]
 
 
 def _require_types(measurements: object, sensors: object, vary: object, record: object) -> None:

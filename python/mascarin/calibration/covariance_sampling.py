@@ -30,6 +30,7 @@ from mascarin.calibration.discrepancy import (
     CORRELATION_HOURS,
     DayData,
     Discrepancy,
+    at_least,
     drift_kernel,
     root_of,
 )
@@ -94,7 +95,7 @@ _PARTS: Final = ("hour", "day", "drift", "white")
 
 
 def sample_covariances(
-    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats
+    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats, least: Floats | float = 0.0
 ) -> CovarianceSample:
     """Draw sizes of the errors, the same numbers in every call.
 
@@ -108,6 +109,8 @@ def sample_covariances(
         Scale of the half-t prior of each standard deviation. [unit]
     limit : ndarray, shape (S,)
         Largest standard deviation of each part. [unit]
+    least : float or ndarray, shape (S,)
+        Smallest standard deviation of the error that is correlated within a day. [unit]
 
     Returns
     -------
@@ -125,11 +128,12 @@ def sample_covariances(
     >>> data = DayData(grid, error, np.zeros((20, 8, 0)), basis, np.ones((20, 8), dtype=bool), np.zeros(1))
     >>> small = 1e-4 * np.eye(1)
     >>> first = Discrepancy(small, small, small, np.array([0.04]), np.zeros(1), 4.0)
-    >>> sample = sample_covariances(data, first, scale=np.array([0.1]), limit=np.array([1.0]))
+    >>> one = np.ones(1)
+    >>> sample = sample_covariances(data, first, scale=0.1 * one, limit=one)
     >>> bool(0.15 < np.sqrt(sample.typical.white[0]) < 0.23)
     True
     """
-    chain = _Chain(data, first, scale, limit)
+    chain = _Chain(data, first, scale, limit, least)
     covariances, mean, covariance = [], [], []
     for move in range(_BURN_IN + _MOVES):
         now = chain.covariances
@@ -147,8 +151,10 @@ class _Chain:
     Arrays of values have the shape (D, H, S): days, slots of a day, sensors.
     """
 
-    def __init__(self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats) -> None:
-        self.covariances, self.scale, self.limit = first, scale, limit
+    def __init__(
+        self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats, least: Floats | float
+    ) -> None:
+        self.covariances, self.scale, self.limit, self.least = first, scale, limit, least
         self.rng = np.random.default_rng(_SEED)
         grid, self.sensors = data.grid, data.sensors
         self.shape = (grid.days, grid.slots, self.sensors)
@@ -263,7 +269,9 @@ class _Chain:
             covariances,
             hour=self._covariance(covariances.hour, repeating.T @ repeating, self.functions),
             day=self._covariance(covariances.day, of_days, days),
-            drift=self._covariance(covariances.drift, squares, slow.shape[0] * slow.shape[1]),
+            drift=at_least(
+                self._covariance(covariances.drift, squares, slow.shape[0] * slow.shape[1]), self.least
+            ),
             white=self._variance(white),
             correlation_hours=hours,
         )

@@ -228,14 +228,46 @@ class DayGaussian:
 
     def left_out(self, values: Floats) -> Floats:
         """Return the log density of each day given all other days, shape (D,), from values (D, n)."""
+        return self._of_days_left_out(values)[0]
+
+    def whitened(self, values: Floats) -> Floats:
+        """Return what each day differs from its prediction by all other days, from values (D, n).
+
+        Returns
+        -------
+        ndarray, shape (D, n)
+            Independent and of variance 1 if the distribution is right; NaN where nothing is there. [-]
+        """
+        return self._of_days_left_out(values)[1]
+
+    def days_left_out(self, values: Floats, sensors: int) -> tuple[Floats, Floats]:
+        """Return how far each day is from its prediction by all others, and the standard deviation of that.
+
+        Returns
+        -------
+        tuple of ndarray, shape (D, n / sensors, sensors)
+            NaN where nothing is there. [unit]
+        """
+        weighted = self.solve(values)
+        away, spread = np.full(values.shape, np.nan), np.full(values.shape, np.nan)
+        for d, present in enumerate(self.present):
+            rows = np.flatnonzero(present)
+            covariance = inverted(self.inverse_blocks[d][np.ix_(rows, rows)][None])[0]
+            away[d, rows], spread[d, rows] = covariance @ weighted[d, rows], np.sqrt(np.diag(covariance))
+        shape = (len(values), -1, sensors)
+        return away.reshape(shape), spread.reshape(shape)
+
+    def _of_days_left_out(self, values: Floats) -> tuple[Floats, Floats]:
         weighted, density = self.solve(values), np.zeros(len(values))
+        whitened = np.full(values.shape, np.nan)
         for d, present in enumerate(self.present):
             rows = np.flatnonzero(present)
             root = np.linalg.cholesky(self.inverse_blocks[d][np.ix_(rows, rows)])
-            whitened = np.linalg.solve(root, weighted[d, rows])
+            white = np.linalg.solve(root, weighted[d, rows])
             logdet = 2.0 * float(np.log(np.diag(root)).sum())
-            density[d] = -0.5 * (whitened @ whitened - logdet + rows.size * math.log(2.0 * math.pi))
-        return density
+            density[d] = -0.5 * (white @ white - logdet + rows.size * math.log(2.0 * math.pi))
+            whitened[d, rows] = white
+        return density, whitened
 
 
 def product(first: Floats, second: Floats) -> Floats:

@@ -219,7 +219,7 @@ class DayData:
 
 
 def estimate_discrepancy(
-    data: DayData, *, scale: Floats, limit: Floats, persistence: float = 0.0
+    data: DayData, *, scale: Floats, limit: Floats, least: Floats | float = 0.0, persistence: float = 0.0
 ) -> Discrepancy:
     """Estimate the sizes of the errors by marginal likelihood.
 
@@ -231,6 +231,8 @@ def estimate_discrepancy(
         Standard deviation of each part about which its weak prior is. [unit]
     limit : ndarray, shape (S,)
         Largest standard deviation of each part. [unit]
+    least : float or ndarray, shape (S,)
+        Smallest standard deviation of the error that is correlated within a day. [unit]
     persistence : float
         Correlation time of the errors of days, see `alike_days`. [d]
 
@@ -243,16 +245,21 @@ def estimate_discrepancy(
     best, density = None, -np.inf
     for hours in CORRELATION_HOURS:
         start = Discrepancy(prior, prior, prior, scale**2, data.within, hours, alike)
-        candidate = _maximized(data, start, scale, limit, _TRIAL_ITERATIONS)
+        candidate = _maximized(data, start, scale, limit, least, _TRIAL_ITERATIONS)
         reached = data.gaussian(candidate).log_density(data.error)
         if best is None or reached > density:
             best, density = candidate, reached
     assert best is not None  # noqa: S101 (there are correlation times)
-    return _maximized(data, best, scale, limit, _MAX_ITERATIONS)
+    return _maximized(data, best, scale, limit, least, _MAX_ITERATIONS)
 
 
 def _maximized(
-    data: DayData, covariances: Discrepancy, scale: Floats, limit: Floats, iterations: int
+    data: DayData,
+    covariances: Discrepancy,
+    scale: Floats,
+    limit: Floats,
+    least: Floats | float,
+    iterations: int,
 ) -> Discrepancy:
     """Improve all sizes together, step by step, until none changes."""
     grid, sensors = data.grid, data.sensors
@@ -277,6 +284,7 @@ def _maximized(
                 square = square + level * np.outer(of_hour[0], of_hour[0])
                 trace = trace + level * spread[:sensors, :sensors]
             improved[name] = _step(getattr(covariances, name), square, trace, prior, limit)
+        improved["drift"] = at_least(improved["drift"], least)
         count = of_hour.shape[0]
         trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
         improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
@@ -310,6 +318,17 @@ def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limi
     improved = 0.5 * (improved + improved.T)
     shrink = np.minimum(1.0, limit / np.sqrt(np.diag(improved)))
     return np.asarray(improved * np.outer(shrink, shrink))
+
+
+def at_least(covariance: Floats, least: Floats | float) -> Floats:
+    """Raise the variances of a covariance (S, S) to the square of `least`, a float or (S,). [unit^2]
+
+    Examples
+    --------
+    >>> at_least(np.diag([1.0, 9.0]), np.array([2.0, 2.0])).tolist()
+    [[4.0, 0.0], [0.0, 9.0]]
+    """
+    return np.asarray(covariance + np.diag(np.maximum(least**2 - np.diag(covariance), 0.0)))
 
 
 def root_of(covariance: Floats) -> Floats:

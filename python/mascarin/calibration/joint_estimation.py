@@ -32,6 +32,8 @@ from mascarin.calibration.warnings import on_bounds, warnings
 
 Floats = NDArray[np.float64]
 Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]
+Further = Callable[[Floats], Floats]
+"""From parameter values (P,) to the effects (T, S, K) of numbers that are not estimated."""
 
 METHOD: Final = (
     "joint normal distribution of the parameters, the errors of the sensors and the errors of the model, "
@@ -39,13 +41,11 @@ METHOD: Final = (
 )
 """How the intervals are computed, for reports."""
 
-_MAX_STEPS: Final = 6
-#: Linearizations at which the sizes of the errors are estimated anew.
-_ESTIMATED_STEPS: Final = 2
+_MAX_STEPS: Final = 8
 _MAX_HALVINGS: Final = 3
 #: With which an estimate is said to lie beyond the end of its range. [-]
 _CONFIDENCE: Final = 0.95
-#: Decrease of minus the log density below which the estimates stay. [-]
+#: The search has converged when a step would lower minus the log density by less than this. [-]
 _MIN_DECREASE: Final = 0.05
 
 
@@ -53,7 +53,7 @@ def estimate_jointly(
     fit: Calibration,
     stated: ErrorStatement,
     options: SearchOptions,
-    further: Floats | None = None,
+    further: Further | None = None,
     *,
     keep: Keep | None = None,
 ) -> tuple[Calibration, JointPosterior]:
@@ -67,8 +67,9 @@ def estimate_jointly(
         What is known of the errors.
     options : SearchOptions
         Kind of derivatives.
-    further : ndarray, shape (T, S, K), optional
-        Effects of numbers that are not estimated, for one standard uncertainty. [unit]
+    further : callable, optional
+        From parameter values (P,) to the effects (T, S, K) of numbers that are not estimated, for one
+        standard uncertainty of each. They are computed where all else is linearized. [unit]
     keep : callable, optional
         From a key and a function to what the function returns, or returned before.
 
@@ -97,11 +98,10 @@ def estimate_jointly(
 
     # The estimates are those of the model as it will be used, with all other numbers as described.
     linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
-    effects = linearization.further if further is None else further
-    distribution = joint_posterior(problem, replace(linearization, further=effects), stated)
-    return _reported(
-        fit, problem, replace(linearization, further=effects), distribution, stated
-    ), distribution
+    if further is not None:
+        linearization = replace(linearization, further=further(problem.values(linearization.z[None])[0]))
+    distribution = joint_posterior(problem, linearization, stated)
+    return _reported(fit, problem, linearization, distribution, stated), distribution
 
 
 def _searched(
@@ -109,11 +109,8 @@ def _searched(
 ) -> Linear:
     """Linearize about better and better estimates, until the density no longer rises."""
     linearization = linear(first)
-    covariances = None
-    for step in range(_MAX_STEPS):
-        goal, covariances = best_positions(
-            problem, linearization, stated, covariances if step >= _ESTIMATED_STEPS else None
-        )
+    for _ in range(_MAX_STEPS):
+        goal, covariances = best_positions(problem, linearization, stated)
         before = objective(problem, linearization, stated, covariances)
         for _ in range(_MAX_HALVINGS):
             trial = linear(goal)
@@ -123,7 +120,7 @@ def _searched(
             goal = 0.5 * (goal + linearization.z)
         if after <= before:
             linearization = trial
-        if before - after < _MIN_DECREASE and step + 1 >= _ESTIMATED_STEPS:
+        if before - after < _MIN_DECREASE:
             break
     return linearization
 

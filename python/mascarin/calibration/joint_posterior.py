@@ -25,6 +25,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.calibration.bounded_coefficients import best_within, ends_of, moments_within, within
 from mascarin.calibration.covariance_sampling import CovarianceSample, sample_covariances
 from mascarin.calibration.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.discrepancy import (
@@ -36,11 +37,21 @@ from mascarin.calibration.discrepancy import (
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
 from mascarin.calibration.truncated_normal import within_bounds
-from mascarin.calibration.uncertainty import AT_BOUND
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+LEAST_ERROR: Final = 0.5
+"""Smallest error of the model that is correlated within a day, in standard uncertainties of the sensor. [-]
+
+A likelihood without it gives any weight to a sensor that the model follows nearly exactly, and gives up the
+others.
+"""
+
+#: Smallest and largest factor by which days left out change the bands. [-]
+_CROSS_VALIDATED: Final = (0.6, 1.5)
+#: Part of a stated uncertainty that is scatter at least.
+_LEAST_SCATTER: Final = 0.2
 #: Variance of a position that is equally likely anywhere in its range.
 _UNIFORM: Final = 1.0 / 12.0
 
@@ -84,7 +95,7 @@ class ErrorStatement:
     persistence : float
         Correlation time of the errors of days. [d]
     further : tuple of str
-        Names of other unknown quantities of sensors, K of them; see `Linear`.
+        Names of other unknown quantities, K of them; numbered when empty, see `Linear`.
     """
 
     sensors: tuple[SensorError, ...]
@@ -123,6 +134,14 @@ class JointPosterior:
     beyond : ndarray, shape (P,)
         For positions on an end of their range: by how much minus twice the log density is lower at the best
         position beyond it, in variances of the normal distribution; 0 for others. [-]
+    unlimited : ndarray, shape (k,)
+        Errors of sensors on the end of what they can be: the most probable value without this end, in
+        standard uncertainties, if the end is contradicted with 95 %; 0 for others. [-]
+    whitened : ndarray, shape (D, H, S)
+        What each slot of a day differs from its prediction by all other days, independent and of variance 1
+        if the model of the errors is right; NaN where nothing was measured. [-]
+    left_out, left_out_sd : ndarray, shape (D, H, S)
+        The same difference, and its standard deviation given the sizes of the errors. [unit]
     """
 
     z: Floats
@@ -135,6 +154,10 @@ class JointPosterior:
     density: float
     prior: Floats
     beyond: Floats
+    unlimited: Floats
+    whitened: Floats
+    left_out: Floats
+    left_out_sd: Floats
 
     def quantile(self, confidence: float) -> float:
         """Half-width of an interval on other days, in standard deviations: Student's.
@@ -145,6 +168,20 @@ class JointPosterior:
         from scipy import stats
 
         return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size - 1, 2)))
+
+    def days_left_out(self, confidence: float) -> Floats:
+        """Quantile of what days differ from their predictions by the other days, over that assumed, (S,). [-]
+
+        Below 1 the bands of a sensor are wider than days left out need, above 1 narrower (cross-validated
+        prediction intervals: Barber R.F., Candes E.J., Ramdas A., Tibshirani R.J. (2021), Annals of
+        Statistics 49, 486. https://doi.org/10.1214/20-AOS1965). Few days tell it within the limits alone.
+        """
+        from scipy import stats
+
+        ratio = np.abs(self.left_out) / self.left_out_sd
+        assumed = float(stats.norm.ppf(0.5 + 0.5 * confidence))
+        ratio_of_days = np.nanquantile(ratio.reshape(-1, ratio.shape[2]), confidence, axis=0) / assumed
+        return np.asarray(np.clip(ratio_of_days, *_CROSS_VALIDATED))
 
     def widened(self, confidence: float = 0.95) -> Floats:
         """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
@@ -230,7 +267,13 @@ def joint_posterior(
     """
     gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, covariances)
     if covariances is None:
-        draws = sample_covariances(data, most_probable, scale=_scale(problem), limit=stated.limit)
+        draws = sample_covariances(
+            data,
+            most_probable,
+            scale=_scale(problem, stated),
+            limit=stated.limit,
+            least=_least(problem, stated),
+        )
     else:
         draws = CovarianceSample.of_covariances(data, covariances)
     count, stated_count = len(problem.parameters), data.effects.shape[2]
@@ -240,13 +283,21 @@ def joint_posterior(
     mean[:, :count] *= scale[:count]
     mean[:, :count] += _priors(problem)[0]
     covariance = covariance * np.outer(scale[:shared_count], scale[:shared_count])
-    sample = within_bounds(mean[:, :count], covariance[:, :count, :count], np.zeros(count), np.ones(count))
+    low, high = ends_of(count, stated_count - linear.further.shape[2] - count, stated_count)
+    bounded_count = int(np.isfinite(high).sum())
+    limited = slice(bounded_count)
+    bounded_sample = within_bounds(
+        mean[:, limited], covariance[:, limited, limited], low[limited], high[limited]
+    )
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
-    bounded_mean, bounded = _bounded(middle, together, sample)
-    names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
-    z, beyond = _most_probable(gaussian, likely, scale, count)
+    bounded_mean, bounded = moments_within(middle, together, bounded_sample)
+    sample = bounded_sample[:, :count]
+    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
+    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
+    z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
+    whitened = gaussian.whitened(data.error).reshape(data.grid.days, data.grid.slots, data.sensors)
     return JointPosterior(
         z,
         bounded_mean,
@@ -258,7 +309,21 @@ def joint_posterior(
         gaussian.log_density(data.error),
         scale[:count],
         beyond,
+        unlimited,
+        whitened,
+        *gaussian.days_left_out(data.error, data.sensors),
     )
+
+
+def numbered(count: int, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of further quantities: as stated, else with a number each.
+
+    Examples
+    --------
+    >>> numbered(2, ())
+    ('numbers that are not estimated, 1', 'numbers that are not estimated, 2')
+    """
+    return names or tuple(f"numbers that are not estimated, {k + 1}" for k in range(count))
 
 
 def best_positions(
@@ -276,8 +341,11 @@ def best_positions(
     Discrepancy
         Sizes of the errors of the model.
     """
-    gaussian, _, mean, scale, covariances = _estimated(problem, linear, stated, covariances)
-    return _most_probable(gaussian, mean, scale, len(problem.parameters))[0], covariances
+    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, covariances)
+    count = len(problem.parameters)
+    low, high = ends_of(count, data.effects.shape[2] - linear.further.shape[2] - count, mean.size)
+    precision = gaussian.precision / np.outer(scale, scale)
+    return best_within(precision, mean, low, high, count)[0], covariances
 
 
 def _estimated(
@@ -288,7 +356,11 @@ def _estimated(
     data = _data(problem, linear, stated, center, spread)
     if covariances is None:
         covariances = estimate_discrepancy(
-            data, scale=0.25 * _scale(problem), limit=stated.limit, persistence=stated.persistence
+            data,
+            scale=0.25 * _scale(problem, stated),
+            limit=stated.limit,
+            least=_least(problem, stated),
+            persistence=stated.persistence,
         )
     gaussian = data.gaussian(covariances)
     unit = gaussian.coefficients(data.error)
@@ -318,7 +390,11 @@ def objective(
     empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
     data = _data(problem, empty, stated, center[:0], spread[:0])
     prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
-    return prior - data.gaussian(covariances).log_density(data.error)
+    gaussian = data.gaussian(covariances)
+    mean = gaussian.coefficients(data.error)
+    ends = ends_of(0, data.effects.shape[2] - linear.further.shape[2], mean.size)
+    _, deviance = within(gaussian.precision, mean, *ends)
+    return prior - gaussian.log_density(data.error) + 0.5 * deviance
 
 
 def _data(
@@ -353,45 +429,18 @@ def _priors(problem: CalibrationProblem) -> tuple[Floats, Floats]:
     return center, spread
 
 
-def _scale(problem: CalibrationProblem) -> Floats:
-    """Stated uncertainty of each sensor (S,): what is no error of the model is rarely larger. [unit]"""
-    return np.array([float(np.sqrt(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
+def _least(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
+    """Smallest standard deviation of the error of the model within a day (S,), see `LEAST_ERROR`. [unit]"""
+    total = np.array([math.sqrt(float(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
+    return np.asarray(np.minimum(LEAST_ERROR * total, stated.limit))
 
 
-def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> tuple[Floats, Floats]:
-    """Positions (P,) of the largest density within the ranges, and `JointPosterior.beyond`."""
-    from scipy import optimize
+def _scale(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
+    """Scale of the errors of the model of each sensor (S,): its stated uncertainty less its offset. [unit]
 
-    precision = gaussian.precision / np.outer(scale, scale)
-    root = np.linalg.cholesky(precision).T
-    low, high = np.full(mean.size, -math.inf), np.full(mean.size, math.inf)
-    low[:count], high[:count] = 0.0, 1.0
-
-    def best(free: int | None = None) -> tuple[Floats, float]:
-        ends = low.copy(), high.copy()
-        if free is not None:
-            ends[0][free], ends[1][free] = -math.inf, math.inf
-        solution = optimize.lsq_linear(root, root @ mean, bounds=ends, method="bvls")
-        return solution.x, 2.0 * float(solution.cost)
-
-    x, deviance = best()
-    z = np.asarray(np.clip(x[:count], 0.0, 1.0))
-    on_end = (z <= AT_BOUND) | (z >= 1.0 - AT_BOUND)
-    beyond = [deviance - best(k)[1] if on_end[k] else 0.0 for k in range(count)]
-    return z, np.array(beyond)
-
-
-def _bounded(mean: Floats, covariance: Floats, sample: Floats) -> tuple[Floats, Floats]:
-    """Mean and covariance of all coefficients when the parameters have those of a sample within bounds."""
-    count = sample.shape[1]
-    middle, sample_covariance = sample.mean(axis=0), np.atleast_2d(np.cov(sample, rowvar=False))
-    gain = np.linalg.solve(covariance[:count, :count], covariance[:count, count:]).T
-    conditional_mean, conditional = mean.copy(), covariance.copy()
-    conditional_mean[:count] = middle
-    conditional_mean[count:] += gain @ (middle - mean[:count])
-    change = sample_covariance - covariance[:count, :count]
-    conditional[:count, :count] = sample_covariance
-    conditional[count:, :count] = gain @ sample_covariance
-    conditional[:count, count:] = conditional[count:, :count].T
-    conditional[count:, count:] += gain @ change @ gain.T
-    return conditional_mean, conditional
+    An offset is an error of its own: were the scale the whole uncertainty, the errors of the model would have
+    it once more, on every day and at every hour.
+    """
+    total = np.array([float(np.mean(s.sigma[s.mask] ** 2)) for s in problem.sensors])
+    shared = np.array([error.offset**2 + error.common**2 for error in stated.sensors])
+    return np.asarray(np.sqrt(np.maximum(total - shared, _LEAST_SCATTER**2 * total)))

@@ -225,7 +225,8 @@ def profiles(
     if fit.uncertainty_method.startswith(METHOD):
         raise InputError(
             "a profile holds the errors of the sensors and of the model at zero: found a calibration "
-            "together with these errors, expected one without; its intervals account for them already"
+            "together with these errors, expected one without; its intervals account for them already. For a "
+            "profile state offset=0 for every sensor"
         )
     if points < 5:
         msg = f"points: found {points}, expected at least 5"

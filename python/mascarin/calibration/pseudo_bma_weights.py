@@ -13,7 +13,7 @@ Bayesian Analysis 13, 917, section 3.4 (pseudo-BMA+). https://doi.org/10.1214/17
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -21,8 +21,14 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-MIN_CLEAR_DIFFERENCE: Final = 4.0
-"""Difference of the log density of all days below which no form is clearly better; odds of 55 to 1. [-]"""
+LARGEST_LOSS: Final = 3.0
+"""Log density of all days left out by which the form that is used may be behind the best one. [-]"""
+
+LEAST_SHARE: Final = 0.05
+"""Weight of the form that is used, at least, relative to the largest weight. [-]"""
+
+SMALL_ON_A_DAY: Final = 0.5
+"""Difference of the log density of one day between forms that predict it equally well. [-]"""
 
 _REPLICATES: Final = 4000
 _SEED: Final = 20
@@ -58,43 +64,70 @@ def pseudo_bma_weights(by_day: Floats) -> Floats:
     return np.asarray(mean / mean.sum())
 
 
-def most_parsimonious(by_day: Floats, changes: list[int]) -> int:
-    """Choose the form to use: the simplest one that is not clearly worse than the best.
+def used_form(by_day: Floats, weights: Floats, complexity: Sequence[tuple[int, ...]]) -> int:
+    """Choose the form to use: that of the highest weight, or a simpler one that predicts every day as well.
 
-    A form is clearly worse if the best one predicts the days left out better by more than two standard errors
-    of the difference, and by more than `MIN_CLEAR_DIFFERENCE`.
+    Only forms count whose log density of all days together is at most `LARGEST_LOSS` behind the highest and
+    whose weight is at least `LEAST_SHARE` of the largest. Of them the one of the highest weight is used. A
+    simpler one of them takes its place if its density differs by at most `SMALL_ON_A_DAY` on every day.
 
     Parameters
     ----------
     by_day : ndarray, shape (K, D)
         Log density of each day given all other days, by form.
-    changes : list of int, length K
-        In how many parts each form differs from the model as described. [-]
+    weights : ndarray, shape (K,)
+        From `pseudo_bma_weights`. [-]
+    complexity : sequence of tuple of int, length K
+        Of each form, such as its number of free numbers; the smaller the simpler. [-]
 
     Returns
     -------
     int
         Number of the form.
 
-    References
+    Examples
+    --------
+    The simpler form is used where all days are predicted equally well, not where one day tells them apart:
+
+    >>> by_day = np.array([[1.0, 2.0, 3.0], [1.2, 2.2, 3.1]])
+    >>> used_form(by_day, pseudo_bma_weights(by_day), [(2,), (3,)])
+    0
+    >>> by_day = np.array([[1.0, 2.0, 3.0], [1.2, 2.2, 5.0]])
+    >>> used_form(by_day, pseudo_bma_weights(by_day), [(2,), (3,)])
+    1
+    """
+    total = by_day.sum(axis=1)
+    eligible = np.flatnonzero(within_reach(by_day, weights, int(total.argmax())))
+    best = int(max(eligible, key=lambda k: (weights[k], total[k])))
+    alike = np.abs(by_day[eligible] - by_day[best]).max(axis=1) <= SMALL_ON_A_DAY
+    return int(min(eligible[alike], key=lambda k: (complexity[k], -weights[k], k)))
+
+
+def within_reach(by_day: Floats, weights: Floats, best: int) -> NDArray[np.bool_]:
+    """Mark the forms that the days do not tell from one of them.
+
+    Parameters
     ----------
-    Hastie T., Tibshirani R., Friedman J. (2009), The Elements of Statistical Learning, 7.10 (the simplest
-    model within the standard error of the best). https://doi.org/10.1007/978-0-387-84858-7
+    by_day : ndarray, shape (K, D)
+        Log density of each day given all other days, by form.
+    weights : ndarray, shape (K,)
+        From `pseudo_bma_weights`. [-]
+    best : int
+        Number of the form that the others are compared with.
+
+    Returns
+    -------
+    ndarray of bool, shape (K,)
+        Forms at most `LARGEST_LOSS` behind in log density and with at least `LEAST_SHARE` of its weight.
 
     Examples
     --------
-    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
-    2
-    >>> most_parsimonious(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
-    0
+    >>> within_reach(np.array([[0.0], [-1.0], [-4.0]]), np.array([0.72, 0.27, 0.01]), 0)
+    array([ True,  True, False])
     """
     total = by_day.sum(axis=1)
-    best = int(total.argmax())
-    days = by_day.shape[1]
-    less = by_day[best] - by_day
-    doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
-    candidates = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, MIN_CLEAR_DIFFERENCE))
-    return int(min(candidates, key=lambda k: (changes[k], -total[k])))
+    behind = total[best] - total
+    return np.asarray((behind <= LARGEST_LOSS) & (weights >= LEAST_SHARE * weights[best]))
 
 
 def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -> Floats:

@@ -168,10 +168,9 @@ def estimate(
     inside = (z > AT_BOUND) & (z < 1.0 - AT_BOUND)
     sd = np.sqrt(np.diag(covariance))
     quantile = np.full(z.size, float(stats.t.ppf(0.5 + 0.5 * confidence, freedom)))
-    # An estimate on its bound cannot compensate for the others.
+    # An estimate on its bound is as uncertain as all others: within its range it may be elsewhere, and what
+    # compensates for it with it. Conditional on the bound the intervals of the others would be too narrow.
     free = np.flatnonzero(inside) if inside.any() else np.arange(z.size)
-    block = np.ix_(free, free)
-    sd[free] = np.sqrt(np.diag(_sandwich(information[block], middle[block])))
     simulated_quantile = _drawn_quantile(noise, j[..., free], wj[..., free], priors[free], mask, confidence)
     quantile[free] = np.maximum(quantile[free], simulated_quantile)
     reach = quantile * sd

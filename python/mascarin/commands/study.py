@@ -57,7 +57,7 @@ def study(
     lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
     if results.sensitivity is not None:
         lines += [line.after("sensitivity analysis") for line in results.sensitivity.warnings]
-    _print_warnings(lines)
+    _print_warnings([*(contradiction.text for contradiction in results.contradictions), *lines])
     _print_summary(opened, results, out)
     verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
     return _exit_code(verdicts, lines)
@@ -130,7 +130,7 @@ def calibrate(
     from mascarin.study import steps
 
     content = steps.calibration(_open(file, allow_outside), out)
-    _print_warnings(content["warnings"])
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
     else:
@@ -138,7 +138,7 @@ def calibrate(
             (
                 path,
                 "" if estimate["nominal"] is None else number(estimate["nominal"]),
-                *with_interval(estimate["fitted"], estimate["low"], estimate["high"]),
+                *_with_interval(estimate),
                 estimate["unit"] or "",
             )
             for path, estimate in content["parameters"].items()
@@ -175,7 +175,7 @@ def validate(
     from mascarin.study import steps
 
     content = steps.validation(_open(file, allow_outside), out)
-    _print_warnings(content["warnings"])
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
     else:
@@ -205,6 +205,17 @@ def _open(file: str, allow_outside: bool) -> Study:
     if lines:
         print("\n".join(lines), file=sys.stderr)
     return opened
+
+
+def _with_interval(found: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Estimate and interval of a parameter, which may not be stated."""
+    shown = with_interval(found["fitted"], found["low"], found["high"])
+    return shown if found.get("stated", True) else (shown[0], "not stated", "")
+
+
+def _texts(contradictions: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What the model or the study contradicts, in sentences."""
+    return [str(one["text"]) for one in contradictions]
 
 
 def _print_warnings(lines: Sequence[str]) -> None:

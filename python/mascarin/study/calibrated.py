@@ -9,9 +9,11 @@ from mascarin.linear_algebra import one_thread
 from mascarin.study.combined import combined_intervals, estimates_of
 from mascarin.study.kept import kept
 from mascarin.study.prediction_intervals import prediction_intervals, slopes
+from mascarin.study.predictive_checks import contradictions, with_doubt
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.posterior_checks import Contradiction
     from mascarin.study.findings import Combination, ModelRun, PredictionIntervals
     from mascarin.study.model_runs import ModelRuns
     from mascarin.study.setup import Setup
@@ -33,6 +35,8 @@ class Calibrated:
         Profile likelihoods, if the study asks for them.
     combination : Combination or None
         Forms of the model, where errors of sensors and model are estimated.
+    contradictions : list of Contradiction
+        By what the model contradicts its own data or what is known.
     """
 
     run: ModelRun
@@ -40,6 +44,21 @@ class Calibrated:
     intervals: PredictionIntervals
     profiles: list[Profile]
     combination: Combination | None
+    contradictions: list[Contradiction]
+
+    @staticmethod
+    def judged(
+        study: Setup,
+        run: ModelRun,
+        fit: Calibration,
+        intervals: PredictionIntervals,
+        profiles: list[Profile],
+        combination: Combination | None,
+    ) -> Calibrated:
+        """The calibrated model, its intervals as wide as what contradicts it requires."""
+        found = contradictions(study, run, fit, intervals, combination)
+        fit, intervals = with_doubt(study, run, fit, intervals, found)
+        return Calibrated(replace(run, fit=fit), fit, intervals, profiles, combination, found)
 
 
 @one_thread()
@@ -56,7 +75,7 @@ def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
     if not study.estimates_errors:
         run, fit = runs.fitted()
         intervals = prediction_intervals(study, run, fit, slopes(study, run, fit))
-        return Calibrated(run, fit, intervals, runs.profiled(fit), None)
+        return Calibrated.judged(study, run, fit, intervals, runs.profiled(fit), None)
     found = runs.combination()
     best = found.forms[0]
     known = (best.fit.problem, best.fit.trace, best.fit.nominal_building)
@@ -65,7 +84,7 @@ def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
     intervals = kept(study.workspace, ("intervals", key), lambda: combined_intervals(study, found))
     note = "after the calibration; its parameters are the same on all other days"
     if len(found.forms) > 1:
-        note += f"; of {len(found.forms)} forms '{best.label}' is the simplest of those that "
-        note += "predict the days left out best"
+        note += f"; of {len(found.forms)} forms '{best.label}' is used, "
+        note += f"with {100.0 * found.weights[0]:.0f} % of the weight by days left out of the identification"
     run = replace(best.run, label="fitted", fit=fit, note=note)
-    return Calibrated(run, fit, intervals, runs.profiled(runs.plain()), found)
+    return Calibrated.judged(study, run, fit, intervals, runs.profiled(runs.plain()), found)

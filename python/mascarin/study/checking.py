@@ -12,6 +12,7 @@ from mascarin._io.limits import above, below
 from mascarin.calibration.building_calibration import CONSTANT, MAX_CONSTANT_SHARE
 from mascarin.errors import InputError
 from mascarin.study.comfort_step import require_rooms
+from mascarin.study.error_rule import states_errors
 from mascarin.study.periods import overlap
 from mascarin.validation.observation import require_comparable
 
@@ -112,14 +113,14 @@ def _errors(study: Setup) -> None:
     plan = study.plan.identification
     if plan is None:
         return
-    hours = _hours(study)
+    hours = study.hours
     if plan.independent is not None and seconds_of(plan.independent) >= hours * 3600.0:
         with study.places.blame("identification", "independent"):
             raise InputError(
                 f"found {plan.independent}, but the identification lasts {hours:g} h; expected errors that "
                 "last shorter than it: make the identification longer, or independent shorter"
             )
-    if not study.estimates_errors:
+    if not states_errors(study.plan):
         return
     leave_out = "or leave out discrepancy, alternatives and the errors of the sensors"
     if plan.method == "emcee":
@@ -151,11 +152,6 @@ def _errors(study: Setup) -> None:
                     "alternatives, which are weighed with these errors; move it there, or leave candidate out"
                 )
     _ = study.forms
-
-
-def _hours(study: Setup) -> float:
-    """Length of all identification periods together. [h]"""
-    return float(np.count_nonzero(study.during["identification"]) * study.observation.interval / 3600.0)
 
 
 def _persistence(study: Setup, hours: float) -> None:

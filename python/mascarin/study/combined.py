@@ -89,6 +89,8 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     # What differs from value to value is known from many values, all else from few days.
     shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
     half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
+    used = [observation.names.index(name) for name in used_sensors(study)]
+    half[:, used] *= found.forms[0].joint.days_left_out(confidence)
     misses = fitted + center - observation.measured
     coverage = {period: coverage_of(misses, half, use) for period, use in study.used.items()}
     return PredictionIntervals(confidence, half, np.sqrt(of_parameters), np.sqrt(new_day), coverage, center)

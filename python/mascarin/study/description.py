@@ -211,8 +211,8 @@ class IdentificationPlan(Part):
     discrepancy: DiscrepancyPlan | None = Field(
         None,
         description="Errors of the model, estimated together with the parameters: one that repeats at the "
-        "same hour of every day and one that changes from day to day; also on, with its defaults, where a "
-        "sensor states an `offset` or another error, or the study has `alternatives`",
+        "same hour of every day and one that changes from day to day; on, with its defaults, unless all "
+        "sensors state `offset: 0` or only a `repeatability`",
     )
     independent: Duration | None = Field(
         None,

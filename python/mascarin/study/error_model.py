@@ -13,9 +13,11 @@ from mascarin.calibration import SearchOptions
 from mascarin.calibration.joint_estimation import estimate_jointly
 from mascarin.calibration.joint_posterior import ErrorStatement
 from mascarin.calibration.sensor_errors import error_columns
+from mascarin.calibration.stated_errors import sizes_of
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.description import DiscrepancyPlan
 from mascarin.study.kept import kept, kept_series
+from mascarin.validation.scatter import scatter
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -82,8 +84,21 @@ def sensor_errors(study: Setup, names: list[str]) -> tuple[SensorError, ...]:
     for name in names:
         sensor = study.plan.sensors[name]
         unit = study.building.output(sensor.output).unit
-        found.append(sensor.shared_errors(sensor.stated_uncertainty(unit, name)))
+        stated = sensor.stated_uncertainty(unit, name)
+        found.append(sensor.shared_errors(stated, scatter_of(study, name)))
     return tuple(found)
+
+
+def stated_sizes(study: Setup) -> dict[str, float]:
+    """Standard uncertainty of each error of the used sensors, by its name in the joint distribution."""
+    names = used_sensors(study)
+    return sizes_of(names, sensor_errors(study, names))
+
+
+def scatter_of(study: Setup, name: str) -> float:
+    """Scatter of the readings of a sensor, as its record shows it; NaN if the record is too short. [unit]"""
+    readings = study.observation.measured[:, study.observation.names.index(name)]
+    return scatter(readings)
 
 
 def local_hours(study: Setup) -> Array:
@@ -112,7 +127,7 @@ def unknowns(study: Setup, simulation: Simulation, fit: Calibration) -> list[Unk
     return [Unknown(path, uncertainty) for path, uncertainty in (found | depth).items()]
 
 
-def statement(study: Setup, fit: Calibration, further: tuple[str, ...] = ()) -> ErrorStatement:
+def statement(study: Setup, fit: Calibration) -> ErrorStatement:
     """What is known of the errors before the calibration."""
     plan = study.sought.discrepancy or DiscrepancyPlan()
     seen = study.rows
@@ -122,7 +137,6 @@ def statement(study: Setup, fit: Calibration, further: tuple[str, ...] = ()) -> 
         study.observation.interval,
         np.array([max(plan.limit * sensor.span, 1e-9) for sensor in fit.problem.sensors]),
         seconds_of(plan.persistence) / 86400.0,
-        further,
     )
 
 
@@ -152,24 +166,30 @@ def with_errors(
     """
     short, seen = study.short(variant), study.rows
     columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
-    base = short.vector(fit.values)
     every = unknowns(study, short, fit)
-    effects = effects_of_unknowns(study, _part(study.observation, seen), short, base, every)[:, columns]
-    sigma, mask = fit.problem.sigma, fit.problem.mask
-    scaled = (effects / np.where(mask, sigma, 1.0)[:, :, None])[mask]
-    # A thinned series has the same combinations; the product would take longer than all else.
-    thinned = scaled[:: max(1, len(scaled) // _ROWS)]
-    value, vector = np.linalg.eigh(thinned.T @ thinned / max(len(thinned), 1))
-    directions = vector[:, value > _SMALL**2][:, ::-1]
-    names = tuple(f"numbers that are not estimated, {k + 1}" for k in range(directions.shape[1]))
-    stated = statement(study, fit, names)
-    rules = SearchOptions(slopes=study.sought.slopes)
+    basis: list[Array] = []
+
+    def further(values: Array) -> Array:
+        base = short.vector(dict(zip(fit.problem.paths, values.tolist(), strict=True)))
+        effects = effects_of_unknowns(study, _part(study.observation, seen), short, base, every)[:, columns]
+        basis[:] = [_directions(effects, fit.problem.sigma, fit.problem.mask)]
+        return np.asarray(effects @ basis[0])
 
     def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
         return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
 
-    found, joint = estimate_jointly(fit, stated, rules, effects @ directions, keep=keep)
-    return found, joint, Unknowns(tuple(every), directions)
+    rules = SearchOptions(slopes=study.sought.slopes)
+    found, joint = estimate_jointly(fit, statement(study, fit), rules, further, keep=keep)
+    return found, joint, Unknowns(tuple(every), basis[0])
+
+
+def _directions(effects: Array, sigma: Array, mask: npt.NDArray[np.bool_]) -> Array:
+    """Combinations of numbers, (K, r), that the identification can tell, from their effects (T, S, K)."""
+    scaled = (effects / np.where(mask, sigma, 1.0)[:, :, None])[mask]
+    # A thinned series has the same combinations; the product would take longer than all else.
+    thinned = scaled[:: max(1, len(scaled) // _ROWS)]
+    value, vector = np.linalg.eigh(thinned.T @ thinned / max(len(thinned), 1))
+    return np.asarray(vector[:, value > _SMALL**2][:, ::-1])
 
 
 def effects_of_sensors(study: Setup, simulated: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.pseudo_bma_weights import most_parsimonious, pseudo_bma_weights
+from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form, within_reach
 from mascarin.study.forms import Choice, label
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.joint_posterior import JointPosterior
+    from mascarin.calibration.posterior_checks import Contradiction
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
@@ -92,6 +93,11 @@ class FormFit:
         """Name in tables."""
         return label(self.choice)
 
+    @property
+    def complexity(self) -> tuple[int, int]:
+        """Free numbers, and parts that differ from the building as described. [-]"""
+        return len(self.fit.problem.parameters), len(self.choice)
+
 
 @dataclass(frozen=True, eq=False)
 class Combination:
@@ -113,9 +119,21 @@ class Combination:
         """Weigh forms by the days left out of their calibration; the one to use comes first."""
         by_day = np.array([form.joint.by_day for form in forms])
         weights = pseudo_bma_weights(by_day)
-        used = most_parsimonious(by_day, [len(form.choice) for form in forms])
+        used = used_form(by_day, weights, [form.complexity for form in forms])
         order = [used, *(int(k) for k in np.argsort(-weights, kind="stable") if k != used)]
         return Combination(tuple(forms[k] for k in order), weights[order])
+
+    @property
+    def by_day(self) -> Array:
+        """Log density of each day left out, by form, shape (K, D). [-]"""
+        return np.array([form.joint.by_day for form in self.forms])
+
+    @property
+    def alike(self) -> list[tuple[FormFit, float]]:
+        """Other forms that the identification does not tell from the one that is used, and their weights."""
+        near = within_reach(self.by_day, self.weights, 0)
+        pairs = zip(self.forms, self.weights.tolist(), near.tolist(), strict=True)
+        return [(form, weight) for k, (form, weight, same) in enumerate(pairs) if same and k]
 
     @property
     def kept(self) -> list[tuple[FormFit, float]]:
@@ -144,6 +162,8 @@ class PredictionIntervals:
     center : ndarray, shape (n, S)
         Middle of the interval minus the fitted series: estimated errors of sensor and model, and the distance
         of other forms of the model; 0 where none are estimated. [unit of each sensor]
+    factor : float
+        By which they were made wider for what contradicts the model; infinite where they are not stated. [-]
     """
 
     confidence: float
@@ -152,6 +172,12 @@ class PredictionIntervals:
     error: Array
     coverage: dict[str, Array]
     center: Array
+    factor: float = 1.0
+
+    @property
+    def stated(self) -> bool:
+        """Whether the intervals are to be used."""
+        return bool(np.isfinite(self.factor))
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +220,8 @@ class Findings:
         Run time. [s]
     combination : Combination or None
         Forms of the model with their weights, where errors of sensors and model are estimated.
+    contradictions : list of Contradiction
+        By what the calibrated model contradicts its own data or what is known; read them first.
     """
 
     setup: Setup
@@ -214,6 +242,7 @@ class Findings:
     quality: list[Stretch]
     seconds: float = field(default=0.0)
     combination: Combination | None = None
+    contradictions: list[Contradiction] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:

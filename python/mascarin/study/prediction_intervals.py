@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.calibration.posterior_checks import NOT_STATED
 from mascarin.study.findings import PredictionIntervals
 from mascarin.study.kept import kept_series
 from mascarin.validation.series import effective_samples
@@ -109,7 +110,7 @@ def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
             [
                 sensor.label or name.replace("_", " "),
                 unit,
-                _number(np.mean(found.half_width[:, s])),
+                _number(np.mean(found.half_width[:, s])) if found.stated else "not stated",
                 *(_number(100.0 * share) for share in shares),
             ]
         )
@@ -120,7 +121,7 @@ def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
             "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
             f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The "
             "columns of the periods show the coverage: "
-            "the part of the measured values inside the interval. [%]"
+            f"the part of the measured values inside the interval. [%]{_doubt(found)}"
         ),
         "columns": ["sensor", "unit", "mean half-width", *study.during],
         "rows": rows,
@@ -128,11 +129,21 @@ def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
     }
 
 
+def _doubt(found: PredictionIntervals) -> str:
+    """What contradictions have done to the intervals, as a sentence of the caption."""
+    if not found.stated:
+        return f" The half-width is {NOT_STATED}; the columns show the coverage of the bands that are drawn."
+    if found.factor > 1.0:
+        return f" They are {found.factor:.2g} times wider for what contradicts the model (top of the report)."
+    return ""
+
+
 def interval_entry(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
     """The intervals for study.json: sensor -> half_width, parameters, error, held."""
     return {
         name: {
             "confidence": found.confidence,
+            **({} if found.stated else {"stated": False}),
             "half_width": _number(np.mean(found.half_width[:, s])),
             "parameters": _number(np.mean(found.parameters[:, s])),
             "error": _number(found.error[s]),

@@ -58,6 +58,8 @@ class StudyResults(Findings):
         Run time. [s]
     combination : Combination or None
         Forms of the model with their weights, where errors of sensors and model are estimated.
+    contradictions : list of Contradiction
+        By what the calibrated model contradicts its own data or what is known; read them first.
     setup : Setup
         The study.
 
@@ -167,6 +169,7 @@ class StudyResults(Findings):
         rows = [
             ("criteria", f"{sum(verdict.passed for verdict in judged)} of {len(judged)} met"),
             ("calibrated", f"{len(self.calibration.problem.parameters)} parameters"),
+            *(("read first", one.text) for one in self.contradictions),
             ("energy balance", f"relative residual {self.fitted.results.energy.closure:.1e}"),
         ]
         for sensor, periods in self.fitted.scores.items():

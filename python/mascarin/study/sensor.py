@@ -63,7 +63,7 @@ class Sensor(Part):
         ge=0,
         description="Standard uncertainty of a constant added to all readings, such as that of the "
         "calibration of the sensor (accuracy); estimated together with the parameters; by default the "
-        "stated standard uncertainty, where errors are estimated [unit of the output]",
+        "stated standard uncertainty less the scatter of the readings; 0 for none [unit of the output]",
     )
     common: float = Field(
         0.0,
@@ -90,7 +90,7 @@ class Sensor(Part):
         None,
         gt=0,
         description="Standard deviation of repeated readings under the same conditions, without what they "
-        "share [unit of the output]",
+        "share; by default estimated from the record [unit of the output]",
     )
     label: str | None = Field(None, description="Name in the report")
     use: bool = Field(True, description="Whether it is used in the identification")
@@ -142,6 +142,6 @@ class Sensor(Part):
         shared = (self.offset, self.common, self.gain, self.clock, self.depth)
         return any(part is not None and part != 0.0 for part in shared)
 
-    def shared_errors(self, stated: SensorUncertainty) -> SensorError:
+    def shared_errors(self, stated: SensorUncertainty, random: float) -> SensorError:
         """Errors that all readings share; see `mascarin.calibration.stated_errors`."""
-        return shared_errors(self, stated)
+        return shared_errors(self, stated, random)

@@ -20,6 +20,7 @@ from mascarin.simulation.preparation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
+from mascarin.study.error_rule import estimates_errors
 from mascarin.study.forms import Choice, Forms, label
 from mascarin.study.patterns import ties_of
 from mascarin.study.periods import Timeline
@@ -290,9 +291,12 @@ class Setup:
     @property
     def estimates_errors(self) -> bool:
         """Whether errors of sensors and model are estimated together with the parameters."""
-        plan = self.plan.identification
-        stated = any(sensor.states_errors for sensor in self.plan.sensors.values())
-        return plan is not None and (plan.discrepancy is not None or stated or bool(self.plan.alternatives))
+        return self.plan.identification is not None and estimates_errors(self.plan, self.hours)
+
+    @cached_property
+    def hours(self) -> float:
+        """Length of all identification periods together. [h]"""
+        return float(np.count_nonzero(self.during["identification"]) * self.observation.interval / 3600.0)
 
     def whole(self, variant: str | None = None) -> Simulation:
         """A model over the whole record, with the state of its phase-change layers."""

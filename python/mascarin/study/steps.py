@@ -23,6 +23,7 @@ from mascarin.study.document.whole import ESTIMATES
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import fit_figures
 from mascarin.study.prediction_intervals import interval_table, interval_words
+from mascarin.study.predictive_checks import statements
 from mascarin.study.storage import Workspace
 from mascarin.study.tables import (
     criteria_table,
@@ -113,9 +114,10 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
         fitted, fit, intervals, profiles = found.run, found.fit, found.intervals, found.profiles
         models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
         content = {
+            "contradictions": [one.to_dict() for one in found.contradictions],
             **header(study, "calibrate"),
             **comparison(models, verdicts),
-            **estimates(study, fit),
+            **estimates(study, fit, stated=intervals.stated),
             **profile_entries(profiles),
             **prediction_entries(study, intervals),
             **error_entries(study, found.combination),
@@ -174,7 +176,12 @@ def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame], M
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
-    return {**header(study, "validate"), **comparison({"nominal": run}, verdicts)}, tables, run
+    content = {
+        "contradictions": [one.to_dict() for one in statements(study)],
+        **header(study, "validate"),
+        **comparison({"nominal": run}, verdicts),
+    }
+    return content, tables, run
 
 
 def _write(

@@ -334,6 +334,7 @@ class Study(Setup):
             quality=self.quality,
             seconds=time.monotonic() - began,
             combination=found.combination,
+            contradictions=found.contradictions,
         )
 
     def __repr__(self) -> str:

@@ -71,6 +71,7 @@ def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
         "intro": study.get("intro", []),
         "looks": _looks(study, series),
         "observed": {"label": observed.get("label", "measured"), "note": observed.get("note", "")},
+        "contradictions": [str(entry.get("text", "")) for entry in study.get("contradictions", [])],
         "facts": _facts(study),
         "headline": headline(study, series),
         "sections": _sections(study, series),

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.units import difference
-from mascarin.study.error_model import sensor_errors, statement, used_sensors
+from mascarin.calibration.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
+from mascarin.study.error_model import stated_sizes, statement
 
 if TYPE_CHECKING:
     from mascarin.study.findings import Combination
@@ -43,18 +44,7 @@ def error_words(study: Setup, found: Combination | None) -> list[str]:
     """What the identification can tell of the form of the model, and errors that reach their limit."""
     if found is None:
         return []
-    words = []
-    used, others = found.kept[0], found.kept[1:]
-    if len(found.forms) > 1:
-        named = [f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in others if weight >= _NAMED]
-        said = f"Form of the model: '{used[0].label}' is used (weight {100 * used[1]:.0f} %)"
-        if named:
-            words.append(
-                f"{said}. The identification does not tell it from {', '.join(named)}; the intervals of "
-                "parameters and predictions cover all of them."
-            )
-        else:
-            words.append(f"{said}; none of the other {len(found.forms) - 1} forms comes near.")
+    words = [] if len(found.forms) == 1 else [_words_of_forms(found)]
     for name, entry in _of_model(study, found).items():
         full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
         unit = difference(_unit(study, name))
@@ -66,11 +56,40 @@ def error_words(study: Setup, found: Combination | None) -> list[str]:
     return words
 
 
+def _words_of_forms(found: Combination) -> str:
+    """Which form is used, and what the days left out say of the others."""
+    used, alike = found.forms[0], found.alike
+    near = {form.label for form, _ in alike}
+    behind = used.joint.by_day.sum() - found.by_day.sum(axis=1)
+    pairs = zip(found.forms[1:], found.weights[1:], behind[1:], strict=True)
+    worse = [
+        f"'{form.label}' ({100 * weight:.0f} %, log density {abs(less):.1f} "
+        f"{'lower' if less > 0 else 'higher'})"
+        for form, weight, less in pairs
+        if weight >= _NAMED and form.label not in near
+    ]
+    said = [f"Form of the model: '{used.label}' is used (weight {100 * found.weights[0]:.0f} %)."]
+    if alike:
+        same = ", ".join(f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in alike)
+        said.append(f"The identification does not tell it from {same}.")
+    if worse:
+        said.append(f"Less likely over all days left out, but not excluded: {', '.join(worse)}.")
+    if not alike and not worse:
+        said.append(f"None of the other {len(found.forms) - 1} forms comes near.")
+    if len(found.kept) > 1:
+        said.append(
+            f"The intervals of parameters and predictions are those of the mixture of {len(found.kept)} "
+            "forms."
+        )
+    return " ".join(said)
+
+
 def _forms(found: Combination) -> list[dict[str, Any]]:
     return [
         {
             "label": form.label,
             "choice": dict(form.choice),
+            "free_numbers": form.complexity[0],
             "weight": float(f"{weight:.6g}"),
             "left_out": [float(f"{value:.6g}") for value in form.joint.by_day],
         }
@@ -81,7 +100,7 @@ def _forms(found: Combination) -> list[dict[str, Any]]:
 def _of_sensors(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
     """Estimate and standard uncertainty of each error, with that stated."""
     joint, count = found.forms[0].joint, found.forms[0].fit.x.size
-    stated = _stated(study)
+    stated = stated_sizes(study)
     sd = np.sqrt(np.diag(joint.covariance))
     entries = {}
     for k, name in enumerate(joint.names):
@@ -93,21 +112,6 @@ def _of_sensors(study: Setup, found: Combination) -> dict[str, dict[str, float]]
                 "stated": size,
             }
     return entries
-
-
-def _stated(study: Setup) -> dict[str, float]:
-    names = used_sensors(study)
-    errors = dict(zip(names, sensor_errors(study, names), strict=True))
-    found: dict[str, float] = {}
-    for name, error in errors.items():
-        found |= {
-            f"{name} {what}": getattr(error, what)
-            for what in ("offset", "gain", "clock")
-            if getattr(error, what)
-        }
-    if any(error.common for error in errors.values()):
-        found["common offset"] = max(error.common for error in errors.values())
-    return found
 
 
 _PARTS: Final = {
@@ -143,11 +147,20 @@ def _table_of_forms(found: Combination) -> dict[str, Any]:
             "Each form is calibrated; each day of the identification is predicted from the other days. The "
             "density is the logarithm of the probability density of the days left out, relative to the first "
             "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those "
-            "with which parameters and prediction intervals combine the forms."
+            "with which parameters and prediction intervals combine the forms. The first form is used for "
+            "curves, criteria and the calibrated building: it has the highest weight of those whose "
+            "density is "
+            f"within {LARGEST_LOSS:g} of the highest, or is a simpler one that predicts each day as well "
+            f"(within {SMALL_ON_A_DAY:g})."
         ),
-        "columns": ["form", "weight [%]", "density of the days left out"],
+        "columns": ["form", "free numbers", "weight [%]", "density of the days left out"],
         "rows": [
-            [form.label, 100.0 * float(weight), float(form.joint.by_day.sum()) - best]
+            [
+                form.label,
+                form.complexity[0],
+                100.0 * float(weight),
+                float(form.joint.by_day.sum()) - best,
+            ]
             for form, weight in zip(found.forms, found.weights, strict=True)
         ],
         "section": "parameters",

@@ -24,10 +24,16 @@ _COSTS: Final = {
 }
 
 
-def estimates(study: Setup, fit: Calibration) -> dict[str, Any]:
-    """Parameters with their uncertainty, and facts about the calibration."""
+def estimates(study: Setup, fit: Calibration, *, stated: bool) -> dict[str, Any]:
+    """Parameters with their uncertainty, and facts about the calibration.
+
+    Where intervals are not stated, each parameter has its whole range in place of one.
+    """
+    entries = parameters(study, fit, study.sought)
+    if not stated:
+        entries = {path: {**entry, "stated": False} for path, entry in entries.items()}
     return {
-        "parameters": parameters(study, fit, study.sought),
+        "parameters": entries,
         "correlation": {"paths": list(fit.problem.paths), "matrix": plain(fit.correlation)},
         "identification": _identification(fit),
     }

@@ -48,9 +48,10 @@ def document(findings: Findings) -> dict[str, Any]:
     reference = study.plan.reference
     published = [] if reference is None else [entry.parameter for entry in reference.parameters]
     content = {
+        "contradictions": [one.to_dict() for one in findings.contradictions],
         **header(study, "study"),
         **comparison(findings.models, findings.criteria),
-        **estimates(study, fit),
+        **estimates(study, fit, stated=findings.prediction_intervals.stated),
         **coefficients(
             study,
             {"nominal": findings.nominal, "fitted": findings.fitted},

@@ -318,6 +318,8 @@ class Study(TypedDict, total=False):
     versions: dict[str, str]
     run_time: float
     """[s]"""
+    contradictions: list[dict[str, Any]]
+    """By what the calibrated model contradicts its data or what is known, each with ``text``; shown first."""
     warnings: list[str]
     """Warnings of the runs, with the models that have them."""
     sound: bool

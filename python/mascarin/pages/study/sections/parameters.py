@@ -45,6 +45,8 @@ def _row(
 ) -> dict[str, Any]:
     """One parameter of a table."""
     fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
+    if entry.get("stated") is False:
+        interval = "not stated"
     return {
         "label": parameter_label(study, path),
         "path": path,
