@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.joint_posterior import JointPosterior
+    from mascarin.diagnosis.error_sources import ErrorSources
+    from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
@@ -25,8 +27,6 @@ if TYPE_CHECKING:
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
-    from mascarin.validation.error_sources import ErrorSources
-    from mascarin.validation.hypotheses import Diagnosis
     from mascarin.validation.residuals import ResidualAnalysis
 
     Array = npt.NDArray[np.float64]

@@ -40,6 +40,8 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.problem": ("FitParameter",),
     "mascarin.calibration.result": ("Calibration", "Minimum"),
     "mascarin.calibration.uncertainty": ("Uncertainty",),
+    "mascarin.diagnosis.error_sources": ("Correction", "ErrorSources"),
+    "mascarin.diagnosis.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.sensitivity.factors": ("Factor",),
     "mascarin.sensitivity.result": ("Sensitivity",),
     "mascarin.sensitivity.salib.collection": ("MorrisSensitivity",),
@@ -49,9 +51,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.simulation.single_precision": ("Difference",),
     "mascarin.study.error_model": ("Unknown", "Unknowns"),
     "mascarin.study.findings": ("PredictionIntervals",),
-    "mascarin.validation.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.validation.days": ("DayChoice", "DriverRange"),
-    "mascarin.validation.error_sources": ("Correction", "ErrorSources"),
     "mascarin.validation.residuals": ("DailyCycle", "DriverCorrelation", "ResidualAnalysis"),
 }
 #: Runs of which the series are kept together.

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.calibration import Calibration
+    from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.study.findings import Findings, ModelRun
     from mascarin.study.setup import Setup
     from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
-    from mascarin.validation.hypotheses import Diagnosis
 
 
 def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
