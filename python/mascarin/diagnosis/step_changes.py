@@ -123,7 +123,7 @@ class Hypotheses:
         times : bool
             Whether the number of beginnings is taken from the value of a family, as a logarithm.
         """
-        own = list(values[: len(self.whole)])
+        own: list[float] = list(values[: len(self.whole)])
         for f, (number, slots) in enumerate(self.families):
             value = values[len(self.whole) + f] if len(values) > len(self.whole) else values[number]
             own += [value - (math.log(slots.size) if times else 0.0)] * slots.size
@@ -174,7 +174,8 @@ class Hypotheses:
 
 def _from_end(values: Floats) -> Floats:
     """Sums from each row to the last."""
-    return np.asarray(np.cumsum(values[::-1], axis=0)[::-1])
+    sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
+    return sums
 
 
 def _blocks_from_end(inverse: Floats, signature: Floats, slots: int) -> Floats:

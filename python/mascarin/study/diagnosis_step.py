@@ -257,16 +257,8 @@ def _inputs(
         if np.isfinite(right).all():
             # The signature is what the readings are beside a model that is driven by the wrong input.
             signature = series.grid.means(right - simulated, series.mask)[0]
-            yield Candidate(
-                "input",
-                error.what,
-                (error.subject,),
-                signature,
-                0.0,
-                _INPUT,
-                error.scale,
-                error.unit,  # type: ignore[arg-type]
-            )
+            subject, size = (error.subject,), (0.0, _INPUT, error.scale)
+            yield Candidate("input", error.what, subject, signature, *size, error.unit)
 
 
 def _noise(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class InputFault:
         Of the size.
     """
 
-    what: str
+    what: Literal["gain", "offset", "clock"]
     subject: str
     forcing: Array
     scale: float
