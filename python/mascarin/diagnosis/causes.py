@@ -81,7 +81,7 @@ class Result:
     Attributes
     ----------
     findings : tuple of Finding
-        In the order in which they were found.
+        Those that are told first, else in the order in which they were found.
     p : float
         Of the largest evidence of all candidates. [-]
     candidates, draws : int
@@ -162,7 +162,10 @@ def scores_of(given: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGaussi
 
 
 def covariance_of(given: DiagnosisInput) -> ErrorCovariance:
-    """Estimate the covariance of the errors beside the faults that a sensor may have over the whole record.
+    """Estimate the covariance of the errors beside faults of sensors.
+
+    First beside those that a sensor may have over the whole record, then beside the most probable beginning
+    of a fault within the record as well: a step is no error that changes from day to day.
 
     Parameters
     ----------
@@ -179,7 +182,20 @@ def covariance_of(given: DiagnosisInput) -> ErrorCovariance:
         if one.what in _BROAD and one.group == "data" and one.mean == 0.0
     ]
     columns = np.stack(broad, axis=2) if broad else np.zeros((*given.data.error.shape, 0))
-    return estimate_error_covariance(given.data, given.days, columns, scale=given.scale, limit=given.limit)
+
+    def estimated(beside: Floats) -> ErrorCovariance:
+        return estimate_error_covariance(given.data, given.days, beside, scale=given.scale, limit=given.limit)
+
+    first = estimated(columns)
+    hypotheses = Hypotheses(given.candidates, given.data.grid, given.days)
+    if not hypotheses.families:
+        return first
+    scores = scores_of(given, hypotheses, first.gaussian(given.data, given.days))
+    begun = np.arange(hypotheses.count) >= len(given.candidates)
+    best = int(np.argmax(np.where(begun, scores.log_bayes_factors(), -np.inf)))
+    one = hypotheses.candidate(best)
+    step = _BROAD_SIZE * (one.sd + abs(one.mean)) * one.signature
+    return estimated(np.concatenate([columns, step[:, :, None]], axis=2))
 
 
 def diagnose(
@@ -236,17 +252,23 @@ def diagnose(
         first_p = first_p if findings else p
         if p >= LEVEL:
             break
-        k, found = _finding(given, hypotheses, scores, p)
+        numbers, found = _finding(given, hypotheses, scores, p)
         findings.append(found)
-        if not found.told:
+        if not found.told and any(one.group == "data" for one in (found.candidate, *found.others)):
             break  # what is left depends on which of them it is
-        signature = np.where(gaussian.present, found.candidate.signature, 0.0)
-        scores = scores.given(k, hypotheses.scores(gaussian.solve(signature)[:, :, None])[:, 0])
+        # An error of the model that is not told may be any of these; a fault of a sensor has to remain
+        # beside all of them.
+        for k in numbers:
+            signature = np.where(gaussian.present, hypotheses.candidate(k).signature, 0.0)
+            scores = scores.given(k, hypotheses.scores(gaussian.solve(signature)[:, :, None])[:, 0])
+    findings.sort(key=lambda one: not one.told)
     return Result(tuple(findings), first_p, hypotheses.count, draws, covariance)
 
 
-def _finding(given: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float) -> tuple[int, Finding]:
-    """The most probable candidate, its number, and what else it may be."""
+def _finding(
+    given: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float
+) -> tuple[list[int], Finding]:
+    """The most probable candidate, what else it may be, and the numbers of all of them."""
     evidence = scores.evidence()
     share = np.exp(evidence - evidence.max())
     share /= share.sum()
@@ -260,22 +282,22 @@ def _finding(given: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: f
             best[key] = k
     order = sorted(of_key, key=lambda key: -of_key[key])
     k, total = best[order[0]], of_key[order[0]]
-    others: list[Candidate] = []
+    numbers = [k]
     for key in order[1:]:
-        if total >= _LISTED or len(others) == _MOST_LISTED:
+        if total >= _LISTED or len(numbers) > _MOST_LISTED:
             break
         total += of_key[key]
-        others.append(hypotheses.candidate(best[key]))
+        numbers.append(best[key])
     candidate = hypotheses.candidate(k)
     size, error = scores.estimate(k)
     probability = of_key[order[0]]
-    return k, Finding(
+    return numbers, Finding(
         candidate,
         candidate.known + candidate.scale * size,
         abs(candidate.scale) * error,
         p,
         min(probability * (1.0 - p), given.model_weight),
         float(scores.log_bayes_factors()[k]),
-        probability >= _TOLD,
-        tuple(others),
+        probability >= _TOLD and (candidate.group == "data" or given.forms > 1),
+        tuple(hypotheses.candidate(number) for number in numbers[1:]),
     )

@@ -131,6 +131,9 @@ class DiagnosisInput:
         What may be the cause.
     model_weight : float
         Weight of the form of the model that is used: no statement is more certain. [-]
+    forms : int
+        Number of forms of the model that were calibrated. With one only, an error of the model that is no
+        candidate acts like those of inputs, numbers and laws: none of these is told. [-]
     """
 
     data: DayData
@@ -140,6 +143,7 @@ class DiagnosisInput:
     limit: Floats
     candidates: tuple[Candidate, ...]
     model_weight: float = 1.0
+    forms: int = 2
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,8 +48,8 @@ _ONE_FORM: Final = 0.95
 _OUTSIDE: Final = 1.0
 #: Prior of the size of another law about 1, of a missing heat flow and of an error of an input. [-]
 _LAW: Final = 0.3
-_PATH: Final = 2.0
-_INPUT: Final = 2.0
+_PATH: Final = 1.0
+_INPUT: Final = 1.0
 #: Combinations of uncertain numbers whose effect is smaller than this part of the stated uncertainty are left
 #: out. [-]
 _SMALL: Final = 0.03
@@ -95,7 +95,8 @@ def diagnosis(
         noise, excess = _noise(setup, model, vector)
         found += [words.of_noise(excess)] if excess else []
         report(0, 2)
-        given = diagnosis_input(setup, model, vector, _weight(combination))
+        forms_tried = 1 if combination is None else len(combination.forms)
+        given = diagnosis_input(setup, model, vector, _weight(combination), forms_tried)
         report(1, 2)
         if given is None:
             return Diagnosis(tuple(found), noise)
@@ -112,7 +113,9 @@ def _weight(combination: Combination | None) -> float:
     return min(float(combination.weights[0]), _ONE_FORM)
 
 
-def diagnosis_input(setup: Setup, model: Model, vector: Array, weight: float) -> DiagnosisInput | None:
+def diagnosis_input(
+    setup: Setup, model: Model, vector: Array, weight: float, number: int = 1
+) -> DiagnosisInput | None:
     """Plain arrays of a study: residuals, known effects and candidates.
 
     Parameters
@@ -125,6 +128,8 @@ def diagnosis_input(setup: Setup, model: Model, vector: Array, weight: float) ->
         Its parameter vector. [unit of each]
     weight : float
         Of the form of the model that is used. [-]
+    number : int
+        Of forms of the model that were calibrated. [-]
 
     Returns
     -------
@@ -167,7 +172,7 @@ def diagnosis_input(setup: Setup, model: Model, vector: Array, weight: float) ->
     plan = (setup.plan.identification and setup.plan.identification.discrepancy) or DiscrepancyPlan()
     limit = np.maximum(plan.limit * span, series.uncertainty)
     used = tuple(one for one in candidates if np.isfinite(one.signature).all() and np.any(one.signature))
-    return DiagnosisInput(data, days, series.names, series.uncertainty, limit, used, weight)
+    return DiagnosisInput(data, days, series.names, series.uncertainty, limit, used, weight, number)
 
 
 def _series(

@@ -81,6 +81,10 @@ def of_finding(setup: Setup, found: Finding) -> Cause:
         )
     else:
         others = "; ".join(_short(setup, other) for other in found.others)
+        if one.group != "data":
+            others = "; ".join(
+                filter(None, (others, "an error of the model that is not among the candidates"))
+            )
         text = (
             f"Cannot tell: the residuals have a cause, but the measurements do not tell which. {evidence}. "
             f"The most probable, with {_percent(found.certainty)}, is: {statement}. It may as well be: "

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.study.derived_quantities import DerivedQuantity
     from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.tables.quality import Stretch
@@ -194,6 +195,8 @@ class Findings:
         Run time. [s]
     combination : Combination or None
         Forms of the model with their weights, where errors of sensors and model are estimated.
+    derived : list of DerivedQuantity
+        Heat loss, capacity, time constant and U values of the calibrated building, with intervals.
     """
 
     setup: Setup
@@ -214,6 +217,7 @@ class Findings:
     quality: list[Stretch]
     seconds: float = field(default=0.0)
     combination: Combination | None = None
+    derived: list[DerivedQuantity] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:

@@ -49,6 +49,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.sensitivity.spectral.result": ("SpectralSensitivity",),
     "mascarin.simulation.energy": ("EnergyLedger",),
     "mascarin.simulation.single_precision": ("Difference",),
+    "mascarin.study.derived_quantities": ("DerivedQuantity",),
     "mascarin.study.error_model": ("Unknown", "Unknowns"),
     "mascarin.study.findings": ("PredictionIntervals",),
     "mascarin.validation.days": ("DayChoice", "DriverRange"),

@@ -17,6 +17,7 @@ from mascarin.study import opening
 from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
 from mascarin.study.days_step import days
+from mascarin.study.derived_quantities import derived_quantities
 from mascarin.study.diagnosis_step import diagnosis
 from mascarin.study.diagnosis_words import summary
 from mascarin.study.document.errors import error_words
@@ -334,6 +335,7 @@ class Study(Setup):
             quality=self.quality,
             seconds=time.monotonic() - began,
             combination=found.combination,
+            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, found.combination)),
         )
 
     def __repr__(self) -> str:

@@ -118,7 +118,8 @@ def causes_table(found: Diagnosis) -> pd.DataFrame:
     """One row for each cause, in their order."""
     import pandas as pd
 
-    columns = ["group", "what", "subject", "value", "error", "unit", "p", "share", "deviance", "same", "text"]
+    columns = ["group", "what", "subject", "value", "error", "unit", "p", "certainty", "log_bayes_factor"]
+    columns += ["told", "same", "text"]
     rows = [
         {**cause.to_dict(), "subject": ", ".join(cause.subject), "same": ", ".join(cause.same)}
         for cause in found.causes

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from mascarin.diagnosis.error_sources import explain_missed_aims
 from mascarin.diagnosis.hypotheses import WORDS
 from mascarin.study.days_step import day_words, days_table
+from mascarin.study.derived_quantities import derived_table
 from mascarin.study.document.coefficients import coefficients
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.errors import error_entries, error_tables
@@ -63,7 +64,9 @@ def document(findings: Findings) -> dict[str, Any]:
         "tables": [
             interval_table(study, findings.prediction_intervals),
             *error_tables(study, findings.combination),
+            *([derived_table(findings.derived)] if findings.derived else []),
         ],
+        "derived": [one.to_dict() for one in findings.derived],
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
         },
