@@ -49,7 +49,7 @@ _WEAK: Final = 4.0
 #: The covariance of the filter counts as steady when it changes by less. [-]
 _STEADY: Final = 1e-10
 #: Samples of the coarse record. [-]
-_COARSE: Final = 150
+_COARSE: Final = 100
 #: Cost of parameters for which there is no likelihood.
 _IMPOSSIBLE: Final = 1e12
 
@@ -235,13 +235,14 @@ def _searched(start: Floats, y: Floats, inputs: Floats, hours: float, first: Flo
     bounds = [(one - 8.0, one + 8.0) for one in start[:-1]]
     ends = (float(y.min() - 30.0), float(y.max() + 30.0))
     options = {"maxiter": 300, "ftol": 1e-11}
+    begun = start if first is None else first
     return optimize.minimize(
         cost,
-        start if first is None else first,
+        begun,
         jac=True,
         method="L-BFGS-B",
         bounds=[*bounds, ends],
-        options=options,
+        options=options,  # type: ignore[call-overload]
     )
 
 

@@ -169,7 +169,7 @@ class Hypotheses:
             across = (signature[:, None] * flat).reshape(self._hours.size, -1, flat.shape[1]).sum(axis=1)
             square = np.sum(_from_end(across)[slots] ** 2, axis=1)
             found.append(_blocks_from_end(inverse, signature.reshape(shape), self.grid.slots)[slots] - square)
-        return np.maximum(np.concatenate(found), 0.0)
+        return np.asarray(np.maximum(np.concatenate(found), 0.0))
 
 
 def _from_end(values: Floats) -> Floats:

@@ -86,8 +86,8 @@ def of_finding(setup: Setup, found: Finding) -> Cause:
                 filter(None, (others, "an error of the model that is not among the candidates"))
             )
         text = (
-            f"Cannot tell: the residuals have a cause, but the measurements do not tell which. {evidence}. "
-            f"The most probable, with {_percent(found.certainty)}, is: {statement}. It may as well be: "
+            f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. {evidence}. "
+            f"The most probable of them, with {_percent(found.certainty)}, is: {statement}. It may as well be: "
             f"{others or 'none of the candidates'}."
         )
     return Cause(
