@@ -43,7 +43,7 @@ def test_the_truth_of_simulated_tests_is_found_within_the_stated_errors() -> Non
     for seed in range(3):
         found = heating_test(_simulated(seed), OUTDOORS, POWER, SUN, interval=1800.0)
         value, error = found.heat_loss_coefficient
-        assert 0.5 < error < 12.0
+        assert 0.2 < error < 12.0
         distances.append((value - LOSS) / error)
         aperture.append((found.solar_aperture[0] - APERTURE) / found.solar_aperture[1])
         low, high = found.interval()

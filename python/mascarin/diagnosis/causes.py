@@ -32,6 +32,8 @@ DRAWS: Final = 999
 #: What is wrong is told from all else with this probability; candidates are listed until they have the other.
 _TOLD: Final = 0.8
 _LISTED: Final = 0.95
+#: With one form of the model an error of it that is no candidate is as probable as those that are. [-]
+_UNNAMED: Final = 0.5
 #: Largest number of causes, and of candidates that are listed.
 _MOST_CAUSES: Final = 5
 _MOST_LISTED: Final = 6
@@ -291,13 +293,14 @@ def _finding(
     candidate = hypotheses.candidate(k)
     size, error = scores.estimate(k)
     probability = of_key[order[0]]
+    tells = candidate.group == "data" or given.forms > 1
     return numbers, Finding(
         candidate,
         candidate.known + candidate.scale * size,
         abs(candidate.scale) * error,
         p,
-        min(probability * (1.0 - p), given.model_weight),
+        min(probability * (1.0 - p), given.model_weight if tells else min(given.model_weight, _UNNAMED)),
         float(scores.log_bayes_factors()[k]),
-        probability >= _TOLD and (candidate.group == "data" or given.forms > 1),
+        probability >= _TOLD and tells,
         tuple(hypotheses.candidate(number) for number in numbers[1:]),
     )

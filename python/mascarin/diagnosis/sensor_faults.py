@@ -199,8 +199,8 @@ def _swaps(series: Series) -> Iterator[Candidate]:
 def stated_errors(series: Series) -> Floats:
     """Errors that are within what is stated of a sensor, beside its offset, for one standard deviation.
 
-    Errors of its stated uncertainty that grow with the distance from the mean or over the record, and a clock
-    that is wrong by a quarter of a sample or two and a half minutes: none of them is a fault.
+    An error of its stated uncertainty that grows with the distance from the mean, a drift by it over the
+    record, and a clock that is wrong by a quarter of a sample or two and a half minutes: none is a fault.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def stated_errors(series: Series) -> Floats:
     for s in range(len(series.names)):
         m, u = series.simulated[:, s], series.uncertainty[s]
         middle = np.linspace(-0.5, 0.5, m.size)
-        columns.append(series.means({s: u * middle / middle.std()}))
+        columns.append(series.means({s: u * middle}))
         if np.ptp(m) > 0.0:
             columns.append(series.means({s: u * (m - m.mean()) / m.std()}))
             delay = max(150.0, 0.25 * series.interval)

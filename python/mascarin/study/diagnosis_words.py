@@ -86,9 +86,9 @@ def of_finding(setup: Setup, found: Finding) -> Cause:
                 filter(None, (others, "an error of the model that is not among the candidates"))
             )
         text = (
-            f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. {evidence}. "
-            f"The most probable of them, with {_percent(found.certainty)}, is: {statement}. It may as well be: "
-            f"{others or 'none of the candidates'}."
+            f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. "
+            f"{evidence}. The most probable of them, with {_percent(found.certainty)}, is: {statement}. "
+            f"It may as well be: {others or 'none of the candidates'}."
         )
     return Cause(
         one.group, one.what, one.subject, text, found.value, found.error, one.unit, found.p, found.certainty,
