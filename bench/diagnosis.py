@@ -1,229 +1,225 @@
-"""Twelve planted faults, and data without a fault: which cause does the diagnosis of a study name first?
+"""Which cause does the diagnosis of a study name first? Experiments without a fault, and with a planted one.
 
-``python bench/diagnosis.py faults [name ...]`` plants faults in the virtual experiment of the LGI cell, one
-at a time: in the data (clock, exchanged columns, offset, gain, stuck, filled, noise) or in the study (a fixed
-absorptance or conductivity that is wrong, another sky, another outside convection). Each study is calibrated
-and diagnosed. Printed are the first cause, and whether it is the planted one. Without names these are the
-twelve of ``FAULTS``; those of ``OTHERS`` are named.
-``python bench/diagnosis.py clean [first] [count]`` makes data with the model itself, with white noise and
-noise with a correlation time of 3 h, by seed, and prints the causes that are named: there should be none.
+``python bench/diagnosis.py vsim FOLDER PROGRAM [first] [count] [fault ...]`` takes experiments of an
+independent program (a folder with ``experiment.py`` and ``vsim.c``, compiled in FOLDER): the LGI cell with
+other laws, another mesh and drawn truths. Even seeds have laws that the study names, odd ones do not. Each
+experiment is diagnosed as it is (``clean``), and with one fault planted in its table: five stated standard
+uncertainties and more. Without names of faults all of ``PLANTED`` are taken in turn, one for each seed. Every
+result is a file of FOLDER and is not computed again; the table of all results is printed at the end.
+
+``python bench/diagnosis.py arrays [count]`` draws records of three sensors from a known covariance of errors,
+estimates the covariance again from each, and counts how often a cause is named.
 """
 
 from __future__ import annotations
 
+import json
+import shutil
+import subprocess
 import sys
 import tempfile
 import time
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 
 from mascarin import Study
 from mascarin.examples import STUDIES
 from mascarin.study.diagnosis_step import diagnosis
 from mascarin.study.model_runs import ModelRuns
 from mascarin.study.storage import Workspace
-from mascarin.validation import Diagnosis
-from mascarin.weather import Measurements
+from mascarin.weather import Climate, Measurements
 
 Edit = Callable[[pd.DataFrame], None]
 
-SENSORS = ("room_air", "plasterboard_face", "pcm_plasterboard", "pcm_top", "gap_air", "steel_sheet")
-DAY = "2010-09-12 10:00"
-ROOF = "surfaces.roof.outside"
+ZONE = "UTC+4"
+#: Stated standard uncertainty of the offset of a sensor in the study. [K]
+OFFSET = 0.15
+WEATHER = {
+    "air_temperature": "outdoor_air",
+    "relative_humidity": "relative_humidity",
+    "wind_speed": "wind_speed",
+    "wind_direction": "wind_direction",
+    "pressure": "pressure",
+    "global_horizontal": "global_horizontal",
+    "diffuse_horizontal": "diffuse_horizontal",
+}
+PERIODS = {
+    "warm_up": ["2023-06-01T00:00", "2023-06-04T00:00"],
+    "identification": ["2023-06-14T00:00", "2023-06-19T00:00"],
+}
+LAST = "07-05"
+MIDDLE = "2023-06-22"
 
 
-def clock(column: str, rows: int) -> Edit:
-    """The column is late by some rows."""
+def _linear(column: str, gain: float, offset: float, since: str | None = None) -> Edit:
+    def edit(table: pd.DataFrame) -> None:
+        rows = slice(since, None)
+        table.loc[rows, column] = table.loc[rows, column] * gain + offset
 
+    return edit
+
+
+def _drift(column: str, size: float) -> Edit:
+    def edit(table: pd.DataFrame) -> None:
+        table[column] += size * np.linspace(-0.5, 0.5, len(table))
+
+    return edit
+
+
+def _late(column: str, rows: int) -> Edit:
     def edit(table: pd.DataFrame) -> None:
         table[column] = table[column].shift(rows).bfill()
 
     return edit
 
 
-def swap(one: str, other: str) -> Edit:
-    """Two columns are exchanged."""
-
+def _swap(one: str, other: str) -> Edit:
     def edit(table: pd.DataFrame) -> None:
         table[[one, other]] = table[[other, one]].to_numpy()
 
     return edit
 
 
-def linear(column: str, gain: float, offset: float) -> Edit:
-    """The column has a wrong gain and offset."""
-
-    def edit(table: pd.DataFrame) -> None:
-        table[column] = table[column] * gain + offset
-
-    return edit
-
-
-def stretch(column: str, rows: int, *, line: bool) -> Edit:
-    """Some rows repeat a value, or are a straight line."""
-
-    def edit(table: pd.DataFrame) -> None:
-        first = table.index.get_loc(pd.Timestamp(DAY, tz=table.index.tz))
-        place = table.columns.get_loc(column)
-        last = table.iloc[first + rows - 1, place] if line else table.iloc[first, place]
-        table.iloc[first : first + rows, place] = np.round(
-            np.linspace(table.iloc[first, place], last, rows), 3
-        )
-
-    return edit
-
-
-def noise(columns: tuple[str, ...], sd: float) -> Edit:
-    """White noise is added."""
-
-    def edit(table: pd.DataFrame) -> None:
-        rng = np.random.default_rng(1)
-        for column in columns:
-            table[column] = (table[column] + sd * rng.standard_normal(len(table))).round(3)
-
-    return edit
-
-
-def since(day: str, edit: Edit) -> Edit:
-    """A fault from a day on."""
-
-    def later(table: pd.DataFrame) -> None:
-        whole = table.copy()
-        edit(whole)
-        rows = table.index >= pd.Timestamp(day, tz=table.index.tz)
-        table.loc[rows] = whole.loc[rows]
-
-    return later
-
-
-#: name -> (edit of the data, changes of the building, expected kind, expected start of a subject)
-FAULTS: dict[str, tuple[Edit | None, Mapping[str, Any], tuple[str, ...], str]] = {
-    "clock of the room": (clock("room_air", 4), {}, ("clock",), "room_air"),
-    "clock of the sheet": (clock("steel_sheet", 4), {}, ("clock",), "steel"),
-    "exchanged columns": (swap("pcm_top", "gap_air"), {}, ("swapped",), "pcm_top"),
-    "offset of 1 K": (linear("gap_air", 1.0, 1.0), {}, ("offset",), "gap_air"),
-    "gain of 5 %": (linear("pcm_top", 1.05, 0.0), {}, ("gain", "scale"), "pcm_top"),
-    "stuck for 12 h": (stretch("gap_air", 48, line=False), {}, ("stuck",), "gap_air"),
-    "filled for 6 h": (stretch("pcm_top", 24, line=True), {}, ("interpolated",), "pcm_top"),
-    "noise of 0.3 K": (noise(SENSORS, 0.3), {}, ("noise",), "room_air"),
-    "absorptance": (None, {f"{ROOF}.absorptance": 0.65}, ("parameter",), f"{ROOF}.absorptance"),
-    "conductivity": (
-        None, {"materials.plasterboard.conductivity": 0.25}, ("parameter",),
-        "materials.plasterboard.conductivity",
-    ),
-    "sky": (None, {"site.sky": "brunt"}, ("form",), "site.sky"),
-    "outside convection": (
-        None, {f"{ROOF}.convection": {"kind": "tarp", "roughness": 1.52}}, ("form",), f"{ROOF}.convection",
-    ),
-}  # fmt: skip
-
-
-#: Further faults, not among the twelve.
-OTHERS: dict[str, tuple[Edit | None, Mapping[str, Any], tuple[str, ...], str]] = {
-    "offset from a day on": (since("2010-09-08", linear("gap_air", 1.0, 0.8)), {}, ("offset",), "gap_air"),
-    "exchanged from a day on": (since("2010-09-15", swap("pcm_top", "gap_air")), {}, ("swapped",), "pcm_top"),
-    "daylight saving": (since("2010-09-19", clock("room_air", 4)), {}, ("clock",), "room_air"),
-    "another unit": (linear("room_air", 1.8, 32.0), {}, ("gain", "scale", "offset"), "room_air"),
+#: name -> (edit of the table, kinds that are right, a sensor or input that is named)
+PLANTED: dict[str, tuple[Edit, tuple[str, ...], str]] = {
+    "offset": (_linear("gap_air", 1.0, 8.0 * OFFSET), ("offset",), "gap_air"),
+    "gain": (_linear("pcm_top", 1.06, 0.0), ("gain", "scale", "offset"), "pcm_top"),
+    "drift": (_drift("room_air", 8.0 * OFFSET), ("drift",), "room_air"),
+    "step": (_linear("pcm_plasterboard", 1.0, 5.0 * OFFSET, MIDDLE), ("step",), "interface"),
+    "clock": (_late("plasterboard_face", 4), ("clock",), "plasterboard"),
+    "swap": (_swap("pcm_top", "gap_air"), ("swapped",), "pcm_top"),
+    "pyranometer": (_linear("global_horizontal", 0.94, 0.0), ("gain",), "solar radiation"),
 }
 
 
-def study_of(table: pd.DataFrame, changes: Mapping[str, Any]) -> Study:
-    """The LGI study with other data or another building; what is changed is not calibrated."""
+def experiment(folder: Path, program: Path, seed: int) -> pd.DataFrame:
+    """The table of an experiment, made once."""
+    table = folder / f"exp{seed}.csv"
+    if not table.exists():
+        for source in program.iterdir():
+            if not (folder / source.name).exists():
+                shutil.copy(source, folder / source.name)
+        if not (folder / "vsim").exists():
+            command = [shutil.which("gcc") or "cc", "-O2", "-o", "vsim", "vsim.c", "-lm"]
+            subprocess.run(command, cwd=folder, check=True)  # noqa: S603
+        script = (folder / "experiment.py").read_text()
+        weather = (program / ".." / ".." / "data" / "weather").resolve()
+        lines = [f'W="{weather}/"' if line.startswith("W=") else line for line in script.splitlines()]
+        (folder / "run_experiment.py").write_text("\n".join(lines) + "\n")
+        named = ["--named"] if seed % 2 == 0 else []
+        command = [sys.executable, "run_experiment.py", str(seed), *named, "--last", LAST]
+        subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)  # noqa: S603
+    return pd.read_csv(table, index_col="time", parse_dates=True)
+
+
+def study_of(table: pd.DataFrame) -> Study:
+    """The LGI study with other data, one form and no variants."""
     base = Study.from_yaml(STUDIES["lgi"])
     plan = base.plan.identification
     assert plan is not None
     kept = plan.model_dump(mode="json", exclude_unset=True)
-    parameters = {
-        path: entry
-        for path, entry in kept.pop("parameters").items()
-        if not any(path == key or path.startswith(f"{key}.") for key in changes)
-    }
+    table = table.tz_localize("Etc/GMT-4")
     return Study(
-        building=base.building.replace(dict(changes)) if changes else base.building,
-        climate=base.climate,
+        building=base.building.replace({"site.timezone": ZONE}),
+        climate=Climate.from_table(table, columns=WEATHER, absent=["dew_point", "direct_normal"]),
         measurements=Measurements.from_table(table),
         sensors={name: one.model_dump(exclude_unset=True) for name, one in base.plan.sensors.items()},
-        periods=base.plan.periods,
-        parameters=parameters,
+        periods=PERIODS,
+        parameters=kept.pop("parameters"),
         identification=kept,
-        criteria=base.plan.criteria,
-        aims=base.plan.aims,
-        step=base.plan.step,
+        step="15min",
     )
 
 
-def diagnosed(study: Study) -> Diagnosis:
-    """Calibrate and diagnose; parameters and forms are always tried."""
+def judged(table: pd.DataFrame) -> dict[str, Any]:
+    """Calibrate and diagnose."""
+    began = time.monotonic()
+    study = study_of(table)
     with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), study.inputs()) as workspace:
+        # The calibration without errors of sensors: the diagnosis estimates those of the model itself.
         run, fit = ModelRuns(study, workspace).fitted()
-        return diagnosis(study, run, fit, workspace, missed=True)
+        result = diagnosis(study, run, fit, workspace)
+    return {**result.to_dict(), "seconds": time.monotonic() - began}
 
 
-def faults(names: list[str]) -> None:
-    """Print the first cause of each planted fault."""
-    right = 0
-    chosen = names or list(FAULTS)
-    for name in chosen:
-        edit, changes, kinds, subject = (FAULTS | OTHERS)[name]
-        table = Study.from_yaml(STUDIES["lgi"]).measurements.data.copy()
-        if edit is not None:
-            edit(table)
-        began = time.monotonic()
-        first = diagnosed(study_of(table, changes)).first
-        hit = first is not None and first.what in kinds and any(s.startswith(subject) for s in first.subject)
-        right += hit
-        said = "nothing" if first is None else first.text
-        print_line(f"{'right' if hit else 'WRONG'} | {name} | {time.monotonic() - began:.0f} s | {said}")
-    print_line(f"first cause right: {right} of {len(chosen)}")
+def tested(content: dict[str, Any]) -> list[dict[str, Any]]:
+    """Causes that were tested against simulated records; findings of the table alone are none."""
+    return [cause for cause in content["causes"] if cause["p"] is not None]
 
 
-def clean_table(seed: int) -> pd.DataFrame:
-    """Data of the model as described: white noise of 0.08 K, and 0.1 K with a correlation time of 3 h."""
-    base = Study.from_yaml(STUDIES["lgi"])
-    table = base.measurements.data.copy()
-    results = base.simulation.run()
-    rng = np.random.default_rng(seed)
-    keep = np.exp(-base.measurements.step_seconds / 10800.0)
-    for k, sensor in enumerate(base.plan.sensors.values()):
-        series = base.observation.sampled(results.index, results.records[:, k])
-        slow = np.zeros(series.size)
-        drawn = rng.standard_normal((2, series.size))
-        slow[0] = 0.1 * drawn[0, 0]
-        for t in range(1, series.size):
-            slow[t] = keep * slow[t - 1] + 0.1 * np.sqrt(1.0 - keep**2) * drawn[0, t]
-        values = pd.Series(series + slow + 0.08 * drawn[1], index=base.observation.times)
-        there = table.index.intersection(values.index)
-        table.loc[there, sensor.columns[0]] = values.loc[there].round(3)
-    return table
-
-
-def clean(first: int, count: int) -> None:
-    """Print the causes that are named in data without a fault."""
-    silent = 0
+def vsim(folder: Path, program: Path, first: int, count: int, names: list[str]) -> None:
+    """Diagnose experiments, each without a fault and with one."""
+    folder.mkdir(parents=True, exist_ok=True)
+    kinds = list(PLANTED)
     for seed in range(first, first + count):
-        found = diagnosed(study_of(clean_table(seed), {}))
-        silent += not found.causes
-        said = "; ".join(cause.text for cause in found.causes) or "nothing"
-        print_line(f"seed {seed} | {said}")
-    print_line(f"no cause named: {silent} of {count}")
+        for name in ["clean", *(names or [kinds[seed % len(kinds)]])]:
+            path = folder / f"diagnosis-{seed}-{name}.json"
+            if path.exists():
+                continue
+            table = experiment(folder, program, seed)
+            if name != "clean":
+                PLANTED[name][0](table)
+            path.write_text(json.dumps(judged(table), indent=1))
+            show(seed, name, json.loads(path.read_text()))
+    summary(folder)
 
 
-def print_line(text: str) -> None:
-    """Print at once, so that a run that is stopped has shown what it did."""
-    print(text, flush=True)
+def show(seed: int, name: str, content: dict[str, Any]) -> None:
+    """Print what was found."""
+    causes = tested(content)
+    said = causes[0]["text"] if causes else "nothing"
+    print(f"{seed} {name} | p {content['p']:.3g} | {content['seconds']:.0f} s | {said}", flush=True)
+
+
+def summary(folder: Path) -> None:
+    """Print the rates over all results in a folder, with their intervals."""
+    clean, planted, silent = [], [], 0
+    for path in sorted(folder.glob("diagnosis-*-*.json")):
+        _, _, name = path.stem.split("-", 2)
+        causes = tested(json.loads(path.read_text()))
+        if name == "clean":
+            clean.append(any(one["group"] == "data" and one["told"] for one in causes))
+        else:
+            _, kinds, subject = PLANTED[name]
+            right = bool(causes) and causes[0]["what"] in kinds and subject in causes[0]["subject"]
+            planted.append(right)
+            silent += not causes
+    for title, hits in (("clean, a sensor accused", clean), ("planted, named first", planted)):
+        if hits:
+            low, high = stats.binomtest(sum(hits), len(hits)).proportion_ci(method="exact")
+            print(f"{title}: {sum(hits)} of {len(hits)} (95 %: {100 * low:.0f} to {100 * high:.0f} %)")
+    print(f"planted, nothing named: {silent}")
+
+
+def arrays(count: int) -> None:
+    """Rate of accusations in drawn records, the covariance of the errors estimated from each."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+    from diagnosis_support import drawn
+    from mascarin.diagnosis import diagnose
+
+    hits = 0
+    for seed in range(count):
+        found = diagnose(drawn(1000 + seed), draws=399)
+        hits += bool(found.findings)
+        names = [one.candidate.label for one in found.findings]
+        print(f"{seed} | p {found.p:.3g} | {names}", flush=True)
+    low, high = stats.binomtest(hits, count).proportion_ci(method="exact")
+    print(f"a cause is named: {hits} of {count} (95 %: {100 * low:.0f} to {100 * high:.0f} %)")
 
 
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
     kind, *rest = sys.argv[1:] or [""]
-    if kind == "faults":
-        faults(rest)
-    elif kind == "clean":
-        clean(int(rest[0]) if rest else 0, int(rest[1]) if len(rest) > 1 else 20)
+    if kind == "vsim":
+        start, number = (int(rest[2]) if len(rest) > 2 else 0), (int(rest[3]) if len(rest) > 3 else 3)
+        vsim(Path(rest[0]).resolve(), Path(rest[1]).resolve(), start, number, rest[4:])
+    elif kind == "arrays":
+        arrays(int(rest[0]) if rest else 40)
     else:
-        print_line(__doc__ or "")
+        print(__doc__)

@@ -24,6 +24,7 @@ ORDER = [
     {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},
+    {"diagnosis"},
     {"verification"},
     {"examples"},
     {"pages", "pages.frame", "pages.study", "pages.run", "pages.suites"},

@@ -109,9 +109,13 @@ class Model:
         values = setup.observation.measured.size * (len(self.paths) + self.sensors)
         self.group = max(1, math.ceil(values / MOST_VALUES))
         self.interval = setup.observation.interval * self.group
-        self.measured = self._averaged(setup.observation.measured[None])[0]
+        self.measured = self.averaged(setup.observation.measured)
+        local = setup.observation.times.tz_localize(None)
+        since = np.asarray((local - local[0].normalize()).total_seconds() / 3600.0, dtype=np.float64)
+        #: Local time of all instants, from the midnight before the first. [h]
+        self.hours: Array = self.averaged(since[:, None])[:, 0]
 
-    def _averaged(self, series: Array) -> Array:
+    def averaged(self, series: Array) -> Array:
         """Means over groups of samples, shape (..., n, S) -> (..., n // group, S)."""
         if self.group == 1:
             return series
@@ -121,7 +125,7 @@ class Model:
 
     def sampled(self, simulation: Simulation, records: Array) -> Array:
         """Outputs of the sensors at the instants that are compared, shape (..., n, S)."""
-        return self._averaged(self.setup.observation.simulated(simulation.index, records))
+        return self.averaged(self.setup.observation.simulated(simulation.index, records))
 
     def series(self, vector: Array, simulation: Simulation | None = None) -> Array:
         """Simulated series, shape (n, S). [unit of each]"""
@@ -174,25 +178,8 @@ class Model:
         with reporting(self._progress, "effects of all parameters") as report:
             for path, effect in effects.each(report):
                 if path in place:
-                    others[place[path]] = self._averaged(effect)
+                    others[place[path]] = self.averaged(effect)
         return np.concatenate([found, others])
-
-    def distance(self, one: Array, other: Array) -> float:
-        """Largest difference of a parameter between two vectors. [ranges]"""
-        value = self.simulation.value_in
-        return max(
-            (abs(value(one, p) - value(other, p)) / (high - low) for p, (low, high) in self.range.items()),
-            default=0.0,
-        )
-
-    def moved(self, vector: Array, paths: Sequence[str], steps: Array) -> Array:
-        """A parameter vector with changes in ranges, inside the ranges."""
-        moved = vector.copy()
-        for path, step in zip(paths, steps, strict=True):
-            (low, high), here = self.range[path], self.simulation.value_in(vector, path)
-            bounds = min(low, here), max(high, here)
-            self.simulation.assign(moved, path, float(np.clip(here + step * (high - low), *bounds)))
-        return np.asarray(self.simulation.varied([], np.zeros((1, 0)), moved)[0])
 
     def priors(self, paths: Sequence[str], vector: Array) -> tuple[Array, Array, Array]:
         """Centre, precision and limits of the changes of parameters from a vector. [ranges]"""
@@ -263,7 +250,7 @@ class Model:
             ).records
             observation = self.setup.observation
             sampled = [observation.sampled(run.index, records[:, k]) for k in at]
-            return self._averaged(np.stack(sampled, axis=-1))
+            return self.averaged(np.stack(sampled, axis=-1))
 
         try:
             found = self.store.array(("near", run.identity, self.group, vector.tobytes()), make)

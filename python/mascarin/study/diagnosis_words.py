@@ -1,4 +1,4 @@
-"""Causes in words: what was found, its size, and what to check."""
+"""Causes in words: what was found, its size, how certain it is, and what to check."""
 
 from __future__ import annotations
 
@@ -8,24 +8,32 @@ from typing import TYPE_CHECKING, Final
 
 import pandas as pd
 
-from mascarin._io.numbers import with_interval
-from mascarin.validation.hypotheses import WORDS, Cause
+from mascarin._io.numbers import with_uncertainty
+from mascarin.diagnosis.hypotheses import GROUPS, WORDS, Cause
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    from mascarin.study.diagnosis_model import Model
+    from mascarin.diagnosis.causes import Finding
+    from mascarin.diagnosis.hypotheses import Candidate, Diagnosis
     from mascarin.study.setup import Setup
-    from mascarin.validation.sensor_faults import Fault
-
-    Array = npt.NDArray[np.float64]
 
 #: Kinds of suspicious values that are faults of data.
 _FAULTY: Final = ("stuck", "forward_filled", "interpolated", "copied")
-#: Parts of a building that are laws: a coefficient of one belongs to its form.
-_LAWS: Final = (".convection", "site.sky", "site.cloud", ".longwave")
-_NORMAL_95: Final = 1.96
+#: What to check, by kind of a fault of a sensor.
+_CHECKS: Final = {
+    "offset": "check its calibration",
+    "step": "check what was changed at the sensor or its logger then",
+    "gain": "check the gain and the unit of its column",
+    "scale": "check the gain and the unit of its column",
+    "drift": "check its calibration before and after",
+    "clock": "check the clock or the time zone of its logger",
+    "clock_step": "check the clock or daylight saving of its logger",
+    "place": "check the place and the depth of the sensor",
+}
+#: Said where a cause is named.
+NOT_BLIND: Final = (
+    "The diagnosis uses all days that are compared. Whoever changes the model or the data because of it is "
+    "no longer blind on these days: validate the change with measurements that were not used here."
+)
 
 
 def of_table(setup: Setup) -> Iterator[Cause]:
@@ -47,165 +55,141 @@ def of_table(setup: Setup) -> Iterator[Cause]:
         )  # fmt: skip
 
 
-def of_fault(
-    setup: Setup,
-    names: Sequence[str],
-    units: Sequence[str],
-    fault: Fault,
-    p: float,
-    share: float,
-    group: int = 1,
-) -> Cause:
-    """A fault of a sensor, found in means over `group` samples."""
-    when = _when(setup, fault.rows, group)
-    subject = tuple(names[s] for s in fault.sensors)
-    unit = units[fault.sensors[0]].replace("degC", "K")
-    value, error, of = fault.value, fault.error, unit
-    name, daylight = subject[0], "daylight saving" if when else "the time zone"
-    if fault.what == "swapped":
-        columns = [", ".join(setup.plan.sensors[one].columns) for one in subject]
-        text = (
-            f"{subject[0]} and {subject[1]}: the columns {columns[0]} and {columns[1]} are exchanged{when}; "
-            "each series fits the other output"
-        )
-        of = ""
-    elif fault.what == "clock":
-        value, error, of = value / 60.0, error / 60.0, "min"
-        side = "late" if value > 0.0 else "early"
-        text = (
-            f"{name}: its series is {_size(abs(value), error, 'min')} {side}{when}, at all frequencies "
-            f"alike: check the clock or {daylight} of its logger"
-        )
-    elif fault.what == "offset" and when:
-        text = (
-            f"{name}: it reads {_size(abs(value), error, unit)} too {_side(value)}{when}: check what was "
-            "changed at the sensor or its logger then"
-        )
-    elif fault.what == "offset":
-        text = (
-            f"{name}: it reads {_size(abs(value), error, unit)} too {_side(value)} at all times, more than "
-            "its stated uncertainty allows: check its calibration"
-        )
-    elif fault.what in ("gain", "scale"):
-        value, error, of = 100.0 * value, 100.0 * error, "%"
-        about = "" if fault.what == "gain" else " about its mean"
-        text = (
-            f"{name}: it reads {_size(abs(value), error, '%')} too {_side(value)}{about}: check the gain and "
-            "the unit of its column"
-        )
-    elif fault.what == "drift":
-        text = (
-            f"{name}: it drifts by {_size(abs(value), error, unit)} {'up' if value > 0 else 'down'} over the "
-            "record: check its calibration before and after"
-        )
-    else:
-        value, error, of = 100.0 * value, 100.0 * error, "%"
-        text = (
-            f"{name}: its series contains {_size(value, error, '%')} of {fault.neighbour}: check the place "
-            "and the depth of the sensor"
-        )
-    return Cause(
-        "data", fault.what, subject, f"{text}.{_evidence(p, share)}", value, error, of, p, share,  # type: ignore[arg-type]
-        fault.deviance,
-    )  # fmt: skip
-
-
-def of_noise(excess: Sequence[tuple[str, float, float, str]], share: float) -> Cause:
-    """White noise above the stated uncertainty."""
+def of_noise(excess: Sequence[tuple[str, float, float, str]]) -> Cause:
+    """White noise above the stated uncertainty: name, size, its standard error and unit of each sensor."""
     shown = ", ".join(f"{name} {sd:.2g} {unit.replace('degC', 'K')}" for name, sd, _, unit in excess)
     _, sd, error, unit = max(excess, key=lambda one: one[1])
     text = (
         f"White noise above the stated uncertainty: {shown}. It is independent from sample to sample: no "
-        "model takes it away. State it as the uncertainty, or use means over longer intervals. It is "
-        f"{100.0 * share:.0f} % of the remaining sum of squares."
+        "model takes it away. State it as the repeatability, or use means over longer intervals."
     )
-    return Cause(
-        "data", "noise", tuple(one[0] for one in excess), text, sd, error, unit.replace("degC", "K"),
-        0.005, share,
-    )  # fmt: skip
+    return Cause("data", "noise", tuple(one[0] for one in excess), text, sd, error, unit.replace("degC", "K"))
 
 
-def of_parameter(
-    model: Model,
-    path: str,
-    vector: Array,
-    change: tuple[float, float, bool],
-    p: float,
-    share: float,
-    gain: float,
-    same: Sequence[str],
-) -> Cause:
-    """Another value of a parameter that was not calibrated."""
-    parameter = model.simulation.building.parameter(path)
-    low, high = model.range[path]
-    now = model.simulation.value_in(vector, path)
-    value, error = now + change[0] * (high - low), change[1] * (high - low)
-    unit = "" if parameter.unit == "-" else f" {parameter.unit}"
-    if change[2]:
-        found = f"{value:.4g}{unit}, the end of its range,"
+def of_finding(setup: Setup, found: Finding) -> Cause:
+    """A cause that the residuals name, or the candidates that they cannot tell apart."""
+    one, since = found.candidate, _since(setup, found.candidate.start)
+    statement = _statement(setup, found, since)
+    evidence = (
+        f"In records without any cause something explains as much in {_percent(found.p)} of cases (p "
+        f"{found.p:.2g})"
+    )
+    if found.told:
+        text = (
+            f"{statement}. {evidence}; that it is this and no other candidate has a probability of "
+            f"{_percent(found.certainty)}."
+        )
     else:
-        reach = _NORMAL_95 * error
-        shown = with_interval(value, value - reach, value + reach)
-        found = f"{shown[0]}{unit} (95 %: {shown[1]} to {shown[2]})"
-    part = _law(path)
-    what = f"{part}: the law or its coefficient {path.removeprefix(part + '.')}" if part else path
-    text = f"{what}: {found} instead of {now:.4g}{unit} explains the measurements better"
-    if same:
-        text += f"; {', '.join(same)} cannot be distinguished from it"
+        others = "; ".join(_short(setup, other) for other in found.others)
+        if one.group != "data":
+            others = "; ".join(
+                filter(None, (others, "an error of the model that is not among the candidates"))
+            )
+        text = (
+            f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. "
+            f"{evidence}. The most probable of them, with {_percent(found.certainty)}, is: {statement}. "
+            f"It may as well be: {others or 'none of the candidates'}."
+        )
     return Cause(
-        "form" if part else "parameter", "form" if part else "parameter",
-        (part, path) if part else (path,), f"{text}.{_evidence(p, share)}", value, error, parameter.unit,
-        p, share, gain, tuple(same),
+        one.group, one.what, one.subject, text, found.value, found.error, one.unit, found.p, found.certainty,
+        found.log_bayes_factor, found.told, tuple(_short(setup, other) for other in found.others),
     )  # fmt: skip
 
 
-def of_form(part: str, kind: str, p: float, share: float, gain: float, same: Sequence[str]) -> Cause:
-    """Another form of a law."""
-    text = f"{part}: the model '{kind}' explains the measurements better than the present one"
-    if same:
-        text += f"; so do {', '.join(same)}"
-    return Cause(
-        "form", "form", (part,), f"{text}.{_evidence(p, share)}", unit=kind, p=p, share=share, deviance=gain,
-        same=tuple(same),
-    )  # fmt: skip
+def summary(found: Diagnosis) -> list[str]:
+    """What the diagnosis says as a whole: nothing significant, or that the days are no longer blind."""
+    tested = [cause for cause in found.causes if math.isfinite(cause.p)]
+    if tested:
+        return [NOT_BLIND]
+    if not math.isfinite(found.p):
+        return []
+    return [
+        f"No cause is named: of {found.candidates} candidates (sensors, inputs, model) the best one explains "
+        f"no more than is usual in records without any cause (p {found.p:.2g})."
+    ]
 
 
-def _law(path: str) -> str:
-    """The part of a building that is a law and has this coefficient; empty for any other number."""
-    for law in _LAWS:
-        at = path.find(law)
-        if at >= 0 and path[at + len(law) : at + len(law) + 1] == ".":
-            return path[: at + len(law)]
-    return ""
+def _statement(setup: Setup, found: Finding, since: str) -> str:
+    """What is wrong if the candidate is the cause, with its size."""
+    one, size = found.candidate, _size(found)
+    what, subject = one.what, " and ".join(one.subject)
+    if one.group == "data":
+        return (
+            f"{_of_sensor(setup, found, since)}: {_CHECKS[what]}"
+            if what in _CHECKS
+            else _of_sensor(setup, found, since)
+        )
+    if one.group == "input":
+        errors = {
+            "gain": f"reads {size} too {_side(found.value)}",
+            "offset": f"reads {size} too {_side(found.value)}",
+            "clock": f"is {size} {'late' if found.value > 0.0 else 'early'}",
+        }
+        return f"Input {subject}: the measured input {errors[what]}: check the instrument and its mounting"
+    if one.group == "parameter":
+        value = with_uncertainty(found.value, found.error)
+        return (
+            f"{subject}: a value of {value} {one.unit}".rstrip()
+            + ", outside of what its prior allows, explains "
+            "the measurements better: check the number, or what the model lacks beside it"
+        )
+    if one.group == "path":
+        side = "missing" if found.value > 0.0 else "too much"
+        return f"Zone {subject}: {side} {one.detail}, about {size}"
+    return f"{subject}: the law '{one.detail}' explains the measurements better than the present one"
 
 
-def _evidence(p: float, share: float) -> str:
-    shown = "below 0.001" if p < 0.001 else f"{p:.3f}"
-    percent = 100.0 * share
-    if percent >= 0.5:
-        return f" It takes away {percent:.0f} % of the remaining sum of squares (p {shown})."
-    return (
-        " It improves single sensors; the remaining sum of squares over all falls by less than 1 % "
-        f"(p {shown})."
+def _of_sensor(setup: Setup, found: Finding, since: str) -> str:
+    one, size, name = found.candidate, _size(found), found.candidate.subject[0]
+    match one.what:
+        case "swapped" | "swap_step":
+            columns = [", ".join(setup.plan.sensors[sensor].columns) for sensor in one.subject]
+            return (
+                f"{name} and {one.subject[1]}: the columns {columns[0]} and {columns[1]} are exchanged{since}"
+            )
+        case "clock" | "clock_step":
+            return f"{name}: its series is {size} {'late' if found.value > 0.0 else 'early'}{since}"
+        case "offset" | "step":
+            return f"{name}: it reads {size} too {_side(found.value)}{since or ' at all times'}"
+        case "gain":
+            return f"{name}: it reads {size} too {_side(found.value)}"
+        case "scale":
+            return f"{name}: it reads {size} too {_side(found.value)} about its mean"
+        case "drift":
+            return f"{name}: it drifts by {size} {'up' if found.value > 0.0 else 'down'} over the record"
+        case _:
+            return f"{name}: its series contains {size} of {one.detail.removeprefix('part of ')}"
+
+
+def _short(setup: Setup, one: Candidate) -> str:
+    """A candidate in few words."""
+    return f"{' and '.join(one.subject)}: {GROUPS[one.group]}, {one.detail or WORDS[one.what]}" + _since(
+        setup, one.start
     )
 
 
-def _when(setup: Setup, rows: tuple[int, int] | None, group: int) -> str:
-    """From when on, or until when; empty for the whole record."""
-    if rows is None:
+def _since(setup: Setup, start: float) -> str:
+    """From when on; empty for the whole record."""
+    if not math.isfinite(start):
         return ""
     times = setup.observation.times
     zone = pd.DatetimeIndex(setup.measurements.data.index).tz
-    local = times if times.tz is None else times.tz_convert(zone)
-    if rows[0] == 0:
-        return f" until {local[min(rows[1] * group, len(local) - 1)]:%Y-%m-%d %H:%M}"
-    return f" from {local[rows[0] * group]:%Y-%m-%d %H:%M} on"
+    local = (times if times.tz is None else times.tz_convert(zone)).tz_localize(None)
+    return f" from about {local[0].normalize() + pd.Timedelta(hours=start):%Y-%m-%d %H:%M} on"
 
 
-def _size(value: float, error: float, unit: str) -> str:
-    digits = 0 if value == 0.0 else max(0, 1 - math.floor(math.log10(value)))
-    spread = f" ± {error:.{digits}f}" if math.isfinite(error) and error > 0.0 else ""
-    return f"{value:.{digits}f}{spread} {unit}"
+def _size(found: Finding) -> str:
+    value = with_uncertainty(abs(found.value), found.error)
+    error = with_uncertainty(found.error, found.error) if found.error > 0.0 else ""
+    return f"{value}{f' ± {error}' if error else ''} {found.candidate.unit}".rstrip()
+
+
+def _percent(share: float) -> str:
+    """A probability in percent that is never rounded to certainty."""
+    percent = 100.0 * share
+    if percent < 0.1:
+        return f"{percent:.2g} %"
+    return f"{math.floor(percent) if percent >= 10.0 else round(percent, 1):g} %"
 
 
 def _side(value: float) -> str:

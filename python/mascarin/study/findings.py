@@ -17,17 +17,18 @@ if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.joint_posterior import JointPosterior
     from mascarin.calibration.posterior_checks import Contradiction
+    from mascarin.diagnosis.error_sources import ErrorSources
+    from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.study.derived_quantities import DerivedQuantity
     from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.tables.quality import Stretch
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
-    from mascarin.validation.error_sources import ErrorSources
-    from mascarin.validation.hypotheses import Diagnosis
     from mascarin.validation.residuals import ResidualAnalysis
 
     Array = npt.NDArray[np.float64]
@@ -222,6 +223,8 @@ class Findings:
         Forms of the model with their weights, where errors of sensors and model are estimated.
     contradictions : list of Contradiction
         By what the calibrated model contradicts its own data or what is known; read them first.
+    derived : list of DerivedQuantity
+        Heat loss, capacity, time constant and U values of the calibrated building, with intervals.
     """
 
     setup: Setup
@@ -243,6 +246,7 @@ class Findings:
     seconds: float = field(default=0.0)
     combination: Combination | None = None
     contradictions: list[Contradiction] = field(default_factory=list)
+    derived: list[DerivedQuantity] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:

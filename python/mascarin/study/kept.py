@@ -41,6 +41,8 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.problem": ("FitParameter",),
     "mascarin.calibration.result": ("Calibration", "Minimum"),
     "mascarin.calibration.uncertainty": ("Uncertainty",),
+    "mascarin.diagnosis.error_sources": ("Correction", "ErrorSources"),
+    "mascarin.diagnosis.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.sensitivity.base.factors": ("Factor",),
     "mascarin.sensitivity.base.result": ("Sensitivity",),
     "mascarin.sensitivity.salib.collection": ("MorrisSensitivity",),
@@ -48,11 +50,10 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.sensitivity.spectral.result": ("SpectralSensitivity",),
     "mascarin.simulation.checks.energy": ("EnergyLedger",),
     "mascarin.simulation.single_precision": ("Difference",),
+    "mascarin.study.derived_quantities": ("DerivedQuantity",),
     "mascarin.study.error_model": ("Unknown", "Unknowns"),
     "mascarin.study.findings": ("PredictionIntervals",),
-    "mascarin.validation.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.validation.days": ("DayChoice", "DriverRange"),
-    "mascarin.validation.error_sources": ("Correction", "ErrorSources"),
     "mascarin.validation.residuals": ("DailyCycle", "DriverCorrelation", "ResidualAnalysis"),
 }
 #: Runs of which the series are kept together.

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.diagnosis.error_sources import ErrorSources, find_error_sources
 from mascarin.progress import reporting
 from mascarin.study.calibration_step import independent_weight
 from mascarin.study.parameter_effects import Effects
-from mascarin.validation.error_sources import ErrorSources, find_error_sources
 from mascarin.validation.residuals import ResidualAnalysis, analyze_residuals
 
 if TYPE_CHECKING:

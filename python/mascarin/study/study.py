@@ -17,7 +17,9 @@ from mascarin.study import opening
 from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
 from mascarin.study.days_step import days
+from mascarin.study.derived_quantities import derived_quantities
 from mascarin.study.diagnosis_step import diagnosis
+from mascarin.study.diagnosis_words import summary
 from mascarin.study.document.errors import error_words
 from mascarin.study.kept import NAME, kept
 from mascarin.study.model_runs import ModelRuns, judged, nominal
@@ -29,7 +31,6 @@ from mascarin.study.setup import Setup
 from mascarin.study.storage import Workspace
 from mascarin.study.writing import study_text, write_study
 from mascarin.validation.criteria import judge
-from mascarin.validation.diagnosis import diagnose
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -306,8 +307,8 @@ class Study(Setup):
             sources = kept(workspace, ("sources", at), lambda: error_sources(self, fitted, fit, progress))
         causes = kept(
             workspace,
-            ("diagnosis", at, missed),
-            lambda: diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress),
+            ("diagnosis", at),
+            lambda: diagnosis(self, fitted, fit, workspace, combination=found.combination, progress=progress),
         )
         slope = slopes(self, fitted, fit)
         return StudyResults(
@@ -329,12 +330,13 @@ class Study(Setup):
                 *too_few(self),
                 *error_words(self, found.combination),
                 *interval_words(self, intervals),
-                *diagnose(residuals.values()),
+                *summary(causes),
             ],
             quality=self.quality,
             seconds=time.monotonic() - began,
             combination=found.combination,
             contradictions=found.contradictions,
+            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, found.combination)),
         )
 
     def __repr__(self) -> str:

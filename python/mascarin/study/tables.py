@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.calibration import Calibration
+    from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.study.findings import Findings, ModelRun
     from mascarin.study.setup import Setup
     from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
-    from mascarin.validation.hypotheses import Diagnosis
 
 
 def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
@@ -118,7 +118,8 @@ def causes_table(found: Diagnosis) -> pd.DataFrame:
     """One row for each cause, in their order."""
     import pandas as pd
 
-    columns = ["group", "what", "subject", "value", "error", "unit", "p", "share", "deviance", "same", "text"]
+    columns = ["group", "what", "subject", "value", "error", "unit", "p", "certainty", "log_bayes_factor"]
+    columns += ["told", "same", "text"]
     rows = [
         {**cause.to_dict(), "subject": ", ".join(cause.subject), "same": ", ".join(cause.same)}
         for cause in found.causes

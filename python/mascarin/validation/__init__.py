@@ -1,6 +1,6 @@
 """Validation: comparison of simulations with measurements.
 
-`metrics` compares two series, `judge` applies limits, `analyze_residuals` and `diagnose` examine the
+`metrics` compares two series, `judge` applies limits, `analyze_residuals` examines
 residuals. All of them work on pandas series or arrays, without a study. The public names are listed in
 ``__init__.pyi``; each is imported when it is first used.
 """

@@ -8,12 +8,6 @@ from .criteria import judge as judge
 from .criteria import parse_criteria as parse_criteria
 from .days import DayChoice as DayChoice
 from .days import choose_days as choose_days
-from .diagnosis import diagnose as diagnose
-from .error_sources import ErrorSources as ErrorSources
-from .error_sources import explain_missed_aims as explain_missed_aims
-from .error_sources import find_error_sources as find_error_sources
-from .hypotheses import Cause as Cause
-from .hypotheses import Diagnosis as Diagnosis
 from .observation import Observation as Observation
 from .observation import observe as observe
 from .residuals import DriverCorrelation as DriverCorrelation

@@ -1,8 +1,8 @@
 """Analysis of residuals: what the difference of simulation and measurement shows about the model.
 
 The residuals of an adequate model are white noise: not autocorrelated, without a daily pattern, not
-correlated with the sun or the wind. `analyze_residuals` computes this for one sensor; `diagnose` puts it into
-sentences. Residuals are *simulated minus measured*.
+correlated with the sun or the wind. `analyze_residuals` computes this for one sensor; causes are told by
+`mascarin.diagnosis`. Residuals are *simulated minus measured*.
 
 References
 ----------

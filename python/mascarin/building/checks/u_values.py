@@ -106,16 +106,38 @@ def described_u_value(building: Description, surface: Surface) -> float:
     resistance = sum(
         layer_resistance(building.materials[layer.material], layer.thickness) for layer in layers
     )
-    tilt = float(surface.tilt or 0.0)
-    for side in surface.sides:
-        if side.adiabatic:
-            return 0.0
-        if side.convection is not None:
-            radiates = not _without_radiation(building, side)
-            emissivity = float(side.emissivity or 0.0) if radiates else 0.0
-            coefficient = _coefficient(side, tilt) * float(side.area_factor or 1.0)
-            resistance += _inverse(coefficient + emissivity * _black(side))
-    return _inverse(resistance)
+    return _inverse(resistance + sum(described_films(building, surface)))
+
+
+def described_films(building: Description, surface: Surface) -> tuple[float, float]:
+    """Surface resistances outside and inside by the coefficients that are described.
+
+    As `described_u_value`; infinite for an adiabatic side, 0 for one without a coefficient.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    surface : Surface
+        One of its surfaces.
+
+    Returns
+    -------
+    tuple of float
+        [m2 K/W]
+    """
+    outside, inside = (_film(building, side, float(surface.tilt or 0.0)) for side in surface.sides)
+    return outside, inside
+
+
+def _film(building: Description, side: Side, tilt: float) -> float:
+    if side.adiabatic:
+        return math.inf
+    if side.convection is None:
+        return 0.0
+    emissivity = 0.0 if _without_radiation(building, side) else float(side.emissivity or 0.0)
+    coefficient = _coefficient(side, tilt) * float(side.area_factor or 1.0)
+    return _inverse(coefficient + emissivity * _black(side))
 
 
 def described_window_u_value(building: Description, window: Window) -> float:

@@ -6,7 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from mascarin.diagnosis.error_sources import explain_missed_aims
+from mascarin.diagnosis.hypotheses import WORDS
 from mascarin.study.days_step import day_words, days_table
+from mascarin.study.derived_quantities import derived_table
 from mascarin.study.document.coefficients import coefficients
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.errors import error_entries, error_tables
@@ -15,13 +18,11 @@ from mascarin.study.document.header import header
 from mascarin.study.document.phase_change import phase_change
 from mascarin.study.document.sensitivity import importance
 from mascarin.study.prediction_intervals import interval_table
-from mascarin.validation.error_sources import explain_missed_aims
-from mascarin.validation.hypotheses import WORDS
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.study.findings import Findings
-    from mascarin.validation.hypotheses import Diagnosis
 
 
 #: Title of the notes on the calibration.
@@ -64,7 +65,9 @@ def document(findings: Findings) -> dict[str, Any]:
         "tables": [
             interval_table(study, findings.prediction_intervals),
             *error_tables(study, findings.combination),
+            *([derived_table(findings.derived)] if findings.derived else []),
         ],
+        "derived": [one.to_dict() for one in findings.derived],
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
         },
@@ -105,7 +108,8 @@ def causes_table(found: Diagnosis) -> dict[str, Any]:
             cause.value if math.isfinite(cause.value) else None,
             cause.error if math.isfinite(cause.error) else None,
             cause.unit or "-",
-            100.0 * max(0.0, cause.share) if math.isfinite(cause.share) else None,
+            None if math.isnan(cause.p) else "yes" if cause.told else "no",
+            100.0 * cause.certainty if math.isfinite(cause.certainty) else None,
             cause.p if math.isfinite(cause.p) else None,
         ]
         for number, cause in enumerate(found.causes, start=1)
@@ -113,11 +117,23 @@ def causes_table(found: Diagnosis) -> dict[str, Any]:
     return {
         "title": CAUSES,
         "caption": (
-            "Faults of data are named before parameters and forms of the model. Each row takes away its part "
-            "of the sum of squares that is left by the rows above, with the calibrated parameters adjusted "
-            "again. p is the probability of chance. The remarks say what to check."
+            "Faults of sensors and of measured inputs, values outside of their ranges, laws and missing heat "
+            "flows compete on equal terms, given the errors of the model. p: part of simulated records "
+            "without any cause in which some candidate explains as much. Certainty: probability that it is "
+            "this one, if it is one of the candidates. Where it is not told, the remarks list what else it "
+            "may be."
         ),
-        "columns": ["no.", "kind", "where", "estimate", "standard error", "unit", "taken away [%]", "p"],
+        "columns": [
+            "no.",
+            "kind",
+            "where",
+            "estimate",
+            "standard error",
+            "unit",
+            "told",
+            "certainty [%]",
+            "p",
+        ],
         "rows": rows,
         "uncertainty": {"estimate": "standard error"},
         "significant": ["p"],

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mascarin.diagnosis.error_sources import ErrorSources, explain_missed_aims, find_error_sources
 from mascarin.errors import InputError
 from mascarin.validation.criteria import Verdict
-from mascarin.validation.error_sources import ErrorSources, explain_missed_aims, find_error_sources
 
 Floats = NDArray[np.float64]
 

@@ -1,0 +1,164 @@
+"""Heat loss coefficient of a described building by destination, effective heat capacity, time constant.
+
+The zones have one temperature and all else that they lose heat to another. Surface resistances are those that
+are described (see `mascarin.building.u_values`): laws by wind at 4 m/s, correlations as in ISO 6946.
+Infiltration is taken at the same wind and a temperature difference of 10 K.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from mascarin.building.material import Resistance
+from mascarin.building.phases import phase
+from mascarin.building.u_values import (
+    described_films,
+    described_u_value,
+    described_window_u_value,
+    layer_resistance,
+)
+from mascarin.physics import AIR_SPECIFIC_HEAT, standard_density
+
+if TYPE_CHECKING:
+    from mascarin.building.description import Description
+    from mascarin.building.surface import Surface
+
+#: Wind [m/s] and temperature difference [K] at which infiltration is taken.
+WIND: Final = 4.0
+DIFFERENCE: Final = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class HeatLoss:
+    """Steady heat loss and storage of all zones together.
+
+    Attributes
+    ----------
+    destinations : dict of str to float
+        Heat per degree to ``outdoors`` (through surfaces), ``ground``, ``measured`` temperatures, by
+        ``infiltration`` and through ``thermal bridges``. [W/K]
+    u_values : dict of str to float
+        Of each surface that loses heat. [W/(m2 K)]
+    capacity : float
+        Heat that is stored for a degree of the zones, in the steady state. Latent heat is left out. [Wh/K]
+
+    Examples
+    --------
+    >>> HeatLoss({"outdoors": 80.0, "infiltration": 20.0}, {}, 5000.0).time_constant
+    50.0
+    """
+
+    destinations: dict[str, float]
+    u_values: dict[str, float]
+    capacity: float
+
+    @property
+    def total(self) -> float:
+        """Heat loss coefficient. [W/K]"""
+        return sum(self.destinations.values())
+
+    @property
+    def time_constant(self) -> float:
+        """Capacity over the heat loss coefficient; infinite without any loss. [h]"""
+        return self.capacity / self.total if self.total > 0.0 else float("inf")
+
+
+def heat_loss(building: Description) -> HeatLoss:
+    """Compute heat loss coefficient and effective heat capacity from a description.
+
+    Parameters
+    ----------
+    building : Building
+        The building. Pressure tests, ventilation and openings are left out: they depend on the weather.
+
+    Returns
+    -------
+    HeatLoss
+
+    References
+    ----------
+    ISO 13789:2017 (heat transfer coefficients of transmission and ventilation).
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> found = heat_loss(box())
+    >>> sorted(found.destinations), round(found.u_values["facade"], 2)
+    (['infiltration', 'outdoors'], 3.47)
+    """
+    destinations: dict[str, float] = defaultdict(float)
+    u_values: dict[str, float] = {}
+    capacity = 0.0
+    for name, surface in building.surfaces.items():
+        windows = building.connections.windows_in(name)
+        glazed = sum(float(building.windows[window].area or 0.0) for window in windows)
+        opaque = max(float(surface.area or 0.0) - glazed, 0.0)
+        capacity += opaque * _areal_capacity(building, surface) / 3600.0
+        place = _destination(surface)
+        if place is None:
+            continue
+        u_values[name] = described_u_value(building, surface)
+        destinations[place] += u_values[name] * opaque
+        for window in windows:
+            destinations[place] += _window(building, window)
+    air = _air(building)
+    for zone in building.zones.values():
+        leak = zone.infiltration
+        rate = float(leak.constant) + float(leak.wind) * WIND + float(leak.temperature) * DIFFERENCE
+        volume = float(zone.volume or 0.0)
+        destinations["infiltration"] += air * volume * rate / 3600.0
+        capacity += air * volume * float(zone.capacity_factor) / 3600.0
+        for bridge in zone.thermal_bridges.values():
+            if bridge.zone is None:
+                destinations["thermal bridges"] += bridge.conductance
+    return HeatLoss({k: v for k, v in destinations.items() if v > 0.0}, u_values, capacity)
+
+
+def _window(building: Description, name: str) -> float:
+    """Heat per degree through a window with its frame. [W/K]"""
+    window = building.windows[name]
+    glass, area = described_window_u_value(building, window), float(window.area or 0.0)
+    if window.frame is None:
+        return glass * area
+    share = float(window.frame.fraction)
+    return ((1.0 - share) * glass + share * float(window.frame.u_value)) * area
+
+
+def _destination(surface: Surface) -> str | None:
+    """What a surface loses heat to; None within the zones and where a side is adiabatic."""
+    if surface.outside.zone is not None or surface.outside.adiabatic or surface.inside.adiabatic:
+        return None
+    faces = surface.outside.faces
+    return faces if faces in ("outdoors", "ground") else "measured"
+
+
+def _air(building: Description) -> float:
+    """Heat capacity of air. [J/(m3 K)]"""
+    site = building.site
+    density = site.air_density if site.air_density is not None else standard_density(float(site.altitude))
+    heat = site.air_specific_heat if site.air_specific_heat is not None else AIR_SPECIFIC_HEAT
+    return float(density) * float(heat)
+
+
+def _areal_capacity(building: Description, surface: Surface) -> float:
+    """Heat that a surface stores for a degree of the zones. [J/(m2 K)]
+
+    In the steady state the temperature rises from outdoors to the zone in proportion to the resistance that
+    is passed; a surface that loses no heat has that of the zone.
+    """
+    layers = building.constructions[surface.construction].layers
+    inner = [layer_resistance(building.materials[layer.material], layer.thickness) for layer in layers]
+    lost = _destination(surface) is not None
+    passed, film = described_films(building, surface) if lost else (0.0, 0.0)
+    total = passed + sum(inner) + film if lost else 0.0
+    stored = 0.0
+    for layer, resistance in zip(layers, inner, strict=True):
+        material = building.materials[layer.material]
+        share = (passed + 0.5 * resistance) / total if total > 0.0 else 1.0
+        passed += resistance
+        if not isinstance(material, Resistance):
+            heat = phase(material.density, "solid") * phase(material.specific_heat, "solid")
+            stored += share * heat * float(layer.thickness or 0.0)
+    return stored
