@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import json
 import pickle
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import mascarin as mc
 from crossing_entrances import Bench, enter
 from crossing_features import description
-from mascarin import cli
 from mascarin.commands.exit_code import exit_code
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.store import Store
@@ -98,43 +95,6 @@ def test_a_finished_sweep_that_is_read_again_has_the_kinds(tmp_path: Path) -> No
             Store(tmp_path / "store")
     with pytest.raises(ValueError, match="odd"):
         with_kinds(["text"], ["odd"])
-
-
-def _light_room(tmp_path: Path) -> Path:
-    """A room of plywood, 3 mm, without a window; outdoors it becomes 20 K colder within no time."""
-    wood = {"conductivity": 0.13, "density": 500, "specific_heat": 1600}
-    layer = f"constructions.{next(iter(box().constructions))}.layers"
-    name = next(iter(box().materials))
-    sheet = box().replace({f"materials.{name}": wood, layer: [{"material": name, "thickness": 0.003}]})
-    sheet.to_yaml(tmp_path / "room.yaml")
-    return tmp_path / "room.yaml"
-
-
-def test_a_step_beyond_its_causes_is_said_with_the_step_that_removes_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Outdoors 20 degC, from the sixth hour on 0 degC, dark: in steps of 1 h light walls go below."""
-    room, logger = _light_room(tmp_path), tmp_path / "jump.csv"
-    times = np.arange(24 * 60)
-    rows = [f"2001-01-01 {k // 60:02d}:{k % 60:02d},{20.0 if k < 360 else 0.0},60,1,0,0" for k in times]
-    logger.write_text("time,air,humidity,wind,global,diffuse\n" + "\n".join(rows) + "\n")
-    columns = ["wind_direction=none", "air_temperature=air", "relative_humidity=humidity", "wind_speed=wind",
-               "global_horizontal=global", "diffuse_horizontal=diffuse"]  # fmt: skip
-    words = ["run", str(room), "--weather", str(logger), "--timezone", "UTC", "--initial", "20"]
-    words += [word for column in columns for word in ("--column", column)]
-
-    def told(step: str, *more: str) -> tuple[int, str]:
-        return cli.main([*words, "--step", step, *more]), capsys.readouterr().err
-
-    code, said = told("1h")
-    assert code == 1, said
-    line = next(line for line in said.splitlines() if "lies below all that acts on it" in line)
-    better = re.search(r"Take a step of ([\d.]+) min, or the scheme backward-euler", line)
-    assert better is not None, line
-    for step, more in ((f"{better[1]}min", ()), ("1h", ("--scheme", "backward-euler"))):
-        code, said = told(step, *more)
-        assert "all that acts on it" not in said
-        assert code == 0, said
 
 
 def test_the_step_that_is_named_has_no_overshoot() -> None:

@@ -85,7 +85,7 @@ impl Running {
         self.with_dependent(|_, run| run.closure())
     }
 
-    /// The first temperature that was outside of its causes by more than is allowed.
+    /// The first temperature that was outside of its causes by more than the scheme's overshoot.
     pub(crate) fn outlier(&self) -> Option<Outlier> {
         self.with_dependent(|_, run| run.outlier().cloned())
     }

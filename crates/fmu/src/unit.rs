@@ -430,7 +430,7 @@ impl Unit {
             format!("{} s simulated; relative residual of the energy balance: {closure:.1e}", self.time());
         match self.running.as_ref().and_then(Running::outlier) {
             None => balance,
-            Some(Outlier { step, place, temperature, bound, .. }) => format!(
+            Some(Outlier { step, place, temperature, bound }) => format!(
                 "{balance}; warning: {place} had {temperature:.1} degC in step {step}, beyond everything that acted on it \
                  ({bound:.1} degC) and the overshoot of the scheme: export the unit with a shorter --step"
             ),

@@ -243,7 +243,7 @@ pub fn describe_run<'py>(
     let outlier = run
         .outlier
         .as_ref()
-        .map(|at: &Outlier| (at.step, at.place.as_str(), at.temperature, at.bound, at.range));
+        .map(|Outlier { step, place, temperature, bound }| (*step, place.as_str(), *temperature, *bound));
     result.set_item("outlier", outlier)?;
     let out_of_range: Vec<_> = run.out_of_range.iter().map(law_out_of_range).collect();
     result.set_item("out_of_range", out_of_range)?;

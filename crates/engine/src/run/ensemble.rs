@@ -48,7 +48,7 @@ pub struct Ensemble {
     pub records: Vec<f64>,
     /// Relative residual of the energy balance of each member, or of its vapour balance if that is larger [-]; NaN for one that failed.
     pub closure: Vec<f64>,
-    /// How far temperatures of each member were outside of their causes by more than is allowed [K]; NaN for one that failed.
+    /// How far temperatures of each member were outside of their causes by more than the scheme's overshoot [K]; NaN for one that failed.
     /// See [`physical_limits`](crate::run::physical_limits).
     pub outside: Vec<f64>,
     /// Members that failed, with the reason.

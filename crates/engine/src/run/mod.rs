@@ -12,7 +12,6 @@ pub mod physical_limits;
 pub mod ratings;
 pub mod simulate;
 pub mod simulate_in_blocks;
-mod step_causes;
 pub mod stepwise;
 pub mod validity;
 mod warm_up;

@@ -8,19 +8,16 @@
 //! have acted on the building since (outdoor air, sky, imposed temperatures, supplied air). Sun, gains and heating raise the upper bound to
 //! what the building has reached while they act; cooling lowers the lower bound likewise. In exact arithmetic conduction, convection,
 //! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see `OVERSHOOT`.
-//! Each step is judged by what acts in it alone, too: `run/step_causes.rs`.
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Imposed};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::channel;
-use crate::number::real::{ByPrecision, Chunk, ChunkTask, Mask, Real};
-use crate::number::simd::WIDTH;
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::constants::KELVIN;
 use crate::physics::solar::greatest_irradiance;
 use crate::run::action::Action;
-use crate::run::step_causes::StepCauses;
 use crate::step::scheme::Scheme;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -54,8 +51,6 @@ pub struct Outlier {
     pub temperature: f64,
     /// The bound that it lies beyond [degC], without overshoot.
     pub bound: f64,
-    /// Range of what acts [K].
-    pub range: f64,
 }
 
 /// Follows a run and judges each of its steps.
@@ -67,9 +62,7 @@ pub(crate) struct PhysicalLimits<S: Real> {
     supplied: S::Mask,
     /// Part of the range of the causes that the scheme may overshoot [-].
     overshoot: f64,
-    /// Judges each step by what acts in it.
-    steps: StepCauses<S>,
-    /// How far temperatures were outside of their causes by more than is allowed [K].
+    /// How far temperatures were outside of their causes by more than the scheme's overshoot [K].
     pub(crate) excess: S,
     /// Where that was, in a run of one member.
     pub(crate) outlier: Option<Outlier>,
@@ -79,10 +72,8 @@ impl<S: Real> PhysicalLimits<S> {
     /// Begins with the state that a run starts from.
     pub(crate) fn new(state: &State<S>, scheme: Scheme) -> Self {
         let overshoot = if scheme.weights().len() > 1 { OVERSHOOT } else { 0.0 };
-        let range = extremes(state);
         Self {
-            bounds: range,
-            steps: StepCauses::new(range, scheme),
+            bounds: [lowest(state), highest(state)],
             supplied: S::Mask::splat(true),
             overshoot,
             excess: S::zero(),
@@ -103,7 +94,7 @@ impl<S: Real> PhysicalLimits<S> {
         rows: [&[f64]; 2],
         (action, step): (Action, usize),
     ) -> Result<(), EngineError> {
-        let ([coldest, hottest], row) = (extremes(state), rows[1]);
+        let (coldest, row) = (lowest(state), rows[1]);
         let mut impossible = coldest.lt(S::constant(-KELVIN));
         for &vapour in &state.vapour[..state.vapour.len().min(state.air.len())] {
             impossible = impossible | vapour.lt(S::constant(NO_VAPOUR.of::<S>()));
@@ -120,7 +111,7 @@ impl<S: Real> PhysicalLimits<S> {
             }
             stepper.give_up(impossible);
         }
-        self.compare_with_causes(stepper, state, rows, ([coldest, hottest], action, step));
+        self.compare_with_causes(stepper, state, rows, coldest, step);
         Ok(())
     }
 
@@ -131,33 +122,27 @@ impl<S: Real> PhysicalLimits<S> {
         stepper: &Stepper<'_, S>,
         state: &State<S>,
         rows: [&[f64]; 2],
-        ([coldest, hottest], action, step): ([S; 2], Action, usize),
+        coldest: S,
+        step: usize,
     ) {
         self.widen(stepper, rows);
         let [heated, cooled] = supplied(stepper, state);
-        let of_step = self.steps.judge(
-            stepper,
-            state,
-            rows,
-            ([coldest, hottest], [heated, cooled], action != Action::Balance),
-        );
         self.bounds[0] = S::select(cooled, self.bounds[0].min(coldest), self.bounds[0]);
         let slack = (self.bounds[1] - self.bounds[0]).scale(self.overshoot) + S::constant(ROUNDING.of::<S>());
         let mut excess = (self.bounds[0] - slack) - coldest;
         // What follows changes the lanes that are not heated only, so that a lane does not depend on the others.
         if (!heated).any() {
+            let hottest = highest(state);
             // The heat that was supplied in the step before is still on its way.
             let settling = self.supplied & !heated;
             self.bounds[1] = S::select(settling, self.bounds[1].max(hottest), self.bounds[1]);
             excess = S::select(heated, excess, excess.max(hottest - (self.bounds[1] + slack)));
         }
         self.supplied = heated;
-        let farthest = excess.max(of_step.excess);
-        if const { S::LANES == 1 } && farthest.lane(0) > self.excess.lane(0).max(0.0) {
-            let bounds = if excess.lane(0) < farthest.lane(0) { of_step.causes } else { self.bounds };
-            self.name_outlier(stepper.model.plan, state, bounds.map(|bound| bound.lane(0)), step);
+        if const { S::LANES == 1 } && excess.lane(0) > self.excess.lane(0).max(0.0) {
+            self.name_outlier(stepper.model.plan, state, step);
         }
-        self.excess = self.excess.max(farthest);
+        self.excess = self.excess.max(excess);
     }
 
     /// Widens the bounds by the temperatures around the building in the stages of the step.
@@ -200,12 +185,13 @@ impl<S: Real> PhysicalLimits<S> {
     /// Notes the temperature that is farthest outside of its causes so far.
     #[cold]
     #[inline(never)]
-    fn name_outlier(&mut self, plan: &Plan, state: &State<S>, [low, high]: [f64; 2], step: usize) {
+    fn name_outlier(&mut self, plan: &Plan, state: &State<S>, step: usize) {
+        let [low, high] = self.bounds.map(|bound| bound.lane(0));
         let (cold, coldest) = extreme(plan, state, |a, b| a < b);
         let (hot, hottest) = extreme(plan, state, |a, b| a > b);
         let (place, temperature, bound) =
             if low - coldest > hottest - high { (cold, coldest, low) } else { (hot, hottest, high) };
-        self.outlier = Some(Outlier { step, place, temperature, bound, range: high - low });
+        self.outlier = Some(Outlier { step, place, temperature, bound });
     }
 }
 
@@ -284,42 +270,14 @@ fn temperatures<S: Real>(state: &State<S>) -> impl Iterator<Item = S> {
     state.cells.iter().chain(state.surfaces.iter()).chain(&state.air).copied()
 }
 
-/// Lowest and highest temperature of a state [degC].
 #[inline(always)]
-fn extremes<S: Real>(state: &State<S>) -> [S; 2] {
-    S::vectorised(
-        #[inline(always)]
-        || S::in_chunks(Extremes([&state.cells, &state.surfaces, &state.air])),
-    )
+fn lowest<S: Real>(state: &State<S>) -> S {
+    temperatures(state).fold(S::constant(f64::INFINITY), S::min)
 }
 
-/// Lowest and highest of some numbers, those of a register at once.
-struct Extremes<'s, S>([&'s [S]; 3]);
-
-impl<S: Real> ChunkTask<S> for Extremes<'_, S> {
-    type Output = [S; 2];
-    #[inline(always)]
-    fn run<V: Chunk<S>>(self) -> [S; 2] {
-        let ends = [f64::INFINITY, f64::NEG_INFINITY].map(S::constant);
-        let ([mut low, mut high], mut registers) = (ends, ends.map(V::filled));
-        for part in self.0 {
-            let chunks = part.chunks_exact(S::CHUNK);
-            for &number in chunks.remainder() {
-                (low, high) = (low.min(number), high.max(number));
-            }
-            for chunk in chunks {
-                let numbers = V::load(chunk);
-                registers = [registers[0].min(numbers), registers[1].max(numbers)];
-            }
-        }
-        let mut places = [[S::zero(); WIDTH]; 2];
-        registers[0].store(&mut places[0]);
-        registers[1].store(&mut places[1]);
-        for (&least, &most) in places[0].iter().zip(&places[1]).take(S::CHUNK) {
-            (low, high) = (low.min(least), high.max(most));
-        }
-        [low, high]
-    }
+#[inline(always)]
+fn highest<S: Real>(state: &State<S>) -> S {
+    temperatures(state).fold(S::constant(f64::NEG_INFINITY), S::max)
 }
 
 /// Lanes where sun, gains or heating warm the building in the last stage of a step, and lanes where it is cooled.

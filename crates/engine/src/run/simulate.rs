@@ -35,7 +35,7 @@ pub struct Run<S: Real> {
     pub counters: Counters<S>,
     /// Lanes that failed: their numbers have no meaning.
     pub failed: S::Mask,
-    /// How far temperatures were outside of their causes by more than is allowed [K]; see
+    /// How far temperatures were outside of their causes by more than the scheme's overshoot [K]; see
     /// [`physical_limits`](crate::run::physical_limits).
     pub outside: S,
     /// Where that was first, in a run of one member.

@@ -101,7 +101,7 @@ impl<'a> StepByStep<'a> {
         values.extend(self.options.outputs.iter().map(|output| output.read(self.plan, &step, &self.state)));
     }
 
-    /// The first temperature that was outside of its causes by more than is allowed, if any; see
+    /// The first temperature that was outside of its causes by more than the scheme's overshoot, if any; see
     /// [`physical_limits`](crate::run::physical_limits).
     #[must_use]
     pub fn outlier(&self) -> Option<&Outlier> {

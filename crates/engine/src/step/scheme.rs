@@ -117,11 +117,6 @@ impl Scheme {
     pub fn weights(self) -> &'static [f64] {
         self.tableau().weights
     }
-
-    /// Times of its stages, as fractions of the step.
-    pub(crate) fn nodes(self) -> &'static [f64] {
-        self.tableau().nodes
-    }
 }
 
 #[cfg(test)]

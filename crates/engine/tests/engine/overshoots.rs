@@ -1,9 +1,9 @@
 //! Airs that SDIRK2 would carry beyond what acts on them: a window opened in the cold.
 
 use crate::common::conditioned::{ideal_load, number};
-use crate::common::{ALL_SCHEMES, Builder, facing, forcing, options, position, run, set, values};
+use crate::common::{ALL_SCHEMES, Builder, forcing, options, position, run, set, values};
 use mascarin_engine::derivatives::jacobian;
-use mascarin_engine::description::{AirPath, Description, Facing, Gain, Ventilation, ZoneLongwave};
+use mascarin_engine::description::{AirPath, Description, Gain, Ventilation, ZoneLongwave};
 use mascarin_engine::forcing::{Forcing, channel};
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::plan::Plan;
@@ -11,7 +11,6 @@ use mascarin_engine::run::ensemble::ensemble;
 use mascarin_engine::run::outputs::Output;
 use mascarin_engine::run::stepwise::StepByStep;
 use mascarin_engine::run::{Options, Run, simulate};
-use mascarin_engine::state::Initial;
 use mascarin_engine::{RunControl, Scheme};
 
 const STEP: f64 = 900.0;
@@ -155,62 +154,6 @@ fn packs_and_split_runs_have_the_same_bits() {
         second.step(&step(k)).unwrap();
         second.read(&mut values);
         assert_eq!(values, whole[(k + 1) * 4..(k + 2) * 4]);
-    }
-}
-
-/// A room between sheets of wood of 3 mm with a floor of concrete; outdoors it is at `before` [degC], and at `after` from the fifth hour on. Its
-/// walls follow what acts on them within two minutes.
-fn light_room([before, after]: [f64; 2], scheme: Scheme, step: f64) -> Run<f64> {
-    let mut b = Builder::new();
-    let zone = b.zone("room", 40.0, 0.5, ZoneLongwave::None);
-    let wood = b.solid("wood", 0.13, 500.0, 1600.0);
-    let concrete = b.solid("concrete", 1.6, 2300.0, 900.0);
-    let (sheet, slab) =
-        (b.construction("sheet", &[(wood, 0.003, 2)]), b.construction("slab", &[(concrete, 0.2, 8)]));
-    for (name, construction, plane) in [
-        ("walls", sheet, [40.0, 90.0, 0.0]),
-        ("roof", sheet, [20.0, 0.0, 0.0]),
-        ("floor", slab, [8.0, 180.0, 0.0]),
-    ] {
-        let (outer, inner) = (b.convection(15.0), b.convection(3.0));
-        let (mut outside, inside) = (b.outdoors(outer, 0.9, 0.0), b.inside(zone, inner, 0.9));
-        if name == "floor" {
-            outside = facing(Facing::Adiabatic, None);
-        }
-        b.surface(name, construction, plane, outside, inside);
-    }
-    let plan = Plan::new(b.describe()).unwrap();
-    let steps = (36_000.0 / step).round() as usize;
-    let rows = forcing(&plan, scheme, steps, step, |time, row| {
-        row[channel::AIR_TEMPERATURE] = if time > 14_400.0 { after } else { before };
-        row[channel::DEW_POINT] = row[channel::AIR_TEMPERATURE].min(0.0) - 5.0;
-    });
-    let mut options = options(scheme, step, vec![Output::AirTemperature { zone: 0 }]);
-    options.initial = Initial::Everywhere(before);
-    run(&plan, &rows, &options)
-}
-
-/// Outdoors it becomes 20 K colder, or warmer, at once: in steps of an hour the light walls go beyond the outdoor air, and the air of the room
-/// with them (at 15 min by more: a wall of 2 min makes 8 of its times then). That is found, at the step and with what acts there; in steps of 3 min,
-/// less than 2.41 of its times, and with backward Euler, there is nothing to find.
-#[test]
-fn light_walls_are_no_causes_of_their_air() {
-    for jump in [[20.0, 0.0], [0.0, 20.0]] {
-        for step in [3600.0, 900.0] {
-            let coarse = light_room(jump, Scheme::Sdirk2, step);
-            let outlier = coarse.outlier.clone().expect("a step that is too long is said");
-            assert_eq!(outlier.step, (14_400.0 / step) as usize);
-            let beyond = (outlier.temperature - outlier.bound) * (jump[1] - jump[0]).signum();
-            assert!((1.0..0.344 * 20.0).contains(&beyond), "{outlier:?}");
-            assert!((coarse.outside - (beyond - 0.5)).abs() < 1e-12, "{} and {beyond}", coarse.outside);
-            assert!((20.0..30.0).contains(&outlier.range), "{outlier:?}");
-            let monotone = light_room(jump, Scheme::BackwardEuler, step);
-            assert!(monotone.outlier.is_none(), "{:?}", monotone.outlier);
-        }
-        for scheme in ALL_SCHEMES {
-            let fine = light_room(jump, scheme, 180.0);
-            assert!(fine.outlier.is_none() && fine.outside <= 0.0, "{scheme:?}: {:?}", fine.outlier);
-        }
     }
 }
 

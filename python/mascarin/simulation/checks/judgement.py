@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: The longest step that is recommended, as a part of the step that was taken. [-]
 _SHORTER: Final = 0.25
 #: SDIRK2: its diagonal coefficient, the step over the time constant of a part up to which the part does not
-#: overshoot, and the largest overshoot of a part, over the jump that it follows; see docs/robustness.md. [-]
+#: overshoot, and the largest overshoot of a part, over the jump that it follows; see docs/engine.md. [-]
 _DIAGONAL: Final = 1.0 - 0.5**0.5
 _MONOTONE_UP_TO: Final = 1.0 + 2.0**0.5
 _LARGEST: Final = 0.5 * (2.0**0.5 - 1.0)
