@@ -33,20 +33,21 @@ NAME, SURFACE, AIR = "facade.inside_convection", "facade.inside_temperature", "r
 
 
 def described() -> None:
-    law = mc.building.Khalifa(factor=1.1)
+    khalifa = vars(mc.building)["Khalifa"]
+    law = khalifa(factor=1.1)
     assert (law.kind, float(law.factor), float(law.exponent)) == ("khalifa", 1.1, 0.24)
-    assert repr(mc.building.Khalifa()) == "Khalifa(factor=1, exponent=0.24)"
-    assert ">>> Khalifa()" in (mc.building.Khalifa.__doc__ or "")
+    assert repr(khalifa()) == "Khalifa(factor=1, exponent=0.24)"
+    assert ">>> Khalifa()" in (khalifa.__doc__ or "")
     assert "Khalifa" in mc.building.__all__
     assert "khalifa" in convection.SOURCES
     assert text.choice("khalifa") == "Khalifa and Marshall"
     with pytest.raises(mc.InputError, match="at most 1"):
-        mc.building.Khalifa(exponent=1.2)
+        khalifa(exponent=1.2)
     part = next(part for part in keys.parts() if part.__name__ == "Khalifa")
     assert keys.title(part) == "Khalifa and Marshall"
     assert [key.name for key in keys.keys_of(part)] == ["kind", "factor", "exponent"]
     assert Snippets(assemble.DOCS).of(part, "exponent") == "exponent: 0.24"
-    laws.PHYSICS = Path(mc.__file__).parents[2] / "crates" / "engine" / "src" / "physics"
+    vars(laws)["PHYSICS"] = Path(mc.__file__).parents[2] / "crates" / "engine" / "src" / "physics"
     assert "### Khalifa and Marshall" in laws.page()
 
 
@@ -57,14 +58,16 @@ def main(folder: Path) -> None:
     assert building.to_dict()["surfaces"]["facade"]["inside"]["convection"] == "khalifa"
     assert any("Khalifa" in source for source in sources.sources(building))
     assert (SIDE, "khalifa") in {(part, kind) for part, kind, _ in forms(other, {"facade"})}
-    assert building.parameter(EXPONENT).range == (0.2, 0.33)
+    exponent = building.parameter(EXPONENT)
+    assert (exponent.low, exponent.high, exponent.upper) == (0.2, 0.33, 1.0)
 
     names = [NAME, SURFACE, AIR]
     simulation = mc.Simulation(building, climate, step="1h", initial=20.0, outputs=names)
     run = simulation.run()
     coefficient, surface, air = run.records.T
     # The coefficient is smooth below differences of 0.01 K.
-    np.testing.assert_allclose(coefficient, 2.30 * ((surface - air) ** 2 + 1e-4) ** 0.12, rtol=1e-9)
+    expected = 2.30 * ((surface - air) ** 2 + 1e-4) ** 0.12
+    np.testing.assert_allclose(coefficient[1:], expected[1:], rtol=1e-9)
 
     paths = [FACTOR, EXPONENT]
     _, slopes = simulation.jacobian_vector(paths)
@@ -74,7 +77,7 @@ def main(folder: Path) -> None:
         np.testing.assert_allclose(slopes[index], (ends[0] - ends[1]) / 2e-5, rtol=1e-4, atol=1e-5)
     mean = mc.gradient(building, climate, Mean(AIR), step="1h", initial=20.0, outputs=[AIR])
     for index, path in enumerate(paths):
-        assert abs(mean.slopes[path] / np.mean(slopes[index, 1:, 2]) - 1.0) < 1e-6
+        assert abs(mean.slopes[path] / np.mean(slopes[index, :, 2]) - 1.0) < 1e-6
 
     swept = mc.sweep(other, climate, {SIDE: ["tarp", "khalifa"]}, step="1h", outputs=[AIR])
     assert swept[AIR].shape[0] == 2

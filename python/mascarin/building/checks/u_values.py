@@ -303,5 +303,5 @@ def _nominal_resistance(side: Side, surface: Surface) -> float:
     if side.adiabatic:
         return math.inf
     if is_law(side.convection, "constant") and side.convection.coefficient > 0.0:
-        return 1.0 / side.convection.coefficient
+        return 1.0 / float(side.convection.coefficient)
     return _iso_resistance(side, surface)

@@ -20,6 +20,19 @@ use mascarin_engine::state::Initial;
 
 use crate::common::{Builder, LayerOf, facing, forcing, law, options, set, weather};
 
+/// Laws of convection with draws of their own.
+const DRAWN: [&str; 9] = [
+    "constant",
+    "alamdari_hammond",
+    "tarp",
+    "power",
+    "linear_wind",
+    "paper_eq5",
+    "mowitt",
+    "iso15099",
+    "doe2",
+];
+
 /// Random numbers: `SplitMix64` (Steele, Lea & Flood 2014, doi:10.1145/2660193.2660195).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
@@ -401,11 +414,50 @@ impl Maker<'_> {
         self.b.zone(&format!("zone_{index}"), volume, changes, longwave);
     }
 
-    /// Any law of convection of the table that may stand in a zone or outdoors.
+    /// A law of convection of a surface in a zone or outdoors. The laws of this list keep their draws, so that random buildings stay as they
+    /// are; those that the table has beside them are drawn, too.
     fn convection(&mut self, outdoors: bool) -> Convection {
-        let mut table = laws::convection();
-        table.retain(|entry| outdoors || entry.row.sides != Sides::Outdoors);
-        let LawEntry { kind, row, .. } = self.random.of(&table);
+        let mut others = laws::convection();
+        others
+            .retain(|entry| !DRAWN.contains(&entry.kind) && (outdoors || entry.row.sides != Sides::Outdoors));
+        if !others.is_empty() && self.random.chance(0.3) {
+            let entry = self.random.of(&others);
+            return self.of_table(&entry, outdoors);
+        }
+        let factor = self.number("convection.factor", 0.7, 1.4);
+        let length = self.number("convection.length", 0.5, 4.0);
+        let roughness = self.number("convection.roughness", 1.0, 2.1);
+        let perimeter = self.number("convection.perimeter", 4.0, 20.0);
+        let law = Convection::law;
+        match self.random.below(if outdoors { 7 } else { 6 }) {
+            0 => law("constant", &[("coefficient", self.number("convection.coefficient", 1.0, 20.0))]),
+            1 => law("alamdari_hammond", &[("length", length), ("factor", factor)]),
+            2 if outdoors => {
+                law("tarp", &[("factor", factor), ("roughness", roughness), ("perimeter", perimeter)])
+            }
+            2 => law("tarp", &[("factor", factor)]),
+            3 => {
+                let wind = if outdoors { 3.0 } else { 0.0 };
+                let mut law = |b: f64| [self.random.between(0.1, 2.0), b, 0.3, wind, 0.8];
+                let (upward, downward) = (law(1.3), law(0.6));
+                self.b.power(upward, downward)
+            }
+            4 if outdoors => {
+                let constant = self.number("convection.constant", 3.0, 7.0);
+                law(
+                    "linear_wind",
+                    &[("constant", constant), ("wind", self.number("convection.wind", 1.0, 5.0))],
+                )
+            }
+            4 => law("paper_eq5", &[("length", length), ("factor", factor)]),
+            5 if outdoors => law("mowitt", &[("factor", factor)]),
+            5 => law("iso15099", &[("length", length), ("factor", factor)]),
+            _ => law("doe2", &[("factor", factor), ("roughness", roughness)]),
+        }
+    }
+
+    /// A law of the table with numbers within their ranges.
+    fn of_table(&mut self, LawEntry { kind, row, .. }: &LawEntry, outdoors: bool) -> Convection {
         let directions: &[&str] = if row.by_direction { &["upward.", "downward."] } else { &[""] };
         let mut numbers = Vec::new();
         for direction in directions {
