@@ -1,7 +1,7 @@
 """Heat loss coefficient of a described building by destination, effective heat capacity, time constant.
 
 The zones have one temperature and all else that they lose heat to another. Surface resistances are those that
-are described (see `mascarin.building.u_values`): laws by wind at 4 m/s, correlations as in ISO 6946.
+are described (see `mascarin.building.checks.u_values`): laws by wind at 4 m/s, correlations as in ISO 6946.
 Infiltration is taken at the same wind and a temperature difference of 10 K.
 """
 
@@ -11,19 +11,19 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from mascarin.building.material import Resistance
-from mascarin.building.phases import phase
-from mascarin.building.u_values import (
+from mascarin.building.checks.u_values import (
     described_films,
     described_u_value,
     described_window_u_value,
     layer_resistance,
 )
+from mascarin.building.parts.materials.material import Resistance
+from mascarin.building.parts.materials.phases import phase
 from mascarin.physics import AIR_SPECIFIC_HEAT, standard_density
 
 if TYPE_CHECKING:
-    from mascarin.building.description import Description
-    from mascarin.building.surface import Surface
+    from mascarin.building.parts.description import Description
+    from mascarin.building.parts.envelope.surface import Surface
 
 #: Wind [m/s] and temperature difference [K] at which infiltration is taken.
 WIND: Final = 4.0

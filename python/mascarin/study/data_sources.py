@@ -6,13 +6,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
-from mascarin.building.base.part import Part
-from mascarin.building.base.part import fault
-from mascarin.building.base.part import insist
-from mascarin.study.field_types import Columns
-from mascarin.study.field_types import Duration
-from mascarin.study.field_types import TimeZone
-from mascarin.study.field_types import Shift
+from mascarin.building.base.part import Part, fault, insist
+from mascarin.study.field_types import Columns, Duration, Shift, TimeZone
 
 if TYPE_CHECKING:
     from typing import Self

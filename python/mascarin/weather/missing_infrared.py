@@ -44,7 +44,7 @@ def sky_emission(air: Array, dew_point: Array, cloud_cover: Array) -> Array:
     >>> sky_emission(np.array([20.0]), np.array([10.0]), np.array([5.0])).round(2).tolist()
     [365.07]
     """
-    from mascarin.building.site import CloudLayer, MartinBerdahlSky
+    from mascarin.building.parts.site import CloudLayer, MartinBerdahlSky
 
     sky, cloud = MartinBerdahlSky(), CloudLayer()
     dew = dew_point / 100.0

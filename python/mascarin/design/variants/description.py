@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from pydantic import Field, StringConstraints, model_validator
 
 from mascarin.building.base.names import Name
-from mascarin.building.base.part import Part
-from mascarin.building.base.part import fault
-from mascarin.building.base.part import insist
+from mascarin.building.base.part import Part, fault, insist
 from mascarin.design.evaluation.objectives import AnyObjective
-from mascarin.study.field_types import Duration
-from mascarin.study.field_types import Time
-from mascarin.study.field_types import Shift
+from mascarin.study.field_types import Duration, Shift, Time
 
 if TYPE_CHECKING:
     from typing import Self
