@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import pickle
 from dataclasses import replace
 from pathlib import Path
@@ -99,7 +100,7 @@ def test_a_finished_sweep_that_is_read_again_has_the_kinds(tmp_path: Path) -> No
 
 def test_the_step_that_is_named_has_no_overshoot() -> None:
     """A part of one time constant overshoots by |R(z)| of a jump; in steps that are named, not at all."""
-    diagonal = 1.0 - 0.5**0.5
+    diagonal = 1.0 - math.sqrt(0.5)
 
     def factor(z: float) -> float:
         return (1.0 - (1.0 - 2.0 * diagonal) * z) / (1.0 + diagonal * z) ** 2
