@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -285,7 +286,7 @@ def test_row_w04_no_infrared_runs_with_the_model(tmp_path: Path) -> None:
     golden = [line.split(",") for line in content(found("shipped:golden")).decode("utf-8-sig").splitlines()]
     none = climate(changed(golden, set_to((12, "9999"))), tmp_path)
     building = box().replace({"site.latitude": 39.74, "site.longitude": -105.18})
-    span = {"start": "2001-07-01", "end": "2001-07-04", "step": "1h", "initial": 20.0}
+    span: dict[str, Any] = {"start": "2001-07-01", "end": "2001-07-04", "step": "1h", "initial": 20.0}
     plain = simulate(building, none, **span)
     stated = simulate(building.replace({"site.sky": "martin_berdahl"}), Climate.shipped("golden"), **span)
     for name in plain:

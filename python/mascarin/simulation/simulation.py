@@ -32,8 +32,7 @@ from mascarin.simulation.results import Results
 from mascarin.simulation.run_summary import Finished, StoredRun
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
-from mascarin.weather.brightness import findings
-from mascarin.weather.sun_check import check_clock
+from mascarin.weather.sun_check import sun_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -445,9 +444,7 @@ class Simulation(VectorRuns):
         from mascarin.building.checks import plausibility  # pydantic, as above
 
         site = self.building.site
-        place = float(site.latitude), float(site.longitude)
-        record = self.climate.record
-        sun = (*findings(record, *place), *(check_clock(record, *place) if record.check_sun else ()))
+        sun = sun_warnings(self.climate.record, float(site.latitude), float(site.longitude))
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:

@@ -16,6 +16,7 @@ from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
 from mascarin.weather import clock_shift
 from mascarin.weather import sun as sun_module
+from mascarin.weather.brightness import findings
 from mascarin.weather.channels import RADIATION
 from mascarin.weather.clock_shift import ClockShift, shifts_of
 from mascarin.weather.record import WeatherRecord
@@ -101,6 +102,20 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
         return Cached({"said": _refuse(record, values, latitude, longitude)})
 
     return tuple(cached(key, [sys.modules[__name__], clock_shift, sun_module], passed).notes["said"])
+
+
+def sun_warnings(record: WeatherRecord, latitude: float, longitude: float) -> tuple[str, ...]:
+    """Warnings about the radiation of a record: brighter than possible, or not at the time of the sun.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        As read.
+    latitude, longitude : float
+        Positive north and east. [deg]
+    """
+    clock = check_clock(record, latitude, longitude) if record.check_sun else ()
+    return (*findings(record, latitude, longitude), *clock)
 
 
 def _shift_findings(record: WeatherRecord, latitude: float, longitude: float) -> list[str]:
