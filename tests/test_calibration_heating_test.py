@@ -38,23 +38,6 @@ def _simulated(seed: int) -> Floats:
     return np.array(found)
 
 
-def test_the_truth_of_simulated_tests_is_found_within_the_stated_errors() -> None:
-    distances, aperture = [], []
-    for seed in range(3):
-        found = heating_test(_simulated(seed), OUTDOORS, POWER, SUN, interval=1800.0)
-        value, error = found.heat_loss_coefficient
-        assert 0.2 < error < 12.0
-        distances.append((value - LOSS) / error)
-        aperture.append((found.solar_aperture[0] - APERTURE) / found.solar_aperture[1])
-        low, high = found.interval()
-        assert (high - low) == pytest.approx(2.0 * 1.96 * error, rel=1e-4)
-        # Two states are the truth: errors of prediction are white, with a standard deviation of 1.
-        assert abs(found.autocorrelation) < 3.0 / np.sqrt(HOURS.size)
-        assert float(np.std(found.errors)) == pytest.approx(1.0, abs=0.1)
-    assert float(np.sum(np.square(distances))) < 12.8  # 99.5 % of chi square with 3 degrees of freedom
-    assert float(np.sum(np.square(aperture))) < 12.8
-
-
 def _houses(data: Path) -> Path:
     return data / "heating_tests"
 
