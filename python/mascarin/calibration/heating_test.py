@@ -160,13 +160,13 @@ def heating_test(
     together = max(1, y.size // _COARSE)
     coarse = _thinned(y, inputs, together)
     trials = [(_searched(start, *coarse, hours * together), start) for start in starts]
-    trial, start = min(trials, key=lambda one: float(one[0].fun))
-    found = trial if together == 1 else _searched(start, y, inputs, hours, trial.x)
-    if not np.isfinite(found.fun) or found.fun >= _IMPOSSIBLE:
+    trial, start = min(trials, key=lambda series: float(series[0].fun))
+    estimate = trial if together == 1 else _searched(start, y, inputs, hours, trial.x)
+    if not np.isfinite(estimate.fun) or estimate.fun >= _IMPOSSIBLE:
         raise SolverError(
             "heating test: no search ended at a maximum of the likelihood; check units and gaps"
         )
-    solution = found.x
+    solution = estimate.x
     covariance = np.linalg.pinv(_curvature(solution, start, y, inputs, hours), hermitian=True)
     log_likelihood, errors = _filtered(solution[None], y, inputs, hours)
     values = _derived(solution[None])[0]
@@ -184,14 +184,14 @@ def _checked(
 ) -> tuple[Floats, Floats]:
     """Measured series, and inputs (n, 3): outdoor air [degC], irradiance [W/m2], power [W]."""
     y = np.asarray(inside, dtype=np.float64)
-    inputs = [np.asarray(one, dtype=np.float64) for one in (outdoors, irradiance, power)]
-    for name, one in zip(("inside", "outdoors", "irradiance", "power"), (y, *inputs), strict=True):
-        if one.shape != y.shape or y.ndim != 1:
+    inputs = [np.asarray(series, dtype=np.float64) for series in (outdoors, irradiance, power)]
+    for name, series in zip(("inside", "outdoors", "irradiance", "power"), (y, *inputs), strict=True):
+        if series.shape != y.shape or y.ndim != 1:
             raise InputError(
-                f"{name}: found shape {one.shape}, expected {y.shape}, that of 'inside'; use one"
+                f"{name}: found shape {series.shape}, expected {y.shape}, that of 'inside'; use one"
             )
-        if not np.isfinite(one).all():
-            gaps = int(np.count_nonzero(~np.isfinite(one)))
+        if not np.isfinite(series).all():
+            gaps = int(np.count_nonzero(~np.isfinite(series)))
             raise InputError(f"{name}: found {gaps} gaps, expected none; fill short ones, or use a part")
     if y.size < _FEWEST or y.size * interval < 3600.0 * _SHORTEST:
         raise InputError(
@@ -227,12 +227,12 @@ def _searched(start: Floats, y: Floats, inputs: Floats, hours: float, first: Flo
     """Maximum of the likelihood near a start, or near another first vector."""
     from scipy import optimize
 
-    def cost(at: Floats) -> tuple[float, Floats]:
-        moved = at + _STEP * np.concatenate([np.zeros((1, _COUNT)), np.eye(_COUNT), -np.eye(_COUNT)])
+    def cost(vector: Floats) -> tuple[float, Floats]:
+        moved = vector + _STEP * np.concatenate([np.zeros((1, _COUNT)), np.eye(_COUNT), -np.eye(_COUNT)])
         values = _costs(moved, start, y, inputs, hours)
         return float(values[0]), (values[1 : _COUNT + 1] - values[_COUNT + 1 :]) / (2.0 * _STEP)
 
-    bounds = [(one - 8.0, one + 8.0) for one in start[:-1]]
+    bounds = [(series - 8.0, series + 8.0) for series in start[:-1]]
     ends = (float(y.min() - 30.0), float(y.max() + 30.0))
     options = {"maxiter": 300, "ftol": 1e-11}
     begun = start if first is None else first
@@ -254,16 +254,18 @@ def _costs(vectors: Floats, start: Floats, y: Floats, inputs: Floats, hours: flo
     return np.where(np.isfinite(values), values, _IMPOSSIBLE)
 
 
-def _curvature(at: Floats, start: Floats, y: Floats, inputs: Floats, hours: float) -> Floats:
+def _curvature(vector: Floats, start: Floats, y: Floats, inputs: Floats, hours: float) -> Floats:
     """Second derivatives of the cost, without directions of negative curvature."""
     h, eye = _CURVATURE_STEP, np.eye(_COUNT)
     pairs = [(i, j) for i in range(_COUNT) for j in range(i, _COUNT)]
-    moved = [at + h * (a * eye[i] + b * eye[j]) for i, j in pairs for a in (1.0, -1.0) for b in (1.0, -1.0)]
+    moved = [
+        vector + h * (a * eye[i] + b * eye[j]) for i, j in pairs for a in (1.0, -1.0) for b in (1.0, -1.0)
+    ]
     values = _costs(np.array(moved), start, y, inputs, hours).reshape(-1, 4)
-    found = np.zeros((_COUNT, _COUNT))
+    estimate = np.zeros((_COUNT, _COUNT))
     for (i, j), (both, plus, minus, neither) in zip(pairs, values, strict=True):
-        found[i, j] = found[j, i] = (both - plus - minus + neither) / (4.0 * h * h)
-    value, vector = np.linalg.eigh(found)
+        estimate[i, j] = estimate[j, i] = (both - plus - minus + neither) / (4.0 * h * h)
+    value, vector = np.linalg.eigh(estimate)
     return np.asarray((vector * np.maximum(value, _WEAK**-2)) @ vector.T)
 
 
@@ -283,9 +285,9 @@ def _discrete(vectors: Floats, hours: float) -> tuple[Floats, Floats, Floats]:
     with_inputs[:, :2, :2], with_inputs[:, :2, 2:] = a, b
     with_noise[:, :2, :2], with_noise[:, :2, 2:] = -a, q
     with_noise[:, 2:, 2:] = np.swapaxes(a, 1, 2)
-    whole, parts = expm(with_inputs * hours), expm(with_noise * hours)
+    exponential, parts = expm(with_inputs * hours), expm(with_noise * hours)
     transition = np.swapaxes(parts[:, 2:, 2:], 1, 2)
-    return transition, whole[:, :2, 2:], transition @ parts[:, :2, 2:]
+    return transition, exponential[:, :2, 2:], transition @ parts[:, :2, 2:]
 
 
 def _filtered(vectors: Floats, y: Floats, inputs: Floats, hours: float) -> tuple[Floats, Floats]:
@@ -306,10 +308,10 @@ def _filtered(vectors: Floats, y: Floats, inputs: Floats, hours: float) -> tuple
         if not steady:
             if k:
                 before = p00
-                one, two = f[:, 0, 0] * p00 + f[:, 0, 1] * p01, f[:, 0, 0] * p01 + f[:, 0, 1] * p11
+                upper, two = f[:, 0, 0] * p00 + f[:, 0, 1] * p01, f[:, 0, 0] * p01 + f[:, 0, 1] * p11
                 three, four = f[:, 1, 0] * p00 + f[:, 1, 1] * p01, f[:, 1, 0] * p01 + f[:, 1, 1] * p11
-                p00 = one * f[:, 0, 0] + two * f[:, 0, 1] + q[:, 0, 0]
-                p01 = one * f[:, 1, 0] + two * f[:, 1, 1] + q[:, 0, 1]
+                p00 = upper * f[:, 0, 0] + two * f[:, 0, 1] + q[:, 0, 0]
+                p01 = upper * f[:, 1, 0] + two * f[:, 1, 1] + q[:, 0, 1]
                 p11 = three * f[:, 1, 0] + four * f[:, 1, 1] + q[:, 1, 1]
             previous, s = s, p00 + noise
             gain0, gain1 = p00 / s, p01 / s
