@@ -23,12 +23,12 @@ Floats = NDArray[np.float64]
 STEP = 1800.0
 DAYS = 16
 N = DAYS * 48
-HOURS = np.arange(N) * STEP / 3600.0
+HOURS: Floats = np.arange(N, dtype=np.float64) * STEP / 3600.0
 CLOUD = np.repeat(np.random.default_rng(7).uniform(0.3, 1.0, DAYS), 48)
-SUN = CLOUD * np.maximum(np.sin((HOURS % 24.0 - 6.0) / 12.0 * np.pi), 0.0)
+SUN: Floats = CLOUD * np.maximum(np.sin((HOURS % 24.0 - 6.0) / 12.0 * np.pi), 0.0)
 SLOW, FAST = (lfilter([1.0 - k], [1.0, -k], SUN) for k in (0.95, 0.7))
 #: Simulated room, wall and roof. [degC]
-SIMULATED = np.stack([20.0 + 30.0 * SLOW, 22.0 + 15.0 * FAST, 18.0 + 20.0 * SUN], axis=-1)
+SIMULATED: Floats = np.stack([20.0 + 30.0 * SLOW, 22.0 + 15.0 * FAST, 18.0 + 20.0 * SUN], axis=-1)
 NAMES = ("room", "wall", "roof")
 U = np.full(3, 0.15)
 GRID = DayGrid.of(HOURS, interval=0.5, sensors=3)

@@ -106,7 +106,8 @@ def test_the_salt_hydrate_may_supercool() -> None:
     salt = PhaseChangeMaterial.from_product(
         "CaCl2-6H2O", hysteresis={"model": "supercooling", "degree": 12, "time_constant": 900}
     )
-    assert salt.latent_heat == 190800
+    assert salt.latent_heat is not None
+    assert float(salt.latent_heat) == 190800
     assert salt.one_curve is not None
     assert salt.one_curve.coldest_liquid(salt.reference) == 17.0
     again = PhaseChangeMaterial(**salt.written())

@@ -220,7 +220,7 @@ def test_the_bands_of_the_report_hold_what_it_says(content: dict[str, Any], fold
             ("identification", "2023-03-02", "2023-03-06"),
             ("corroboration", "2023-03-06", "2023-03-08"),
         ):
-            use = (stamps >= start) & (stamps < end) & away.notna()
+            use = (stamps >= pd.Timestamp(start)) & (stamps < pd.Timestamp(end)) & away.notna()
             share = float((away[use] <= series[f"{name}.band"][use]).mean())
             assert content["band"][name]["held"][period] == pytest.approx(share, abs=0.01)
 

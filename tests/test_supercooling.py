@@ -161,7 +161,7 @@ def test_an_independent_integration_gives_the_same(kinetics: dict[str, float]) -
 @pytest.mark.parametrize(("scheme", "order"), [("sdirk2", 2.0), ("backward-euler", 1.0)])
 @pytest.mark.parametrize("kinetics", ["time_constant: 900", "rate: 1.5e-4"])
 def test_the_order_of_the_scheme_holds_through_the_nucleation(
-    kinetics: str, scheme: str, order: float
+    kinetics: str, scheme: Scheme, order: float
 ) -> None:
     """Three hours after it, over nucleations at many places within a step."""
     length, late = 5 * setup.HOUR, 3 * setup.HOUR

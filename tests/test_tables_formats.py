@@ -96,12 +96,12 @@ def test_a_reader_of_ones_own_in_python(tmp_path: Path) -> None:
         read = Measurements.from_table(path, timezone="UTC")
         assert read.series("T").to_numpy() == pytest.approx(TRUE)
         assert any("log.dtf: read by" in note for note in read.provenance)
-        register_reader("dtf", lambda path: 1 / 0)  # type: ignore[arg-type,return-value]
+        register_reader("dtf", lambda path: 1 / 0)  # type: ignore[arg-type, return-value]
         with pytest.raises(
             InputError, match=r"reader '<lambda>' for files ending in \.dtf failed \(ZeroDivisionError"
         ):
             Measurements.from_table(path, timezone="UTC")
-        register_reader("dtf", lambda path: "text")  # type: ignore[arg-type,return-value]
+        register_reader("dtf", lambda path: "text")  # type: ignore[arg-type, return-value]
         with pytest.raises(InputError, match=r"returned str; expected a pandas\.DataFrame"):
             Measurements.from_table(path, timezone="UTC")
     finally:

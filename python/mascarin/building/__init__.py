@@ -6,6 +6,8 @@ other by name.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from mascarin.building.base.number import Number
 from mascarin.building.building import Building
 from mascarin.building.checks.overview import check
@@ -64,20 +66,7 @@ from mascarin.building.parts.air.zone import (
     Zone,
 )
 from mascarin.building.parts.envelope.bridge import ThermalBridge
-from mascarin.building.parts.envelope.convection import (
-    CLASSES,
-    AlamdariHammond,
-    Constant,
-    Doe2,
-    Iso15099,
-    LinearWind,
-    Measured,
-    Mowitt,
-    PaperEq5,
-    Power,
-    PowerLaw,
-    Tarp,
-)
+from mascarin.building.parts.envelope.convection import CLASSES, ConvectionLaw, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import (
     Construction,
@@ -129,6 +118,20 @@ from mascarin.building.parts.site import (
 from mascarin.building.reading import load
 from mascarin.building.tables import parameter_table
 from mascarin.physics import moist_air
+
+# The classes of the engine's table of laws are made when the package is imported; these lines tell type
+# checkers of those that are shipped.
+if TYPE_CHECKING:
+    AlamdariHammond = ConvectionLaw
+    Constant = ConvectionLaw
+    Doe2 = ConvectionLaw
+    Iso15099 = ConvectionLaw
+    LinearWind = ConvectionLaw
+    Mowitt = ConvectionLaw
+    PaperEq5 = ConvectionLaw
+    Power = ConvectionLaw
+    PowerLaw = ConvectionLaw
+    Tarp = ConvectionLaw
 
 __all__ = [
     "AirPath",

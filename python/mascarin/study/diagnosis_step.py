@@ -20,6 +20,7 @@ from mascarin.progress import reporting
 from mascarin.study import diagnosis_words as words
 from mascarin.study.description import DiscrepancyPlan
 from mascarin.study.diagnosis_model import Model, Store
+from mascarin.study.error_model import scatter_of
 from mascarin.study.missing_paths import input_errors, missing_paths, simulated_with
 from mascarin.study.other_laws import forms
 
@@ -205,7 +206,7 @@ def _sensor_errors(setup: Setup, model: Model, simulated: Array) -> Array:
     for s, name in enumerate(names):
         sensor = setup.plan.sensors[name]
         stated = sensor.stated_uncertainty(model.simulation.outputs[s].unit, name)
-        error = sensor.shared_errors(stated)
+        error = sensor.shared_errors(stated, scatter_of(setup, name))
         offset = error.offset if error.offset or error.common else sensor.uncertainty / 1.96
         errors.append(replace(error, offset=offset))
     return error_columns(names, errors, simulated, model.interval)[0]

@@ -112,7 +112,7 @@ globals().update(CLASSES)
 
 if TYPE_CHECKING:
 
-    def __getattr__(name: str) -> type[ConvectionLaw]: ...
+    def __getattr__(name: str) -> Any: ...
 
 
 #: Factor on a measurement.
