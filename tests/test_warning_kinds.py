@@ -20,8 +20,8 @@ from mascarin.ensemble.store import Store
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.simulation.checks.judgement import Judgement
+from mascarin.simulation.checks.warning_kinds import UNSOUND, Kind, RunWarning, with_kinds
 from mascarin.simulation.preparation.engine_run import CompiledRun
-from mascarin.simulation.warning_kinds import UNSOUND, Kind, RunWarning, with_kinds
 from mascarin.study.kept import _decoded, _encoded
 
 DAMP = {"humidity": {"zones": {"room": {"gains": {"people": {"power": 100}}}}}}

@@ -39,6 +39,7 @@ __all__ = [
     "globe_temperature",
     "humidity_of_dew_point",
     "humidity_ratio",
+    "law_titles",
     "moist_air",
     "ratio_of_vapour",
     "relative_humidity",
@@ -359,6 +360,22 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
     if pressure <= humidity * float(saturation_pressure(temperature)):
         raise InputError(f"pressure: found {pressure:g} Pa; expected a pressure of moist air [Pa]")
     return _engine.moist_air(temperature, humidity, pressure)
+
+
+def law_titles(family: str) -> dict[str, str]:
+    """Return the titles of published laws, by their kinds.
+
+    Parameters
+    ----------
+    family : str
+        Such as ``convection``.
+
+    Examples
+    --------
+    >>> law_titles("convection")["tarp"]
+    'TARP'
+    """
+    return {row["kind"]: row["title"] for row in json.loads(_engine.law_table())[family]}
 
 
 class MeltingCurve:

@@ -16,8 +16,8 @@ from mascarin._io.listing import Listing
 from mascarin.building.base.error_texts import explained
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.names import known_names
-from mascarin.building.base.number import Interval, Number
-from mascarin.building.base.part import Part, insist, is_number, plain_value
+from mascarin.building.base.number import Interval, Number, is_number
+from mascarin.building.base.part import Part, insist, plain_value
 from mascarin.building.base.replacement import piece_at, put, replaced_at, without_parts
 from mascarin.building.checks import summary
 from mascarin.building.checks.consistency import faults, faults_of_values

@@ -84,9 +84,9 @@ def heat_loss(building: Description) -> HeatLoss:
     Examples
     --------
     >>> from mascarin.examples import box
-    >>> found = heat_loss(box())
-    >>> sorted(found.destinations), round(found.u_values["facade"], 2)
-    (['infiltration', 'outdoors'], 3.47)
+    >>> loss = heat_loss(box())
+    >>> sorted(loss.destinations), round(loss.u_values["facade"], 2)
+    (['infiltration', 'outdoors'], 3.6)
     """
     destinations: dict[str, float] = defaultdict(float)
     u_values: dict[str, float] = {}

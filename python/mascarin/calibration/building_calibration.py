@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.simulation.preparation.initial import Initial
-    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.weather import Climate
 
 CONSTANT: Final = ("stuck", "forward_filled")

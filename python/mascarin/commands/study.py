@@ -15,7 +15,7 @@ from mascarin.commands.inputs import AsJson, Outside
 from mascarin.commands.output import number, print_json, print_table
 
 if TYPE_CHECKING:
-    from mascarin.simulation.warning_kinds import RunWarning
+    from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.study import Study, StudyResults
 
 

@@ -238,7 +238,7 @@ def diagnose(
     >>> given = DiagnosisInput(data, np.arange(10.0), ("room",), stated, stated, (offset,))
     >>> found = diagnose(given, known).findings[0]
     >>> found.candidate.what, round(found.value), found.p, found.told
-    ('offset', 1, 0.0005, True)
+    ('offset', 1, 0.001, True)
     """
     covariance = covariance or covariance_of(given)
     if not given.candidates:

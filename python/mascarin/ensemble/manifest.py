@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from mascarin._io import own_files
 from mascarin.errors import InputError
-from mascarin.simulation.warning_kinds import with_kinds
+from mascarin.simulation.checks.warning_kinds import with_kinds
 
 _TYPES: Final[dict[str, type | tuple[type, ...]]] = {
     "mascarin_version": str,

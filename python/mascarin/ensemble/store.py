@@ -25,10 +25,10 @@ from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.checks.judgement import JUDGED, OUTSIDE, all_sound
+from mascarin.simulation.checks.warning_kinds import RunWarning, kinds_of, with_kinds
 from mascarin.simulation.records.labels import time_coordinates
 from mascarin.simulation.run_warnings import of_members
 from mascarin.simulation.single_precision import Difference, run_in_double
-from mascarin.simulation.warning_kinds import RunWarning, kinds_of, with_kinds
 from mascarin.tables.timezones import parse_timezone
 
 if TYPE_CHECKING:

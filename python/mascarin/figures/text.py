@@ -10,11 +10,11 @@ from typing import Any
 
 from mascarin._io import numbers
 from mascarin._io.units import shown
-from mascarin.building.parts.envelope.law_table import CONVECTION
+from mascarin.physics import law_titles
 
 #: Kinds of the description in words.
 _CHOICES = {
-    **{kind: row.title for kind, row in CONVECTION.items() if kind != "constant"},
+    **{kind: title for kind, title in law_titles("convection").items() if kind != "constant"},
     "text": "a formula of its own",
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",

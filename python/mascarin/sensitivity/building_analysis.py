@@ -19,13 +19,13 @@ from mascarin.sensitivity.base.result import Sensitivity
 from mascarin.sensitivity.base.runs import Collector, batches
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.simulation.checks.judgement import ensemble_warnings
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.preparation.options import described, require_precision
 from mascarin.simulation.preparation.prepare import in_climate
 from mascarin.simulation.run_warnings import of_base
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.single_precision import differences, members_to_check
-from mascarin.simulation.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt

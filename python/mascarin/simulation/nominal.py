@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import SolverError
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning, of_kind
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.warning_kinds import Kind, RunWarning, of_kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt

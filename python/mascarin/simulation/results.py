@@ -16,12 +16,12 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.energy import EnergyLedger
 from mascarin.simulation.checks.judgement import Judgement
 from mascarin.simulation.checks.vapour import VapourLedger
+from mascarin.simulation.checks.warning_kinds import RunWarning, warnings_of
 from mascarin.simulation.records import files, labels
 from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.resample import means, state_means
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.run_summary import Finished
-from mascarin.simulation.warning_kinds import RunWarning, with_kinds
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -230,10 +230,8 @@ class Results(Mapping[str, "xr.DataArray"]):
             raise InputError(
                 f"{name}: the run covers no whole hour; expected one from full hour to full hour"
             )
-        resampled = (means(elapsed, values, times) if output.mean else state_means(elapsed, values, times))[
-            1:
-        ]
-        return pd.Series(resampled, first + pd.to_timedelta(times[:-1] - early, unit="s"), name=output.name)
+        hourly = (means if output.mean else state_means)(elapsed, values, times)[1:]
+        return pd.Series(hourly, first + pd.to_timedelta(times[:-1] - early, unit="s"), name=output.name)
 
     def heat(self, name: str) -> float:
         """Heat of a load over the run. [J]
@@ -381,7 +379,7 @@ class Results(Mapping[str, "xr.DataArray"]):
                 records=records,
                 energy=EnergyLedger.from_dict(json_of(attributes["energy"])),
                 provenance=Provenance.from_dict(json_of(attributes["provenance"])),
-                warnings=tuple(_warnings(attributes)),
+                warnings=tuple(warnings_of(attributes)),
                 vapour=VapourLedger.from_json(attributes.get("vapour")),
                 judgement=Judgement.from_json(attributes.get("judgement")),
             )
@@ -501,10 +499,3 @@ def _output(fields: Mapping[str, Any]) -> Output:
 
     require(fields, {"name": str, "unit": str, "kind": str, "aliases": list})
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})
-
-
-def _warnings(attributes: Mapping[str, Any]) -> list[RunWarning]:
-    """Warnings of a file, with their kinds where it has them."""
-    lines = [str(line) for line in json_of(attributes["warnings"])]
-    kinds = attributes.get("warning_kinds")
-    return with_kinds(lines, None if kinds is None else json_of(kinds))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from mascarin.simulation.warning_kinds import RunWarning, kinds_of
+from mascarin.simulation.checks.warning_kinds import RunWarning, kinds_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -16,10 +16,14 @@ if TYPE_CHECKING:
     from mascarin.simulation.checks.energy import EnergyLedger
     from mascarin.simulation.checks.judgement import Judgement
     from mascarin.simulation.checks.vapour import VapourLedger
+    from mascarin.simulation.preparation.initial_state import Profile
     from mascarin.simulation.records.provenance import Provenance
     from mascarin.simulation.records.times import Times
 
 _FORMAT: Final = 1
+#: A first period that is repeated more often, and makes more than this part of all steps, is pointed out.
+_MANY_CYCLES: Final = 4
+_LARGE_SHARE: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -96,3 +100,41 @@ class StoredRun:
     outputs: Sequence[Output]
     times: Times
     finished: Finished
+
+
+def start_note(
+    initial: float | Profile | None,
+    settings: Mapping[str, Any],
+    step_seconds: float,
+    steps: int,
+    raw: Mapping[str, Any],
+) -> str:
+    """How the state at the start of a run was made, in words.
+
+    Parameters
+    ----------
+    initial : float, Profile or None
+        The temperature or state that was stated; None where the first hours were repeated.
+    settings : mapping
+        Those of the engine.
+    step_seconds : float
+        Time step. [s]
+    steps : int
+        Steps of the run.
+    raw : mapping
+        What the engine says of the run.
+    """
+    if isinstance(initial, float):
+        return f"{initial:g} degC everywhere"
+    if initial is not None:
+        return initial.words
+    hours = settings["warmup_steps"] * step_seconds / 3600.0
+    note = (
+        f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
+        f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
+    )
+    repeated = raw["cycles"] * settings["warmup_steps"]
+    share = repeated / (repeated + steps)
+    if raw["cycles"] < _MANY_CYCLES or share < _LARGE_SHARE:
+        return note
+    return f"{note}: {share:.0%} of all steps of the run, which a given start (initial) saves"

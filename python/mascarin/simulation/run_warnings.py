@@ -14,7 +14,7 @@ import numpy as np
 from mascarin.simulation.checks.formula_laws import range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.checks.step_check import LARGE
-from mascarin.simulation.warning_kinds import Kind, RunWarning, of_kind
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning, of_kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.recorded_outputs import Readings
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
-from mascarin.simulation.run_summary import Finished, StoredRun
+from mascarin.simulation.run_summary import Finished, StoredRun, start_note
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
 from mascarin.weather.sun_check import sun_warnings
@@ -40,17 +40,13 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import ProgressOption, Report
+    from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.simulation.preparation.initial import Initial
     from mascarin.simulation.preparation.objectives import Gradient, Objective
     from mascarin.simulation.preparation.options import Scheme, TimeLike
-    from mascarin.simulation.warning_kinds import RunWarning
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
-
-#: A first period that is repeated more often, and makes more than this part of all steps, is pointed out.
-_OFTEN: Final = 4
-_MOST: Final = 0.5
 
 
 class Simulation(VectorRuns):
@@ -416,7 +412,9 @@ class Simulation(VectorRuns):
                 measurements=self.measured,
                 step_seconds=self.step_seconds,
                 scheme=self.scheme,
-                start=self._start_note(raw),
+                start=start_note(
+                    self.initial, self.compiled.settings, self.step_seconds, len(self.compiled.forcing), raw
+                ),
                 changed={**self._replaced, **self._changed(vector)},
                 newton_iterations=int(raw["iterations"]),
                 nested_stages=int(raw["nested"]),
@@ -491,23 +489,6 @@ class Simulation(VectorRuns):
         """Parameters of a vector that differ from those of the building."""
         where = np.flatnonzero(vector != self.values)
         return {self.compiled.paths[k]: float(vector[k]) for k in where}
-
-    def _start_note(self, raw: Mapping[str, Any]) -> str:
-        if isinstance(self.initial, float):
-            return f"{self.initial:g} degC everywhere"
-        if self.initial is not None:
-            return self.initial.words
-        settings = self.compiled.settings
-        hours = settings["warmup_steps"] * self.step_seconds / 3600.0
-        note = (
-            f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
-            f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
-        )
-        repeated = raw["cycles"] * settings["warmup_steps"]
-        share = repeated / (repeated + len(self.compiled.forcing))
-        if raw["cycles"] < _OFTEN or share < _MOST:
-            return note
-        return f"{note}: {share:.0%} of all steps of the run, which a given start (initial) saves"
 
 
 described(Simulation)

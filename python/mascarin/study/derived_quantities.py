@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.calibration import Calibration
-    from mascarin.study.findings import Combination
+    from mascarin.calibration.joint_posterior import JointPosterior
 
     Array = npt.NDArray[np.float64]
 
@@ -61,15 +61,15 @@ class DerivedQuantity:
         return {"name": self.name, "unit": self.unit, **numbers}
 
 
-def derived_quantities(fit: Calibration, combination: Combination | None = None) -> list[DerivedQuantity]:
+def derived_quantities(fit: Calibration, joint: JointPosterior | None = None) -> list[DerivedQuantity]:
     """Compute heat loss, capacity, time constant and U values with their intervals.
 
     Parameters
     ----------
     fit : Calibration
         Of a building.
-    combination : Combination, optional
-        Forms of the model; the sample is that of the form that is used.
+    joint : JointPosterior, optional
+        Its joint distribution with the errors of sensors and model, where these are estimated.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def derived_quantities(fit: Calibration, combination: Combination | None = None)
         return []
     center = _numbers(building, dict(zip(fit.problem.paths, fit.x.tolist(), strict=True)))
     found: list[dict[tuple[str, str], float]] = []
-    for row in _sample(fit, combination):
+    for row in _sample(fit, joint):
         values = {p.path: p.value(z) for p, z in zip(fit.problem.parameters, row, strict=True)}
         try:
             found.append(_numbers(building, values))
@@ -97,10 +97,10 @@ def derived_quantities(fit: Calibration, combination: Combination | None = None)
     return quantities
 
 
-def _sample(fit: Calibration, combination: Combination | None) -> Array:
+def _sample(fit: Calibration, joint: JointPosterior | None) -> Array:
     """Positions of the parameters in their ranges, shape (n, P). [-]"""
-    if combination is not None:
-        sample = combination.forms[0].joint.widened()
+    if joint is not None:
+        sample = joint.widened()
         return np.asarray(sample[:: max(1, len(sample) // _MOST)])
     covariance = np.atleast_2d(fit.uncertainty.covariance)
     rng = np.random.default_rng(_SEED)

@@ -311,6 +311,7 @@ class Study(Setup):
             lambda: diagnosis(self, fitted, fit, workspace, combination=found.combination, progress=progress),
         )
         slope = slopes(self, fitted, fit)
+        joint = None if found.combination is None else found.combination.forms[0].joint
         return StudyResults(
             setup=self,
             nominal=before,
@@ -336,7 +337,7 @@ class Study(Setup):
             seconds=time.monotonic() - began,
             combination=found.combination,
             contradictions=found.contradictions,
-            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, found.combination)),
+            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, joint)),
         )
 
     def __repr__(self) -> str:

@@ -459,3 +459,8 @@ def shown(raw: object) -> str:
         return "nothing"
     text = repr(raw)
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def is_number(raw: object) -> bool:
+    """Whether a piece of a description is one number, plain or with range and source."""
+    return isinstance(raw, int | float) or (isinstance(raw, Mapping) and "value" in raw)

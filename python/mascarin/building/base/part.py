@@ -18,6 +18,7 @@ from mascarin.building.base.number import (
     CHECK_SIGN,
     Number,
     Quantity,
+    is_number,
     noted_form,
     problem,
     quantity_of,
@@ -36,7 +37,6 @@ else:
 
 Location = tuple[int | str, ...]
 Made = TypeVar("Made")
-
 
 #: Names that completion leaves out: those of pydantic, and what only this package uses.
 _INTERNALS = frozenset([*dir(BaseModel), "has_usual_kind", "in_short", "written"])
@@ -498,8 +498,3 @@ class Shorthand:
         number, word = {"type": "number"}, {"type": "string"}
         short = [number, noted_form(number)] if self.number is not None else []
         return {"anyOf": [handler(schema), *short, *([word] if self.word is not None else [])]}
-
-
-def is_number(raw: object) -> bool:
-    """Whether a piece of a description is one number, plain or with range and source."""
-    return isinstance(raw, int | float) or (isinstance(raw, Mapping) and "value" in raw)

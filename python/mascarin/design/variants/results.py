@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mascarin.design.variants.inputs import DesignInputs
     from mascarin.design.variants.ranking import Ranking
     from mascarin.design.variants.variables import Design
-    from mascarin.simulation.warning_kinds import RunWarning
+    from mascarin.simulation.checks.warning_kinds import RunWarning
 
     Array = npt.NDArray[np.float64]
 

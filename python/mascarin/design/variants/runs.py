@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from mascarin.design.evaluation.objectives import AnyObjective
     from mascarin.design.variants.inputs import DesignInputs, Site
     from mascarin.design.variants.variables import Design
-    from mascarin.simulation.warning_kinds import RunWarning
+    from mascarin.simulation.checks.warning_kinds import RunWarning
 
 #: Folder of the stores.
 FOLDER: Final = "runs"

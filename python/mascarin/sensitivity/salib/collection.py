@@ -14,7 +14,7 @@ from mascarin.sensitivity.base.result import Sensitivity
 from mascarin.sensitivity.base.runs import Collector
 from mascarin.sensitivity.salib.estimators import ESTIMATORS, Part, components
 from mascarin.sensitivity.salib.plans import SalibPlan
-from mascarin.simulation.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 SQUARES: Final = (
     "part of the squared elementary effects: equal to the first-order index where the model is linear, a "

@@ -46,7 +46,7 @@ from mascarin.sensitivity.spectral.designs import Design
 from mascarin.sensitivity.spectral.replicates import Replicate, transform
 from mascarin.sensitivity.spectral.result import SpectralSensitivity
 from mascarin.sensitivity.spectral.spectrum import power_threshold
-from mascarin.simulation.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 
 class SpectralCollector(Collector[Design, SpectralSensitivity]):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
-from mascarin.simulation.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt

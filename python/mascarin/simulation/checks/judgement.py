@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io.own_files import json_of
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
-from mascarin.simulation.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 
 from mascarin.simulation.checks.energy import CLOSED
 from mascarin.simulation.checks.step_check import STEPS
-from mascarin.simulation.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 VAPOUR_FLOWS: Final = ("outdoor_air", "interzone", "gains", "humidifying", "drying", "condensation")
 """Flows of vapour into the zones; drying and condensation take vapour away and are negative."""

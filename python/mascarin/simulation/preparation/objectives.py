@@ -15,7 +15,7 @@ from mascarin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.simulation.warning_kinds import RunWarning
+    from mascarin.simulation.checks.warning_kinds import RunWarning
 
 Array = npt.NDArray[np.float64]
 

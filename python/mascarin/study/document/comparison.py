@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mascarin.study.findings import scores_of
 
 if TYPE_CHECKING:
-    from mascarin.simulation.warning_kinds import RunWarning
+    from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.study.findings import ModelRun
     from mascarin.validation.criteria import Verdict
 

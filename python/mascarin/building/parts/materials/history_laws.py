@@ -51,8 +51,8 @@ class Supercooling(OneCurveLaw):
     --------
     >>> Supercooling(degree=8, time_constant=600)
     Supercooling(model=supercooling, degree=8 K, time_constant=600 s)
-    >>> Supercooling(model="supercooling", degree=8, rate=0.0002).rate.unit
-    '1/(s K)'
+    >>> Supercooling(degree=8, rate=0.0002)
+    Supercooling(model=supercooling, degree=8 K, rate=0.0002 1/(s K))
     """
 
     path: ClassVar[str] = "it stays liquid below its melting range until it nucleates, and then crystallises"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
-from typing import Final, Self
+from typing import Any, Final, Self
+
+from mascarin._io.own_files import json_of
 
 
 class Kind(StrEnum):
@@ -136,3 +138,16 @@ def with_kinds(lines: Sequence[str], kinds: Sequence[str] | None) -> list[RunWar
     if kinds is None:
         return of_kind(Kind.UNKNOWN, lines)
     return [RunWarning(line, Kind(kind)) for line, kind in zip(lines, kinds, strict=True)]
+
+
+def warnings_of(attributes: Mapping[str, Any]) -> list[RunWarning]:
+    """Warnings of a file of results, with their kinds where it has them.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Attributes of the file: ``warnings`` and perhaps ``warning_kinds``, as JSON.
+    """
+    lines = [str(line) for line in json_of(attributes["warnings"])]
+    kinds = attributes.get("warning_kinds")
+    return with_kinds(lines, None if kinds is None else json_of(kinds))
