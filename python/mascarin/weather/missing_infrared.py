@@ -78,7 +78,12 @@ def with_whole_infrared(record: WeatherRecord) -> WeatherRecord:
         return record
     parts = [_over_intervals(record, name) for name in needed]
     model = sky_emission(*parts)
-    return replace(record, columns={**record.columns, "infrared": np.where(missing, model, values)})
+    closing = dict(record.closing)
+    if np.isnan(closing.get("infrared", 0.0)):
+        ends = [np.array([closing.get(name, record.columns[name][-1])]) for name in needed]
+        closing["infrared"] = float(sky_emission(*ends)[0])
+    columns = {**record.columns, "infrared": np.where(missing, model, values)}
+    return replace(record, columns=columns, closing=closing)
 
 
 def _over_intervals(record: WeatherRecord, name: str) -> Array:
