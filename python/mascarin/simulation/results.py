@@ -184,9 +184,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         """
         import pandas as pd
 
-        seconds = seconds_of(interval, "interval")
         elapsed = self.times.since_start
-        times = np.arange(0.0, elapsed[-1] + 1e-6, seconds)
+        times = np.arange(0.0, elapsed[-1] + 1e-6, seconds_of(interval, "interval"))
         if len(times) < 2:
             raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
         columns = [
