@@ -7,6 +7,7 @@ priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % o
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
@@ -112,3 +113,19 @@ def test_intervals_and_bands_contain_what_they_say_over_many_experiments() -> No
     assert inside.mean(axis=0).min() >= 0.85
     assert 0.93 <= held.mean() <= 0.97
     assert held.mean(axis=0).min() >= 0.88
+
+
+def test_a_covariance_is_drawn_from_fewer_large_errors_than_sensors() -> None:
+    """The sum of squares is singular, and what the prior adds is below its round-off."""
+    rng = np.random.default_rng(5)
+    for size in (3, 8, 12):
+        errors = 1e5 * rng.standard_normal((2, size))
+        total = errors.T @ errors + 1e-9 * np.eye(size)
+        with pytest.raises(np.linalg.LinAlgError):
+            np.linalg.cholesky(total - 1e-4 * np.eye(size))
+        draw = inverse_wishart(rng, total - 1e-4 * np.eye(size), size + 3.0)
+        assert np.isfinite(draw).all()
+        assert (np.diag(draw) > 0.0).all()
+    # A regular sum is drawn as before: the mean is total / (freedom - size - 1).
+    draws = [inverse_wishart(rng, np.diag([4.0, 1.0]), 30.0) for _ in range(4000)]
+    assert np.mean(draws, axis=0) == pytest.approx(np.diag([4.0, 1.0]) / 27.0, abs=0.01)

@@ -39,6 +39,8 @@ Floats = NDArray[np.float64]
 
 #: Degrees of freedom of the half-t distributions.
 _FREEDOM: Final = 2.0
+#: Part of a variance that round-off may hide in a sum of squares. [-]
+_ROUND_OFF: Final = 1e-12
 #: Moves before the sample, moves of the sample, and every which of them is kept.
 _BURN_IN: Final = 100
 _MOVES: Final = 300
@@ -332,9 +334,24 @@ def inverse_wishart(rng: np.random.Generator, total: Floats, freedom: float) -> 
     size = len(total)
     lower = np.tril(rng.standard_normal((size, size)), -1)
     lower[np.diag_indices(size)] = np.sqrt(rng.chisquare(freedom - np.arange(size)))
-    part = np.linalg.solve(lower, np.linalg.cholesky(0.5 * (total + total.T)).T)
+    part = np.linalg.solve(lower, _cholesky(0.5 * (total + total.T)).T)
     draw = part.T @ part
     return np.asarray(0.5 * (draw + draw.T))
+
+
+def _cholesky(total: Floats) -> Floats:
+    """Lower factor of a sum of squares, which may be singular to round-off.
+
+    Fewer errors than sensors make a singular sum. What the prior adds to its diagonal is lost where the
+    errors are large: then that much is added in units of each sensor that round-off cannot hide it.
+    """
+    try:
+        return np.asarray(np.linalg.cholesky(total))
+    except np.linalg.LinAlgError:
+        scale = np.sqrt(np.diag(total))
+        alike = total / np.outer(scale, scale)
+        lift = len(total) * _ROUND_OFF - min(float(np.linalg.eigvalsh(alike)[0]), 0.0)
+        return np.asarray(scale[:, None] * np.linalg.cholesky(alike + lift * np.eye(len(total))))
 
 
 def _along_slots(matrix: Floats, values: Floats) -> Floats:

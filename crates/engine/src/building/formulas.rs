@@ -6,9 +6,9 @@ use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
 use crate::input::description::{Convection, Description, Facing, Material, MeltingCurve, PcmLaw, Side};
 use crate::physics::convection::formula_text::FormulaText;
-use crate::physics::pcm::history;
 use crate::physics::convection::law::row;
 use crate::physics::law_row::Sides;
+use crate::physics::pcm::history;
 use crate::physics::pcm::text::FractionText;
 
 /// The law of each surface that is written as text.
@@ -123,7 +123,10 @@ mod tests {
         let mut description = zones_in_a_row(1);
         let outside = &mut description.surfaces[0].outside;
         (outside.convection, outside.facing) = (Some(Convection::law(kind, &numbers)), facing);
-        read(&description).err().expect("a refusal").to_string()
+        match read(&description) {
+            Ok(_) => panic!("no refusal of {kind}"),
+            Err(error) => error.to_string(),
+        }
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub const MODEL_STATE: usize = 3;
 pub(crate) const HISTORY_NUMBERS: usize = 2 + MODEL_STATE;
 
 /// What a phase-change cell carries from step to step. Changes once per accepted step; a law with a rate reads a copy of it
-/// within a stage, see [`HistoryLaw::in_stage`].
+/// within a stage, see `HistoryLaw::in_stage`.
 #[derive(Debug, Clone, Copy)]
 pub struct PcmHistory<S> {
     /// Liquid fraction at the end of the last accepted step [-].

@@ -163,7 +163,8 @@ impl<S: Real> HistoryLaw<S> for Supercooling<S> {
             self.kinetics.remainder(temperature, history.model_state[DURATION]);
         let (all, all_slope) = self.curve.convex(temperature, [-far, far]);
         let (molten, molten_slope) = self.curve.convex(temperature, [meets, far]);
-        let melts = !temperature.lt(meets);
+        // As `at` has it, so that both have their corner at the same number.
+        let melts = !S::zero().lt(history.liquid_fraction - self.curve.compact(temperature).0);
         let begun = self.curve.compact(meets).0;
         let (more, more_slope) = either(melts, (molten - begun, molten_slope), (S::zero(), S::zero()));
         let value = all + remainder * (more - all);
