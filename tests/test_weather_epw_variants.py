@@ -110,7 +110,7 @@ def test_infrared_that_is_missing_in_some_hours_is_that_of_the_model_there(tmp_p
     plain = simulate(building, read, start=first, end=last, step="1h", initial=20.0)
     assert any("infrared has no value in 30 of 8760 rows: in these" in text for text in plain.warnings)
     channel = CHANNELS.index("infrared")
-    place = Place(39.74, -105.18)
+    place = Place(39.74, -105.18, 1829.0)
     days = ("2001-06-01", "2001-06-05")  # the model is not asked for outside of the gap
     assert np.array_equal(read.forcing(place, *days, 3600.0)[..., channel],
                           whole.forcing(place, *days, 3600.0)[..., channel])  # fmt: skip
