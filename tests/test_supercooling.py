@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
-# Of a salt hydrate about 29 degC, and of a slab of it that has one temperature: Biot number 2e-5.
+# Of a salt hydrate about 29 degC, and of a slab of it that has one temperature: Biot number 7e-4.
 DENSITY, LATENT, MELTING, WIDTH, THICKNESS, COEFFICIENT = 1700.0, 190e3, 29.0, 0.2, 0.01, 8.0
 SOLID, LIQUID, DEGREE = 1400.0, 2100.0, 8.0
-CONDUCTIVITY = 2000.0
+CONDUCTIVITY = 60.0
 CONDUCTANCE = 1.0 / (1.0 / COEFFICIENT + 0.5 * THICKNESS / CONDUCTIVITY)
 START, AROUND = 35.0, 12.0
 #: Heat of the slab per kelvin and kilogram of its material [J/K].
@@ -55,7 +55,7 @@ def cooled(
 def test_a_lumped_node_supercools_returns_to_its_melting_point_and_freezes_there() -> None:
     """Without delay (time constant 0) and with equal specific heats each part has a closed form."""
     heat, half = 2000.0, 1e-3
-    run = cooled(wax("time_constant: 0", heat, heat, half), 6 * setup.HOUR, 10.0)
+    run = cooled(wax("time_constant: 0", heat, heat, half), 9 * setup.HOUR, 10.0)
     time = 10.0 * np.arange(len(run.records))
     temperature, liquid = run.records.T
     decay = MASS * heat / CONDUCTANCE
@@ -69,16 +69,19 @@ def test_a_lumped_node_supercools_returns_to_its_melting_point_and_freezes_there
     left = 1.0 - heat * DEGREE / LATENT
     frozen = CONDUCTANCE * (MELTING - AROUND) / (MASS * LATENT)
     assert abs(temperature[first] - MELTING) < half
-    assert abs(liquid[first] - (left - frozen * (time[first] - nucleation))) < 2e-4
+    # It is colder than then while it warms, for a step and a half at most, and loses less heat.
+    less = 1.5 * 10.0 * frozen * DEGREE / (MELTING - AROUND)
+    assert abs(liquid[first] - (left - frozen * (time[first] - nucleation))) < less
     # The plateau lasts until all latent heat has gone.
     end = nucleation + left / frozen
     on = (time > nucleation + 20.0) & (time < end - 20.0)
     assert np.abs(temperature[on] - MELTING).max() <= half
-    assert np.abs(liquid[on] - (left - frozen * (time[on] - nucleation))).max() < 2e-4
+    assert np.abs(liquid[on] - (left - frozen * (time[on] - nucleation))).max() < less
     solid = time > end + 20.0
     after = AROUND + (MELTING - AROUND) * np.exp(-(time - end) / decay)
     assert liquid[solid].max() == 0.0
-    assert np.abs(temperature - after)[solid].max() < 5e-3
+    # The end is later by what was not lost before.
+    assert np.abs(temperature - after)[solid].max() < less / frozen * (MELTING - AROUND) / decay
 
 
 @pytest.mark.parametrize("kinetics", ["time_constant: 0", "time_constant: 600", "rate: 2e-4"])
@@ -171,11 +174,11 @@ def test_the_order_of_the_scheme_holds_through_the_nucleation(
             run = cooled(wax(kinetics), length, step, scheme, start=start)
             return np.asarray(run.records[round(late / step) :: round(100.0 / step), 0])
 
-        fine = at(1.0)
-        return [float(np.abs(at(step) - fine).max()) for step in (100.0, 20.0)]
+        fine = at(0.5)
+        return [float(np.abs(at(step) - fine).max()) for step in (20.0, 10.0)]
 
-    coarse, fine = np.mean([errors(start) for start in np.linspace(33.0, 37.0, 12)], axis=0)
-    assert np.log(coarse / fine) / np.log(5.0) == pytest.approx(order, abs=0.35)
+    coarse, fine = np.mean([errors(start) for start in np.linspace(33.0, 37.0, 8)], axis=0)
+    assert np.log(coarse / fine) / np.log(2.0) == pytest.approx(order, abs=0.35)
 
 
 # --- every entrance -----------------------------------------------------------------------------------------
@@ -188,7 +191,7 @@ materials:
   board: {conductivity: 0.16, density: 800, specific_heat: 1090}
 constructions:
   wall:
-    layers: [{material: salt, thickness: 0.01, nodes: 4}, {material: board, thickness: 0.0125, nodes: 2}]
+    layers: [{material: salt, thickness: 0.002, nodes: 4}, {material: board, thickness: 0.0125, nodes: 2}]
 surfaces:
   slab: {construction: wall, area: 10, tilt: 90, outside: {measured: gap, convection: 10},
          inside: {measured: room, convection: 6}}
