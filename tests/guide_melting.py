@@ -23,7 +23,7 @@ from sitepages.snippets import Snippets
 PATH = "materials.wax.hysteresis.delay"
 WALL = """\
 materials:
-  wax: {kind: pcm, conductivity: 1000, density: 850, specific_heat: 2000, latent_heat: 120000,
+  wax: {kind: pcm, conductivity: 60, density: 850, specific_heat: 2000, latent_heat: 120000,
         melting_temperature: 23.5, law: {kind: linear, width: 0.5},
         hysteresis: {model: delay, delay: {value: 1800, range: [900, 3600]}}}
 constructions: {wall: {layers: [{material: wax, thickness: 0.02, nodes: 1}]}}
