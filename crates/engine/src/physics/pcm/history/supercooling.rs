@@ -12,8 +12,8 @@
 //! Sources: states and nucleation: Guenther, Mehling & Hiebler (2007), Modelling Simul. Mater. Sci. Eng. 15(8), 879-892,
 //! doi:10.1088/0965-0393/15/8/005; Davin, Lefez & Guillet (2020), Int. J. Therm. Sci. 147, 106121,
 //! doi:10.1016/j.ijthermalsci.2019.106121. Kinetics with a rate that depends on temperature: Nakamura et al. (1972), J. Appl.
-//! Polym. Sci. 16(5), 1077-1091, doi:10.1002/app.1972.070160503; growth proportional to the undercooling: Uzan et al. (2017),
-//! Appl. Therm. Eng. 121.
+//! Polym. Sci. 16(5), 1077-1091, doi:10.1002/app.1972.070160503; growth proportional to the undercooling: Uzan et al. (2017), Int. J. Heat
+//! Mass Transf. 106, 91-102.
 //!
 //! In time the fraction goes with the stages of the scheme: `xi - g dt d xi/dt = xi_n + ratio (xi_1 - xi_n)` at the temperature
 //! of the stage. The nucleation falls into a step: what is left of that step after it (by the straight line between the
