@@ -207,15 +207,15 @@ def _open(file: str, allow_outside: bool) -> Study:
     return opened
 
 
-def _with_interval(found: Mapping[str, Any]) -> tuple[str, str, str]:
+def _with_interval(estimate: Mapping[str, Any]) -> tuple[str, str, str]:
     """Estimate and interval of a parameter, which may not be stated."""
-    shown = with_interval(found["fitted"], found["low"], found["high"])
-    return shown if found.get("stated", True) else (shown[0], "not stated", "")
+    shown = with_interval(estimate["fitted"], estimate["low"], estimate["high"])
+    return shown if estimate.get("stated", True) else (shown[0], "not stated", "")
 
 
 def _texts(contradictions: Sequence[Mapping[str, Any]]) -> list[str]:
     """What the model or the study contradicts, in sentences."""
-    return [str(one["text"]) for one in contradictions]
+    return [str(contradiction["text"]) for contradiction in contradictions]
 
 
 def _print_warnings(lines: Sequence[str]) -> None:

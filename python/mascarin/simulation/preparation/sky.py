@@ -43,7 +43,7 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
     if stated or any(path.startswith(_MODEL) for path in used):
         return building
     values = climate.data.get("infrared")
-    known = None if values is None else values.notna()
-    if known is None or not bool(known.all() or (climate.record.of_year and known.any())):
+    measured = None if values is None else values.notna()
+    if measured is None or not bool(measured.all() or (climate.record.of_year and measured.any())):
         return building
     return building.replace({"site.sky": "measured"})
