@@ -16,6 +16,7 @@ from mascarin.building import json_schema
 from mascarin.building.base.leaves import steps
 from mascarin.building.base.number import Number
 from mascarin.building.base.part import Part
+from mascarin.building.parts.envelope.law_table import CONVECTION
 from mascarin.building.parts.materials.formula import Formula
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
@@ -115,6 +116,8 @@ def test_keys_are_those_of_the_engine(repository: Path) -> None:
     source = re.sub(r'#\[serde\(rename = "(\w+)"\)\]\s*\w+:', r"\1:", source)
     fields = set(re.findall(r"(?:pub |\b)(\w+): (?:Option<|Vec<)*\[?ParamId", source))
     fields.add("cloud")  # its factor is a list of ids without names
+    # Numbers of published laws have the names of the table.
+    fields |= {number.name for row in CONVECTION.values() for number in row.numbers}
     assert {key for building in everything() for key, _ in ids(described(building))} == fields
 
 

@@ -136,6 +136,8 @@ def test_the_engine_agrees(case: int) -> None:
             changed[row] = exchanged(moved[row + 1].copy()) != nominal
         # The engine's wind never falls below 1 mm/s, so that c V^m moves a result a little even in still air.
         calm = parameter.reason == "there is no wind on this side" and parameter.path.endswith(".c")
+        # A nucleation needs a day on which all melts, which this weather need not have.
+        calm |= ".hysteresis." in parameter.path
         assert calm or changed[row] == (parameter.reason is None), (parameter.path, parameter.reason)
 
 

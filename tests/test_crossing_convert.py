@@ -75,6 +75,7 @@ WITHOUT_OBJECTS: Final = {
     "products": "the catalogue belongs to Mascarin",
     "humidity": "the vapour of people and materials is part of other objects, whose findings name it",
     "thermal bridges": "EnergyPlus has no object for them",
+    "supercooling": "hysteresis of EnergyPlus has two curves, and no nucleation",
     "sensors and ties": "outputs inside walls belong to nodes, and numbers are not tied",
 }
 

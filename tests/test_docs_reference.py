@@ -133,9 +133,7 @@ def fits(name: str, pattern: str) -> bool:
 def test_a_command_is_listed_with_its_options() -> None:
     run = commands.command_text("run")
     assert run.startswith("```console\nmascarin run --weather PATH")
-    assert (
-        "Ends with exit code 1 where the energy balance does not close or a temperature has no cause." in run
-    )
+    assert "Ends with exit code 1 where a balance does not close or a temperature has no cause." in run
     assert "`--weather PATH`" in run
     assert "**[required]**" in run
     assert "*[default: 15min]*" in run

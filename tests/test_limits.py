@@ -195,7 +195,7 @@ def test_settings_of_comfort_give_the_same_hours_for_rounded_series() -> None:
 
 #: Modules in which every comparison of a size is with a limit, and what else is compared there.
 RATED = {
-    "comfort/adaptive.py": {"len(known) >= count"},
+    "comfort/adaptive.py": {"len(temperatures) >= count"},
     "comfort/givoni.py": set(),
     "comfort/heat_balance.py": set(),
     "comfort/evaluation.py": {"above > 0.0", "beyond > 0.0", "beyond < 0.0"},

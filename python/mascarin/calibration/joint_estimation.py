@@ -143,7 +143,8 @@ def _reported(
     low, high = np.minimum(low, z), np.maximum(high, z)
     covariance = distribution.covariance[: z.size, : z.size]
     sd = np.sqrt(np.diag(covariance))
-    correlation = covariance / np.outer(sd, sd)
+    spread = np.where(sd > 0.0, sd, 1.0)  # an estimate on its bound has no variance
+    correlation = covariance / np.outer(spread, spread)
     residuals = np.where(
         problem.mask, linearization.simulated - np.where(problem.mask, problem.measured, 0.0), 0.0
     )

@@ -192,7 +192,8 @@ class JointPosterior:
 
         factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
         count = self.sample.shape[1]
-        curvature = 1.0 / np.diag(self.covariance)[:count]
+        # An estimate on its bound has no variance.
+        curvature = 1.0 / np.maximum(np.diag(self.covariance)[:count], np.finfo(np.float64).tiny)
         prior = np.minimum(1.0 / self.prior**2, curvature)
         wider = np.sqrt(curvature / (prior + (curvature - prior) / factor**2))
         middle = np.median(self.sample, axis=0)

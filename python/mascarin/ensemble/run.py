@@ -155,9 +155,10 @@ def sweep(
         )
         .assign_attrs(
             failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
+            # Plain texts: files of xarray take no others.
             warnings=[
-                *of_members(*judged, step_seconds=first.step_seconds, precision=precision),
-                *of_base(of_nominal(first)),
+                *map(str, of_members(*judged, step_seconds=first.step_seconds, precision=precision)),
+                *map(str, of_base(of_nominal(first))),
             ],
             **({} if precision == "double" else {"single_precision": _said(inputs, members_read, judged[0])}),
         )

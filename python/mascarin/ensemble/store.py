@@ -401,7 +401,7 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
-            "warnings": self._said([table.column(name).to_numpy() for name in _JUDGED], first),
+            "warnings": [*map(str, self._said([table.column(name).to_numpy() for name in _JUDGED], first))],
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
             **({"single_precision": said} if (said := self.single_precision()) else {}),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Discriminator, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.building import quantities as q
 from mascarin.building.base.number import problem
@@ -57,7 +57,7 @@ class Supercooling(OneCurveLaw):
 
     path: ClassVar[str] = "it stays liquid below its melting range until it nucleates, and then crystallises"
     excluded_schemes: ClassVar[tuple[str, ...]] = ("apparent-capacity",)
-    model: Literal["supercooling"] = "supercooling"
+    model: Literal["supercooling"] = Field("supercooling", description="The law, by its name")
     degree: q.SupercoolingDegree
     time_constant: q.CrystallisationTime | None = None
     rate: q.CrystallisationRate | None = None
