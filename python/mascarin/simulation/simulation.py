@@ -248,7 +248,7 @@ class Simulation(VectorRuns):
         named = dict(zip(paths, units, strict=True))
         said = self.warnings_at(self.vector(parameters or {}))
         return labelled_slopes(self.outputs, self.index, named, records, slopes).assign_attrs(
-            warnings=list(said)
+            warnings=list(map(str, said))
         )
 
     def gradient(
