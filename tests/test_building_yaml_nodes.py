@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+import mascarin
 from mascarin.building.files import yaml_nodes
 from mascarin.building.files.yaml_nodes import compose
 
@@ -61,7 +62,7 @@ def test_the_nodes_of_any_text_are_those_of_ruamel(text: str) -> None:
 
 
 def shipped() -> list[Path]:
-    package = Path(yaml_nodes.__file__).parents[1]
+    package = Path(mascarin.__file__).parent
     return sorted(package.rglob("*.yaml"))
 
 
