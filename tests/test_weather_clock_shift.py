@@ -42,7 +42,8 @@ def test_planted_shifts_of_clear_days(latitude: float, minutes: float, step: flo
         # Shifts of 10 min are tried, and interpolated.
         assert shifts[by].late / 60.0 == pytest.approx(minutes, abs=1.0 if by == "balance" else 2.5)
         assert abs(shifts[by].late - 60.0 * minutes) < 2.0 * shifts[by].uncertainty
-        assert shifts[by].uncertainty < 240.0
+        # One clear day alone has an uncertainty of 7 min, nine have 2 min.
+        assert shifts[by].uncertainty < (240.0 if shifts[by].days > 2 else 420.0)
     assert not shifts["balance"].split
     word = "later" if minutes > 0 else "earlier"
     with pytest.raises(
