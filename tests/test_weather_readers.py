@@ -8,6 +8,7 @@ import pytest
 
 from mascarin.errors import InputError
 from mascarin.weather import CHANNELS, Climate
+from mascarin.weather.missing_infrared import sky_emission
 from mascarin.weather.sun import SunPath
 
 
@@ -174,8 +175,18 @@ def test_codes_for_missing_values_in_epw(epw_lines: list[str], tmp_path: Path) -
     climate = Climate.from_epw(path)
     assert climate.site is not None
     infrared = climate.forcing(climate.site, "2001-01-01", "2001-01-02", 3600.0)[..., 3]
-    assert np.isnan(infrared).all()
-    assert any("warning: infrared has no value in 4 of 8760 rows" in note for note in climate.provenance)
+    # Lines 9 to 12 are the values at 1 to 4 h; the model of the sky stands there alone.
+    filled = climate.completed().data["infrared"].to_numpy()
+    whole = climate.data["infrared"].to_numpy()
+    assert np.flatnonzero(np.isnan(whole)).tolist() == [1, 2, 3, 4]
+    assert np.array_equal(np.delete(filled, range(1, 5)), np.delete(whole, range(1, 5)))
+    state = climate.completed().data.iloc[1:5]
+    model = sky_emission(
+        *(state[name].to_numpy() for name in ("air_temperature", "dew_point", "cloud_cover"))
+    )
+    assert filled[1:5] == pytest.approx(model, rel=1e-12)
+    assert np.isfinite(infrared).all()
+    assert any("infrared has no value in 4 of 8760 rows" in text for text in climate.record.warnings)
     assert climate.forcing(climate.site, "2001-01-02", "2001-01-03", 3600.0).shape[0] == 24
 
 
@@ -263,7 +274,9 @@ def test_impossible_values_are_refused_where_they_are_used(epw_lines: list[str],
 def test_infrared_of_zero_is_none(epw_lines: list[str], tmp_path: Path) -> None:
     climate = changed_epw(epw_lines, 100, 12, "0", tmp_path)
     assert climate.site is not None
-    assert np.isnan(climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)[..., 3]).all()
+    assert int(np.isnan(climate.data["infrared"]).sum()) == 1
+    assert any("infrared has no value in 1 of 8760 rows" in text for text in climate.record.warnings)
+    assert climate.completed().data["infrared"].min() > 50.0
     assert not np.isnan(climate.forcing(climate.site, "2001-02-01", "2001-03-01", 3600.0)[..., 3]).any()
 
 
