@@ -8,7 +8,6 @@ import pytest
 
 from mascarin.errors import InputError
 from mascarin.weather import CHANNELS, Climate
-from mascarin.weather.missing_infrared import sky_emission
 from mascarin.weather.sun import SunPath
 
 
