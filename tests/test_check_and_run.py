@@ -30,6 +30,8 @@ OF_THE_PERIOD = (
     "period: ",
     "controls.",
     "initial",
+    # `check` knows no scheme.
+    "scheme: found",
 )
 CASES = 80
 
