@@ -12,6 +12,7 @@ PHYSICS: Final = ROOT / "crates" / "engine" / "src" / "physics"
 #: Titles of the folders, in the order of the page.
 FOLDERS: Final = {
     "pcm": "Phase change",
+    "pcm/history": "Phase change that depends on what went before",
     "convection/laws": "Convection at surfaces",
     "longwave": "Long-wave radiation",
     ".": "Sun, air and windows",
