@@ -1,7 +1,9 @@
 """How often intervals and bands contain the truth when the errors are those that are assumed.
 
 Everything is drawn from the assumed process: parameters and offsets, the sizes of the errors from their
-priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % of the truths.
+priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % of the truths. Assumed is what
+`mascarin.calibration.joint_posterior` says: the scale of the errors of the model is the stated uncertainty
+less the offset, the error within a day is at least half of a stated uncertainty, and no offset exceeds two.
 """
 
 from __future__ import annotations
@@ -9,25 +11,30 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.stats import truncnorm
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
+from mascarin.calibration.bounded_coefficients import LARGEST_ERROR
 from mascarin.calibration.covariance_sampling import inverse_wishart
 from mascarin.calibration.day_blocks import DayGrid
 from mascarin.calibration.discrepancy import (
     CORRELATION_HOURS,
     Discrepancy,
     alike_days,
+    at_least,
     drift_kernel,
     hour_basis,
     root_of,
 )
-from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.joint_posterior import LEAST_ERROR, ErrorStatement, Linear, joint_posterior
 from mascarin.calibration.sensor_errors import SensorError, error_columns
 
 Floats = NDArray[np.float64]
 
 SENSORS, PARAMETERS, DAYS, BLIND = 2, 4, 5, 12
 SCALE, OFFSET = 0.15, 0.15
+#: What is stated of each sensor: its offset and the scale of everything else.
+STATED = float(np.hypot(SCALE, OFFSET))
 HOURS = np.arange(24.0 * (DAYS + BLIND))
 SEEN = HOURS < 24.0 * DAYS
 ALIKE = alike_days(DAYS, 5.0)
@@ -45,9 +52,8 @@ def covariance(rng: np.random.Generator) -> Floats:
 def sizes_of(rng: np.random.Generator) -> Discrepancy:
     white = np.minimum(np.diag(covariance(rng)), 1.0)
     hours = float(rng.choice(CORRELATION_HOURS))
-    return Discrepancy(
-        covariance(rng), covariance(rng), covariance(rng), white, np.zeros(SENSORS), hours, ALIKE
-    )
+    drift = at_least(covariance(rng), LEAST_ERROR * STATED)
+    return Discrepancy(covariance(rng), covariance(rng), drift, white, np.zeros(SENSORS), hours, ALIKE)
 
 
 def slopes(rng: np.random.Generator) -> Floats:
@@ -69,7 +75,7 @@ def errors(rng: np.random.Generator, sizes: Discrepancy) -> Floats:
     slow = np.linalg.cholesky(grid_kernel) @ rng.normal(size=(DAYS + BLIND, 24, SENSORS))
     slow = slow.reshape(-1, SENSORS) @ root_of(sizes.drift).T
     white = rng.normal(size=slow.shape) * np.sqrt(sizes.white)
-    offset = OFFSET * rng.normal(size=SENSORS)
+    offset = OFFSET * truncnorm.rvs(-LARGEST_ERROR, LARGEST_ERROR, size=SENSORS, random_state=rng)
     return np.asarray(repeating + np.repeat(of_day, 24, axis=0) + slow + white + offset)
 
 
@@ -82,7 +88,7 @@ def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     measured = 20.0 + slope @ (z - 0.5) + errors(rng, sizes_of(rng))
     problem = CalibrationProblem(
         tuple(FitParameter(f"p{k}", 0.0, 1.0, nominal=0.5, prior=(0.5, 0.2)) for k in range(PARAMETERS)),
-        tuple(FitSensor(f"s{s}", measured[SEEN, s], SCALE) for s in range(SENSORS)),
+        tuple(FitSensor(f"s{s}", measured[SEEN, s], STATED) for s in range(SENSORS)),
         lambda x: np.tile(measured[SEEN][None], (len(x), 1, 1)),
         step=3600.0,
     )

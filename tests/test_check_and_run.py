@@ -30,8 +30,9 @@ OF_THE_PERIOD = (
     "period: ",
     "controls.",
     "initial",
-    # `check` knows no scheme.
+    # `check` knows neither the scheme nor the table of measurements.
     "scheme: found",
+    "no measured column",
 )
 CASES = 80
 

@@ -155,7 +155,8 @@ def test_a_calibration_estimates_an_offset_that_is_stated(table: pd.DataFrame, t
         )
 
     output = "wall.interface_1_temperature"
-    plain = found(Sensor("joint", standard_uncertainty=0.05, output=output))
+    # Errors that are independent from value to value, and no offset, are what was not the case.
+    plain = found(Sensor("joint", output=output, offset=0.0, repeatability=0.05))
     fit = found(Sensor("joint", output=output, offset=0.3, repeatability=0.03))
     # All four are inside in 95 of 100 experiments if each interval is 1.27 times as wide as that of one.
     truth = np.array([TRUTH[path] for path in fit.problem.paths])
