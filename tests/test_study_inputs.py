@@ -148,15 +148,18 @@ def test_a_calibration_estimates_an_offset_that_is_stated(table: pd.DataFrame, t
     shifted = Measurements.from_table(table.assign(joint=table["joint"] + 0.3), timezone="UTC+1")
     options: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "warm_up": "1d"}
 
-    def found(joint: Sensor, **more: Any) -> Any:
-        sensors = {"joint": joint, "core.temperature": Sensor("core", standard_uncertainty=0.05)}
+    normal = Sensor("core", standard_uncertainty=0.05)
+
+    def found(joint: Sensor, core: Sensor = normal, **more: Any) -> Any:
+        sensors = {"joint": joint, "core.temperature": core}
         return calibrate(
             wall, open_climate(table), shifted, sensors=sensors, vary=list(TRUTH), **options, **more
         )
 
     output = "wall.interface_1_temperature"
-    # Errors that are independent from value to value, and no offset, are what was not the case.
-    plain = found(Sensor("joint", output=output, offset=0.0, repeatability=0.05))
+    # Errors that are independent from value to value, without an offset, are not what was planted.
+    scatter: dict[str, Any] = {"offset": 0.0, "repeatability": 0.05}
+    plain = found(Sensor("joint", output=output, **scatter), Sensor("core", **scatter))
     fit = found(Sensor("joint", output=output, offset=0.3, repeatability=0.03))
     # All four are inside in 95 of 100 experiments if each interval is 1.27 times as wide as that of one.
     truth = np.array([TRUTH[path] for path in fit.problem.paths])
