@@ -17,6 +17,8 @@ from random_judges import faults
 #: Cases that are run here, in parts of about the same time.
 PARTS = 6
 CASES = 60
+#: Its start is repeated 406 times in each of its runs: the campaign (`make fuzz`) runs it.
+LONG = {37}
 #: Cases whose descriptions are drawn and not run.
 DRAWN = 300
 #: Cases of a part that a run may refuse or not solve.
@@ -66,7 +68,7 @@ def test_a_printed_case_is_the_same_building() -> None:
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_nothing_impossible_comes_out(part: int) -> None:
-    lines = [random_campaign.judged(seed) for seed in range(part, CASES, PARTS)]
+    lines = [random_campaign.judged(seed) for seed in range(part, CASES, PARTS) if seed not in LONG]
     faults = [(line["seed"], *fault) for line in lines for fault in line["faults"]]
     assert faults == []
     ended = [(line["seed"], line.get("error")) for line in lines if line["outcome"] != "run"]

@@ -219,7 +219,13 @@ class DayData:
 
 
 def estimate_discrepancy(
-    data: DayData, *, scale: Floats, limit: Floats, least: Floats | float = 0.0, persistence: float = 0.0
+    data: DayData,
+    *,
+    scale: Floats,
+    limit: Floats,
+    least: Floats | float = 0.0,
+    persistence: float = 0.0,
+    near: Discrepancy | None = None,
 ) -> Discrepancy:
     """Estimate the sizes of the errors by marginal likelihood.
 
@@ -235,12 +241,16 @@ def estimate_discrepancy(
         Smallest standard deviation of the error that is correlated within a day. [unit]
     persistence : float
         Correlation time of the errors of days, see `alike_days`. [d]
+    near : Discrepancy, optional
+        An estimate from nearly the same errors: where to begin, with its correlation time.
 
     Returns
     -------
     Discrepancy
         That with the largest density over the correlation times `CORRELATION_HOURS`.
     """
+    if near is not None:
+        return _maximized(data, near, scale, limit, least, _MAX_ITERATIONS)
     prior, alike = np.diag(scale**2), alike_days(data.grid.days, persistence)
     best, density = None, -np.inf
     for hours in CORRELATION_HOURS:

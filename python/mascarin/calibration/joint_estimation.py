@@ -108,9 +108,9 @@ def _searched(
     problem: CalibrationProblem, linear: Callable[[Floats], Linear], stated: ErrorStatement, first: Floats
 ) -> Linear:
     """Linearize about better and better estimates, until the density no longer rises."""
-    linearization = linear(first)
+    linearization, covariances = linear(first), None
     for _ in range(_MAX_STEPS):
-        goal, covariances = best_positions(problem, linearization, stated)
+        goal, covariances = best_positions(problem, linearization, stated, covariances)
         before = objective(problem, linearization, stated, covariances)
         for _ in range(_MAX_HALVINGS):
             trial = linear(goal)

@@ -331,9 +331,16 @@ def best_positions(
     problem: CalibrationProblem,
     linear: Linear,
     stated: ErrorStatement,
-    covariances: Discrepancy | None = None,
+    near: Discrepancy | None = None,
 ) -> tuple[Floats, Discrepancy]:
     """Find the most probable positions alone, with the covariances of the errors.
+
+    Parameters
+    ----------
+    problem, linear, stated
+        As for `joint_posterior`.
+    near : Discrepancy, optional
+        Covariances of a linearization near by, to begin with.
 
     Returns
     -------
@@ -342,7 +349,7 @@ def best_positions(
     Discrepancy
         Sizes of the errors of the model.
     """
-    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, covariances)
+    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, None, near)
     count = len(problem.parameters)
     low, high = ends_of(count, data.effects.shape[2] - linear.further.shape[2] - count, mean.size)
     precision = gaussian.precision / np.outer(scale, scale)
@@ -350,7 +357,11 @@ def best_positions(
 
 
 def _estimated(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy | None
+    problem: CalibrationProblem,
+    linear: Linear,
+    stated: ErrorStatement,
+    covariances: Discrepancy | None,
+    near: Discrepancy | None = None,
 ) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
     """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
     center, spread = _priors(problem)
@@ -362,6 +373,7 @@ def _estimated(
             limit=stated.limit,
             least=_least(problem, stated),
             persistence=stated.persistence,
+            near=near,
         )
     gaussian = data.gaussian(covariances)
     unit = gaussian.coefficients(data.error)
