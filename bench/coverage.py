@@ -31,9 +31,9 @@ from mascarin.examples import STUDIES
 from mascarin.linear_algebra import one_thread
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study import Study
-from mascarin.study.combined import combined_intervals, estimates_of
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.model_averaging import combined_intervals, estimates_of
+from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.weather import Measurements
 
 Floats = NDArray[np.float64]

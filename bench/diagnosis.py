@@ -30,9 +30,9 @@ from scipy import stats
 
 from mascarin import Study
 from mascarin.examples import STUDIES
-from mascarin.study.diagnosis_step import diagnosis
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.diagnosis.step import diagnosis
+from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.weather import Climate, Measurements
 
 Edit = Callable[[pd.DataFrame], None]

@@ -39,9 +39,9 @@ from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.single_precision import Difference
-from mascarin.study import kept
-from mascarin.study.findings import PredictionIntervals
-from mascarin.study.storage import Workspace
+from mascarin.study.context import step_cache as kept
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.findings import PredictionIntervals
 from mascarin.tables.timezones import parse_timezone
 
 CODES = (

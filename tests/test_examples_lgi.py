@@ -13,9 +13,9 @@ from mascarin.building import Building, load
 from mascarin.building.geometry import Polygon, view_factors, volume
 from mascarin.examples import STUDIES
 from mascarin.study import Study
-from mascarin.study.description import read_study
-from mascarin.study.model_runs import ModelRuns, judged
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.file.description import read_study
+from mascarin.study.steps.model_runs import ModelRuns, judged
 
 FOLDER = STUDIES["lgi"].parent
 SHA256 = "f148c2fc65ce14ee8cadda7b3ce04cdce9d4fc38abcd97bdc1402ee9edd31f96"

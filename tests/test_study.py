@@ -421,7 +421,7 @@ def test_a_variant_may_hold_dots_in_its_name(quick: Bench, capsys: pytest.Captur
 
 def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     from mascarin.study import Study
-    from mascarin.study.storage import Workspace
+    from mascarin.study.context.storage import Workspace
 
     study = Study(quick.study)
     out = quick.folder / "out"
@@ -575,7 +575,7 @@ def test_interrupted_it_ends_with_130_and_keeps_its_work(long: Bench) -> None:
 
 
 def test_chunks_of_work_last_about_a_second() -> None:
-    from mascarin.study.sensitivity_step import CHUNK_SECONDS, _Pace
+    from mascarin.study.steps.sensitivity import CHUNK_SECONDS, _Pace
 
     assert CHUNK_SECONDS <= 1.0
     pace = _Pace()

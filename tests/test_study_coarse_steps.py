@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from mascarin.study import Study
-from mascarin.study.kept import kept_series
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.parameter_effects import Effects
-from mascarin.study.storage import Workspace
+from mascarin.study.context.step_cache import kept_series
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.model_runs import ModelRuns
+from mascarin.study.steps.parameter_effects import Effects
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 

@@ -14,11 +14,11 @@ from mascarin.examples import STUDIES
 from mascarin.sensitivity import Factor
 from mascarin.sensitivity.spectral import analyze, design
 from mascarin.simulation import Simulation
-from mascarin.study.document.phase_change import phase_change
-from mascarin.study.document.sensitivity import importance
-from mascarin.study.findings import ModelRun
-from mascarin.study.phase_change import melting_layers
-from mascarin.study.setup import Setup
+from mascarin.study.context.context import Setup
+from mascarin.study.context.phase_change import melting_layers
+from mascarin.study.results.document.phase_change import phase_change
+from mascarin.study.results.document.sensitivity import importance
+from mascarin.study.steps.findings import ModelRun
 from mascarin.weather import Climate, Measurements
 
 

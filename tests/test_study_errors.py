@@ -12,10 +12,11 @@ import pytest
 
 from mascarin import cli
 from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form
-from mascarin.study import Study, model_runs
-from mascarin.study.forms import comparable
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.study import Study
+from mascarin.study.context.forms import comparable
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps import model_runs
+from mascarin.study.steps.model_runs import ModelRuns
 from study_support import BUILDING, STUDY, TRUTH, logger_table
 
 OFFSET = 0.25  # K, added to one sensor

@@ -11,13 +11,14 @@ import pytest
 from mascarin.examples import STUDIES
 from mascarin.pages import study as report
 from mascarin.pages.study.data.folder import read_folder
-from mascarin.study import Study, findings
-from mascarin.study.document.coefficients import coefficients
-from mascarin.study.document.phase_change import phase_change
-from mascarin.study.forms import label
-from mascarin.study.model_runs import compared
-from mascarin.study.outputs import write_all
-from mascarin.study.storage import Workspace
+from mascarin.study import Study
+from mascarin.study.context.forms import label
+from mascarin.study.context.storage import Workspace
+from mascarin.study.results.document.coefficients import coefficients
+from mascarin.study.results.document.phase_change import phase_change
+from mascarin.study.results.files import write_all
+from mascarin.study.steps import findings
+from mascarin.study.steps.model_runs import compared
 from study_support import BUILDING, STUDY, logger_table
 
 #: Forms with parameters that the building as described does not have: alone and tied.

@@ -17,7 +17,7 @@ from mascarin.examples import SyntheticWall, synthetic_wall
 from mascarin.simulation.checks.energy import FLOWS
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Sensor, Study, StudyResults
-from mascarin.study.document.comparison import FLOW_LABELS
+from mascarin.study.results.document.comparison import FLOW_LABELS
 from mascarin.weather import Climate, Measurements
 
 SENSOR = Sensor(column="joint", output="wall.interface_1_temperature", expanded_uncertainty=0.1)

@@ -12,7 +12,7 @@ import pytest
 from mascarin import cli
 from mascarin.errors import InputError
 from mascarin.study import Study
-from mascarin.study.description import Periods
+from mascarin.study.file.description import Periods
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 WARM_UP = '  warm_up: ["2023-03-01 00:00", "2023-03-02 00:00"]\n'

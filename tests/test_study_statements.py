@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from mascarin.study import Study
-from mascarin.study.predictive_checks import statements
+from mascarin.study.steps.predictive_checks import statements
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 

@@ -41,7 +41,7 @@ def lines_named(building: Path) -> Iterator[None]:
 
 
 def _location(text: str, building: Path) -> str | None:
-    from mascarin.study.locations import Places
+    from mascarin.study.file.locations import Places
 
     if zone := _ZONE.match(text):
         return Places(building).at("zones", zone["name"]).removesuffix(f": zones.{zone['name']}")

@@ -54,7 +54,7 @@ def schema_file(kind: str) -> bytes:
 def json_schema(kind: str) -> dict[str, Any]:
     """JSON Schema of a kind of file: building, study or design."""
     if kind == "study":
-        from mascarin.study.schema import study_schema
+        from mascarin.study.file.schema import study_schema
 
         return study_schema()
     if kind == "design":

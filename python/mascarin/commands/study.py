@@ -48,7 +48,7 @@ def study(
     figures : bool
         Write the figures as files, too; the report does not need them.
     """
-    from mascarin.study.document.comparison import run_warnings
+    from mascarin.study.results.document.comparison import run_warnings
 
     opened = _open(file, allow_outside)
     results = opened.run(out, figures=figures, progress=True)
@@ -87,7 +87,7 @@ def sensitivity(
     method : str
         Method to use instead of the one in the study; all but spectral need the package SALib.
     """
-    from mascarin.study import steps
+    from mascarin.study import single_steps as steps
 
     content = steps.sensitivity(_open(file, allow_outside), out, method=method)
     _print_warnings(content["warnings"])
@@ -127,7 +127,7 @@ def calibrate(
     out : Path
         Folder for calibration.json, tables and intermediate results.
     """
-    from mascarin.study import steps
+    from mascarin.study import single_steps as steps
 
     content = steps.calibration(_open(file, allow_outside), out)
     _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
@@ -172,7 +172,7 @@ def validate(
         Folder for validation.json, series.csv (measured, predicted, band and residual of each sensor) and
         tables. Default: nothing is written.
     """
-    from mascarin.study import steps
+    from mascarin.study import single_steps as steps
 
     content = steps.validation(_open(file, allow_outside), out)
     _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])

@@ -85,7 +85,7 @@ def run_inputs(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"
             )
         from mascarin.building.files.yaml_document import merged
-        from mascarin.study.run_inputs import open_run_inputs
+        from mascarin.study.file.run_inputs import open_run_inputs
 
         if "climate" not in merged(weather, "weather and measurements", blanks=True).plain:
             raise InputError(

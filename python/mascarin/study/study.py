@@ -13,29 +13,29 @@ from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.pages import study
 from mascarin.pages.study.data.folder import read_folder
-from mascarin.study import opening
-from mascarin.study.calibrated import calibrated
-from mascarin.study.checking import check
-from mascarin.study.days_step import days
-from mascarin.study.derived_quantities import derived_quantities
-from mascarin.study.diagnosis_step import diagnosis
-from mascarin.study.diagnosis_words import summary
-from mascarin.study.document.errors import error_words
-from mascarin.study.kept import NAME, kept
-from mascarin.study.model_runs import ModelRuns, judged, nominal
-from mascarin.study.outputs import write_all
-from mascarin.study.prediction_intervals import interval_words, slopes
-from mascarin.study.residuals_step import error_sources, examined, too_few
-from mascarin.study.results import StudyResults
-from mascarin.study.setup import Setup
-from mascarin.study.storage import Workspace
-from mascarin.study.writing import study_text, write_study
+from mascarin.study.context.context import Setup
+from mascarin.study.context.step_cache import NAME, kept
+from mascarin.study.context.storage import Workspace
+from mascarin.study.diagnosis.step import diagnosis
+from mascarin.study.diagnosis.words import summary
+from mascarin.study.file import opening
+from mascarin.study.file.writing import study_text, write_study
+from mascarin.study.results.document.errors import error_words
+from mascarin.study.results.files import write_all
+from mascarin.study.results.results import StudyResults
+from mascarin.study.steps.calibration_result import calibrated
+from mascarin.study.steps.checking import check
+from mascarin.study.steps.days import days
+from mascarin.study.steps.derived_quantities import derived_quantities
+from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
+from mascarin.study.steps.prediction_intervals import interval_words, slopes
+from mascarin.study.steps.residuals import error_sources, examined, too_few
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.study.description import Periods, SensitivityPlan, Sensor, Variant
+    from mascarin.study.file.description import Periods, SensitivityPlan, Sensor, Variant
     from mascarin.validation.criteria import Criterion
     from mascarin.weather import Climate, Measurements
 

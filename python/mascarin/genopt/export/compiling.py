@@ -11,11 +11,11 @@ from mascarin.building.reading import files_of
 from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
-from mascarin.study.inputs import Beside, find
+from mascarin.study.file.inputs import Beside, find
 from mascarin.tables.times import epoch_seconds
 
 if TYPE_CHECKING:
-    from mascarin.study.description import StudyFile
+    from mascarin.study.file.description import StudyFile
 
 
 def compiled(study: Path, saved: Path | None = None, *, allow_outside: bool = False) -> Case:
