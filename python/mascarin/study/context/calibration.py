@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, SearchOptions, solve
-from mascarin.calibration.building_problem import fit_parameter, problem_of
+from mascarin.calibration import Calibration, CalibrationProblem, SearchOptions, solve
+from mascarin.calibration.building_problem import problem_of
+from mascarin.study.file.free_parameters import fit_parameters
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.building import Building
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.file.description import Free, IdentificationPlan, Sensor
+    from mascarin.study.file.description import IdentificationPlan, Sensor
     from mascarin.validation.observation import Observation
 
 
@@ -27,32 +27,6 @@ if TYPE_CHECKING:
 CHUNK_SECONDS: Final = 1.0
 _MOST: Final = 64
 _PACK: Final = 8
-
-
-def free_parameter(building: Building, path: str, free: Free | None) -> FitParameter:
-    """A parameter with its bounds: the study's, else the building's range.
-
-    Raises
-    ------
-    InputError
-        Unknown path, or bounds beyond the limits of the parameter.
-    """
-    if free is None:
-        return fit_parameter(building, path)
-    return fit_parameter(
-        building, path, (free.low, free.high), free.prior, start=free.start, scale=free.scale
-    )
-
-
-def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitParameter]:
-    """All parameters of a plan.
-
-    Raises
-    ------
-    InputError
-        As for `free_parameter`.
-    """
-    return [free_parameter(building, path, free) for path, free in plan.parameters.items()]
 
 
 def problem(

@@ -18,12 +18,13 @@ from mascarin.building.parameters.ties import expanded, with_ties
 from mascarin.errors import InputError
 from mascarin.simulation.preparation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
-from mascarin.study.context.calibration import fit_parameters, problem
+from mascarin.study.context.calibration import problem
 from mascarin.study.context.error_rule import estimates_errors
 from mascarin.study.context.forms import Choice, Forms, label
 from mascarin.study.context.periods import Timeline
 from mascarin.study.context.phase_change import melting_layers
 from mascarin.study.file.description import IdentificationPlan, StudyFile
+from mascarin.study.file.free_parameters import fit_parameters
 from mascarin.study.file.patterns import ties_of
 from mascarin.tables.timezones import moment
 from mascarin.validation.comparison import Metrics, compare

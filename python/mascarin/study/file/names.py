@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.study.context.calibration import free_parameter
-from mascarin.study.steps.sensitivity import check_plan
+from mascarin.study.file.factors import check_plan
+from mascarin.study.file.free_parameters import free_parameter
 from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:

@@ -19,9 +19,10 @@ from mascarin.simulation.run_warnings import of_base
 from mascarin.study.context.calibration import identify
 from mascarin.study.context.forms import label
 from mascarin.study.context.step_cache import kept
+from mascarin.study.file.factors import factors
 from mascarin.study.steps.error_model import with_errors
 from mascarin.study.steps.findings import Combination, FormFit, ModelRun
-from mascarin.study.steps.sensitivity import analyze, factors
+from mascarin.study.steps.sensitivity import analyze
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
