@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
-from mascarin.tables.gaps import filled
 from mascarin.tables.quality import Stretch, find
+from mascarin.tables.quality.gaps import filled
 from mascarin.tables.reading.table import Stamps, read_table
+from mascarin.tables.reading.table_cache import cached_record
 from mascarin.tables.steps import Steps
-from mascarin.tables.table_cache import cached_record
 from mascarin.weather import derive, measured
 from mascarin.weather.brightness import bright_parts, with_findings, with_notes
 from mascarin.weather.channels import LIMITS

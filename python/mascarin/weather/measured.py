@@ -13,7 +13,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
-from mascarin.tables.interval_labels import knot_lines, to_starts
+from mascarin.tables.reading.interval_labels import knot_lines, to_starts
 from mascarin.tables.reading.records import converted
 from mascarin.tables.reading.table import Table
 from mascarin.tables.record import Kind, Origin

@@ -11,14 +11,14 @@ import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array
-from mascarin.tables.gaps import filled
 from mascarin.tables.grid import Grid
 from mascarin.tables.quality import Stretch, find
+from mascarin.tables.quality.gaps import filled
 from mascarin.tables.reading import records
 from mascarin.tables.reading.records import Columns, record_of_columns
 from mascarin.tables.reading.table import Stamps, read_table
+from mascarin.tables.reading.table_cache import cached_record
 from mascarin.tables.record import Record
-from mascarin.tables.table_cache import cached_record
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather.view import RecordView
 

@@ -10,9 +10,19 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io.cache import Cached, cached
-from mascarin.tables import columns, interval_labels, timezones, units
+from mascarin.tables import columns, timezones, units
 from mascarin.tables.grid import Grid
-from mascarin.tables.reading import clocks, files, layout, numbers, records, rows, spreadsheets, table
+from mascarin.tables.reading import (
+    clocks,
+    files,
+    interval_labels,
+    layout,
+    numbers,
+    records,
+    rows,
+    spreadsheets,
+    table,
+)
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.reading.own_readers import reader_of
 from mascarin.tables.record import Origin, Record
