@@ -24,7 +24,8 @@ import fuzz_mutation
 from mascarin._io import own_files, own_records
 from mascarin._io.cache import _read
 from mascarin.building.outputs.output import Output
-from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, evaluations
+from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor
+from mascarin.calibration.base import evaluations
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.store import Store
 from mascarin.ensemble.work import Chunk

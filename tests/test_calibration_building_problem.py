@@ -22,8 +22,8 @@ from mascarin.calibration import (
     fit_parameter,
     solve,
 )
-from mascarin.calibration.building_problem import problem_of
-from mascarin.calibration.least_squares import derivative
+from mascarin.calibration.base.building_problem import problem_of
+from mascarin.calibration.methods.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
 from mascarin.simulation.preparation import prepare

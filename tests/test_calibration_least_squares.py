@@ -23,7 +23,7 @@ from mascarin.calibration import (
     SearchOptions,
     solve,
 )
-from mascarin.calibration.least_squares import Squares, derivative, exact, scale_of
+from mascarin.calibration.methods.least_squares import Squares, derivative, exact, scale_of
 from mascarin.errors import InputError, SolverError
 
 Floats = NDArray[np.float64]

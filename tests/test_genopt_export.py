@@ -14,7 +14,7 @@ import pytest
 from genopt_support import body
 from mascarin import cli
 from mascarin.calibration import Cost, Evaluator, SearchOptions, solve
-from mascarin.calibration.problem import FitParameter
+from mascarin.calibration.base.problem import FitParameter
 from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options as RunOptions
 from mascarin.genopt import optimize

@@ -475,7 +475,7 @@ KILLED = """
 import os, signal, sys
 from mascarin import cli
 from mascarin._io.tables import read_csv
-from mascarin.calibration.evaluations import Evaluator
+from mascarin.calibration.base.evaluations import Evaluator
 from mascarin._io import atomic
 from mascarin.study import sensitivity_step as screening
 

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from mascarin import cli
-from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form
+from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form
 from mascarin.study import Study
 from mascarin.study.context.forms import comparable
 from mascarin.study.context.storage import Workspace

@@ -12,7 +12,7 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.calibration import Calibration, CalibrationProblem, SearchOptions, solve
-from mascarin.calibration.building_problem import problem_of
+from mascarin.calibration.base.building_problem import problem_of
 from mascarin.study.file.free_parameters import fit_parameters
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mascarin.calibration.stated_errors import only_scatter, reason_not_to_estimate
+from mascarin.calibration.errors.stated_errors import only_scatter, reason_not_to_estimate
 
 if TYPE_CHECKING:
     from mascarin.study.file.description import StudyPlan

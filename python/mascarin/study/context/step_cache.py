@@ -35,12 +35,12 @@ _T = TypeVar("_T")
 NAME: Final = "kept"
 #: Dataclasses that are kept: modules and their classes. A name of a file is looked up here, never imported.
 CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
-    "mascarin.calibration.discrepancy": ("Discrepancy",),
-    "mascarin.calibration.evaluations": ("Trace",),
-    "mascarin.calibration.joint_posterior": ("JointPosterior",),
-    "mascarin.calibration.problem": ("FitParameter",),
-    "mascarin.calibration.result": ("Calibration", "Minimum"),
-    "mascarin.calibration.uncertainty": ("Uncertainty",),
+    "mascarin.calibration.errors.discrepancy": ("Discrepancy",),
+    "mascarin.calibration.base.evaluations": ("Trace",),
+    "mascarin.calibration.errors.joint_posterior": ("JointPosterior",),
+    "mascarin.calibration.base.problem": ("FitParameter",),
+    "mascarin.calibration.base.result": ("Calibration", "Minimum"),
+    "mascarin.calibration.base.uncertainty": ("Uncertainty",),
     "mascarin.diagnosis.error_sources": ("Correction", "ErrorSources"),
     "mascarin.diagnosis.hypotheses": ("Cause", "Diagnosis"),
     "mascarin.sensitivity.base.factors": ("Factor",),

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.day_blocks import DayGrid
-from mascarin.calibration.discrepancy import DayData, hour_basis
-from mascarin.calibration.sensor_errors import error_columns
+from mascarin.calibration.errors.day_blocks import DayGrid
+from mascarin.calibration.errors.discrepancy import DayData, hour_basis
+from mascarin.calibration.errors.sensor_errors import error_columns
 from mascarin.diagnosis.causes import diagnose
 from mascarin.diagnosis.hypotheses import Candidate, Diagnosis, DiagnosisInput
 from mascarin.diagnosis.sensor_faults import Series, sensor_candidates, stated_errors, white_noise

@@ -9,8 +9,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
-from mascarin.calibration.search_options import WITH_SQUARES, SlopesName
-from mascarin.calibration.search_options import MethodName as FitMethod
+from mascarin.calibration.base.search_options import WITH_SQUARES, SlopesName
+from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName

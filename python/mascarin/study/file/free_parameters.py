@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mascarin.calibration.building_problem import fit_parameter
+from mascarin.calibration.base.building_problem import fit_parameter
 
 if TYPE_CHECKING:
     from mascarin.building import Building

@@ -8,8 +8,8 @@ from typing import Annotated
 from pydantic import AliasChoices, Field
 
 from mascarin.building.base.part import Part
-from mascarin.calibration.sensor_errors import SensorError
-from mascarin.calibration.stated_errors import shared_errors
+from mascarin.calibration.errors.sensor_errors import SensorError
+from mascarin.calibration.errors.stated_errors import shared_errors
 from mascarin.study.file.field_types import Duration, Hours, Spans, Stretch
 from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 
@@ -143,5 +143,5 @@ class Sensor(Part):
         return any(part is not None and part != 0.0 for part in shared)
 
     def shared_errors(self, stated: SensorUncertainty, random: float) -> SensorError:
-        """Errors that all readings share; see `mascarin.calibration.stated_errors`."""
+        """Errors that all readings share; see `mascarin.calibration.errors.stated_errors`."""
         return shared_errors(self, stated, random)

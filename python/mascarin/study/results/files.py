@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mascarin.calibration import Calibration, Profile
-    from mascarin.calibration.result import PlotKind
+    from mascarin.calibration.base.result import PlotKind
     from mascarin.study.context.storage import Workspace
     from mascarin.study.steps.findings import Findings
 

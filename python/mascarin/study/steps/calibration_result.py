@@ -13,7 +13,7 @@ from mascarin.study.steps.predictive_checks import contradictions, with_doubt
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
-    from mascarin.calibration.posterior_checks import Contradiction
+    from mascarin.calibration.errors.posterior_checks import Contradiction
     from mascarin.study.context.context import Setup
     from mascarin.study.steps.findings import Combination, ModelRun, PredictionIntervals
     from mascarin.study.steps.model_runs import ModelRuns

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.calibration import Calibration
-    from mascarin.calibration.joint_posterior import JointPosterior
+    from mascarin.calibration.errors.joint_posterior import JointPosterior
 
     Array = npt.NDArray[np.float64]
 

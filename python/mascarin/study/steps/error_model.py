@@ -10,10 +10,10 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.calibration import SearchOptions
-from mascarin.calibration.joint_estimation import estimate_jointly
-from mascarin.calibration.joint_posterior import ErrorStatement
-from mascarin.calibration.sensor_errors import error_columns
-from mascarin.calibration.stated_errors import sizes_of
+from mascarin.calibration.errors.joint_estimation import estimate_jointly
+from mascarin.calibration.errors.joint_posterior import ErrorStatement
+from mascarin.calibration.errors.sensor_errors import error_columns
+from mascarin.calibration.errors.stated_errors import sizes_of
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.context.step_cache import kept, kept_series
 from mascarin.study.file.description import DiscrepancyPlan
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
-    from mascarin.calibration.joint_posterior import JointPosterior
-    from mascarin.calibration.sensor_errors import SensorError
+    from mascarin.calibration.errors.joint_posterior import JointPosterior
+    from mascarin.calibration.errors.sensor_errors import SensorError
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.context.context import Setup
     from mascarin.validation.observation import Observation

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form, within_reach
+from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, within_reach
 from mascarin.study.context.forms import Choice, label
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration, Profile
-    from mascarin.calibration.joint_posterior import JointPosterior
-    from mascarin.calibration.posterior_checks import Contradiction
+    from mascarin.calibration.errors.joint_posterior import JointPosterior
+    from mascarin.calibration.errors.posterior_checks import Contradiction
     from mascarin.diagnosis.error_sources import ErrorSources
     from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.sensitivity import Sensitivity

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.calibration.joint_estimation import METHOD
-from mascarin.calibration.pseudo_bma_weights import weighted_quantiles
+from mascarin.calibration.errors.joint_estimation import METHOD
+from mascarin.calibration.errors.pseudo_bma_weights import weighted_quantiles
 from mascarin.study.context.forms import comparable
 from mascarin.study.steps.error_model import (
     effects_of_sensors,

@@ -12,7 +12,7 @@ import numpy as np
 
 from mascarin._io import own_files
 from mascarin.calibration import profiles
-from mascarin.calibration.evaluations import ForeignRecordError
+from mascarin.calibration.base.evaluations import ForeignRecordError
 from mascarin.progress import Progress, reporting
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.run_warnings import of_base

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.calibration.posterior_checks import NOT_STATED
+from mascarin.calibration.errors.posterior_checks import NOT_STATED
 from mascarin.study.context.step_cache import kept_series
 from mascarin.study.steps.findings import PredictionIntervals
 from mascarin.validation.series import effective_samples

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.posterior_checks import (
+from mascarin.calibration.errors.posterior_checks import (
     Contradiction,
     of_errors,
     of_estimates,
     widening,
     with_wider_intervals,
 )
-from mascarin.calibration.stated_errors import counted_as_scatter
+from mascarin.calibration.errors.stated_errors import counted_as_scatter
 from mascarin.study.context.error_rule import all_scatter, reason_of
 from mascarin.study.steps.error_model import local_hours, scatter_of, stated_sizes
 from mascarin.study.steps.prediction_intervals import coverage_of

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.units import difference
-from mascarin.calibration.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
+from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
 from mascarin.study.steps.error_model import stated_sizes, statement
 
 if TYPE_CHECKING:

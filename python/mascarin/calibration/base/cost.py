@@ -32,7 +32,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.errors import InputError, did_you_mean
 from mascarin.validation.comparison import GUIDELINE_PARAMETERS, OVER_MEAN, mean_refusal
 

@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.uncertainty import symmetric_power
+from mascarin.calibration.base.uncertainty import symmetric_power
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.calibration.evaluations import Evaluator
-    from mascarin.calibration.problem import CalibrationProblem
-    from mascarin.calibration.result import Calibration
-    from mascarin.calibration.search_options import SearchOptions
+    from mascarin.calibration.base.evaluations import Evaluator
+    from mascarin.calibration.base.problem import CalibrationProblem
+    from mascarin.calibration.base.result import Calibration
+    from mascarin.calibration.base.search_options import SearchOptions
 
 Floats = NDArray[np.float64]
 

@@ -30,7 +30,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian, DayGrid, product
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, product
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

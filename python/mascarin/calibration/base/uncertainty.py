@@ -30,7 +30,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.validation.series import Autoregression, fit_autoregressions
 
 Floats = NDArray[np.float64]

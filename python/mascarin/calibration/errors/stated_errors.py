@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin._io.durations import seconds_of
-from mascarin.calibration.joint_estimation import estimate_jointly
-from mascarin.calibration.joint_posterior import ErrorStatement
-from mascarin.calibration.posterior_checks import judged
-from mascarin.calibration.sensor_errors import SensorError
+from mascarin.calibration.errors.joint_estimation import estimate_jointly
+from mascarin.calibration.errors.joint_posterior import ErrorStatement
+from mascarin.calibration.errors.posterior_checks import judged
+from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.errors import InputError
 from mascarin.validation.scatter import scatter
 
 if TYPE_CHECKING:
-    from mascarin.calibration.result import Calibration
-    from mascarin.calibration.search_options import SearchOptions
+    from mascarin.calibration.base.result import Calibration
+    from mascarin.calibration.base.search_options import SearchOptions
     from mascarin.simulation.simulation import Simulation
     from mascarin.validation.observation import Observation
     from mascarin.validation.sensors import Sensor, SensorUncertainty

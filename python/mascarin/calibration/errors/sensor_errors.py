@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.base.problem import CalibrationProblem
 
 Floats = NDArray[np.float64]
 

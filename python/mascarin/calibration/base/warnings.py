@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.uncertainty import AT_BOUND, Uncertainty
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.uncertainty import AT_BOUND, Uncertainty
 
 Floats = NDArray[np.float64]
 

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin._io.arguments import require_type, whole_number
-from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
-from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.least_squares import least_squares, residuals_and_derivatives
-from mascarin.calibration.posterior import sampled
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.result import Calibration, Minimum
-from mascarin.calibration.search_options import METHODS, WITH_SQUARES, MethodName, SearchOptions
-from mascarin.calibration.sequences import Make, maker, multi_start
-from mascarin.calibration.uncertainty import estimate
-from mascarin.calibration.warnings import on_bounds, warnings
+from mascarin.calibration.base.cost import ONE_NUMBER, Cost, CostName
+from mascarin.calibration.base.evaluations import Evaluator
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.result import Calibration, Minimum
+from mascarin.calibration.base.search_options import METHODS, WITH_SQUARES, MethodName, SearchOptions
+from mascarin.calibration.base.uncertainty import estimate
+from mascarin.calibration.base.warnings import on_bounds, warnings
+from mascarin.calibration.methods.least_squares import least_squares, residuals_and_derivatives
+from mascarin.calibration.methods.posterior import sampled
+from mascarin.calibration.methods.sequences import Make, maker, multi_start
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.optimization import Optimizer, Space
 from mascarin.progress import ProgressOption, reporting
@@ -57,7 +57,7 @@ def solve(
         evolution strategy): any cost, repeated until two sequences have reached the same minimum.
         ``emcee``: least squares, then a sample of the posterior distribution about its minimum.
     cost : str
-        What is minimized, see `mascarin.calibration.cost`; least squares and emcee support ``nll`` only.
+        What is minimized, see `mascarin.calibration.base.cost`; least squares and emcee support ``nll`` only.
     seed : int
         Of all random numbers. The same problem, seed and options give the same result.
     options : SearchOptions, optional

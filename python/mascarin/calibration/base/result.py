@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from mascarin._io import display
 from mascarin._io.numbers import with_interval
-from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
-from mascarin.calibration.evaluations import Trace
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.uncertainty import METHOD, Uncertainty
+from mascarin.calibration.base.cost import ONE_NUMBER, Cost, CostName
+from mascarin.calibration.base.evaluations import Trace
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.uncertainty import METHOD, Uncertainty
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 

@@ -24,13 +24,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.bounded_coefficients import LARGEST_ERROR
+from mascarin.calibration.errors.bounded_coefficients import LARGEST_ERROR
 from mascarin.materials.iso_10456 import unusual
 
 if TYPE_CHECKING:
-    from mascarin.calibration.joint_posterior import JointPosterior
-    from mascarin.calibration.problem import FitParameter
-    from mascarin.calibration.result import Calibration
+    from mascarin.calibration.base.problem import FitParameter
+    from mascarin.calibration.base.result import Calibration
+    from mascarin.calibration.errors.joint_posterior import JointPosterior
 
 Floats = NDArray[np.float64]
 

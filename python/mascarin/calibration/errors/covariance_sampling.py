@@ -1,6 +1,6 @@
 """A sample of the sizes of the errors of a model given the measurements: how well few days tell them.
 
-`mascarin.calibration.discrepancy` finds the most probable sizes. Five days leave them doubtful by a factor of
+`mascarin.calibration.errors.discrepancy` finds the most probable sizes. Five days leave them doubtful by a factor of
 two, and the estimates of the parameters with them. Here the sizes are drawn from their distribution given the
 measurements (Gibbs sampling): in turn the errors given the sizes, which are normal, and the sizes given the
 errors. The prior of each covariance has standard deviations with half-t distributions, which allow an error
@@ -26,7 +26,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.discrepancy import (
+from mascarin.calibration.errors.discrepancy import (
     CORRELATION_HOURS,
     DayData,
     Discrepancy,
@@ -122,8 +122,8 @@ def sample_covariances(
     --------
     Errors of 0.2 of every slot of 20 days, alone:
 
-    >>> from mascarin.calibration.day_blocks import DayGrid
-    >>> from mascarin.calibration.discrepancy import hour_basis
+    >>> from mascarin.calibration.errors.day_blocks import DayGrid
+    >>> from mascarin.calibration.errors.discrepancy import hour_basis
     >>> grid = DayGrid(np.zeros(0, int), np.zeros(0, int), 20, 8, 3.0)
     >>> basis = np.broadcast_to(hour_basis(np.arange(8) * 3.0), (20, 8, 5))
     >>> error = 0.2 * np.random.default_rng(1).normal(size=(20, 8))

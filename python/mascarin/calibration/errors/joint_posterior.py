@@ -25,18 +25,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.bounded_coefficients import best_within, ends_of, moments_within, within
-from mascarin.calibration.covariance_sampling import CovarianceSample, sample_covariances
-from mascarin.calibration.day_blocks import DayGaussian, DayGrid
-from mascarin.calibration.discrepancy import (
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.errors.bounded_coefficients import best_within, ends_of, moments_within, within
+from mascarin.calibration.errors.covariance_sampling import CovarianceSample, sample_covariances
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
+from mascarin.calibration.errors.discrepancy import (
     DayData,
     Discrepancy,
     estimate_discrepancy,
     hour_basis,
 )
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.truncated_normal import within_bounds
+from mascarin.calibration.errors.sensor_errors import SensorError, sensor_columns
+from mascarin.calibration.errors.truncated_normal import within_bounds
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from mascarin._io.arguments import bounds_of
-from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
+from mascarin.calibration.base.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

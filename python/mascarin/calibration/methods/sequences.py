@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.cost import Cost
-from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.result import Minimum
-from mascarin.calibration.search_options import SearchOptions
+from mascarin.calibration.base.cost import Cost
+from mascarin.calibration.base.evaluations import Evaluator
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.result import Minimum
+from mascarin.calibration.base.search_options import SearchOptions
 from mascarin.errors import SolverError
 from mascarin.optimization import (
     CovarianceSearch,

@@ -1,6 +1,6 @@
 """A calibration refined with the errors of the sensors and of the model.
 
-The method: `mascarin.calibration.joint_posterior`.
+The method: `mascarin.calibration.errors.joint_posterior`.
 """
 
 from __future__ import annotations
@@ -12,9 +12,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.cost import Cost
-from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.joint_posterior import (
+from mascarin.calibration.base.cost import Cost
+from mascarin.calibration.base.evaluations import Evaluator
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.result import Calibration
+from mascarin.calibration.base.search_options import SearchOptions
+from mascarin.calibration.base.uncertainty import AT_BOUND
+from mascarin.calibration.base.warnings import on_bounds, warnings
+from mascarin.calibration.errors.joint_posterior import (
     ErrorStatement,
     JointPosterior,
     Linear,
@@ -22,13 +27,8 @@ from mascarin.calibration.joint_posterior import (
     joint_posterior,
     objective,
 )
-from mascarin.calibration.least_squares import residuals_and_derivatives
-from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.result import Calibration
-from mascarin.calibration.search_options import SearchOptions
-from mascarin.calibration.sensor_errors import sensor_columns
-from mascarin.calibration.uncertainty import AT_BOUND
-from mascarin.calibration.warnings import on_bounds, warnings
+from mascarin.calibration.errors.sensor_errors import sensor_columns
+from mascarin.calibration.methods.least_squares import residuals_and_derivatives
 
 Floats = NDArray[np.float64]
 Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]

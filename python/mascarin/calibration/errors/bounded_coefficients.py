@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.uncertainty import AT_BOUND
+from mascarin.calibration.base.uncertainty import AT_BOUND
 
 Floats = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from mascarin import __version__
 from mascarin._io import atomic, own_files, own_records
-from mascarin.calibration.cost import Cost
+from mascarin.calibration.base.cost import Cost
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
