@@ -25,7 +25,7 @@ from mascarin.genopt.export.compiling import compile_study, compiled
 from mascarin.genopt.export.evaluation import evaluate_files
 from mascarin.genopt.export.internal_search import search
 from mascarin.genopt.export.writing import FILES, Options, _command, variable, write_project
-from mascarin.genopt.numbers import single
+from mascarin.genopt.files.numbers import single
 from mascarin.genopt.program import Program
 from mascarin.genopt.run import check
 from mascarin.optimization import Evaluation, HookeJeeves, Observer, box, uniform_starts

@@ -15,7 +15,7 @@ from typing import Any, TextIO
 
 from mascarin._io import atomic, identity, own_files, own_records
 from mascarin.errors import InputError
-from mascarin.genopt.project import Project
+from mascarin.genopt.files.project import Project
 
 FORMAT = 2
 #: Runs of a program of the user do not depend on the version of Mascarin.

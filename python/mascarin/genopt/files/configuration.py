@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from mascarin._io.regular import is_file
-from mascarin.genopt.entries import boolean, no_loose_entries
-from mascarin.genopt.initialization import objectives
-from mascarin.genopt.project import Project
-from mascarin.genopt.syntax import expect_blocks, ordered, read
+from mascarin.genopt.files.entries import boolean, no_loose_entries
+from mascarin.genopt.files.initialization import objectives
+from mascarin.genopt.files.project import Project
+from mascarin.genopt.files.syntax import expect_blocks, ordered, read
 
 
 def read_configuration(project: Project) -> None:

@@ -10,10 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import cast
 
-from mascarin.genopt import functions
-from mascarin.genopt.numbers import double_text, single_rounding
-from mascarin.genopt.project import Project
-from mascarin.genopt.settings import Keys
+from mascarin.genopt.algorithms.settings import Keys
+from mascarin.genopt.files import functions
+from mascarin.genopt.files.numbers import double_text, single_rounding
+from mascarin.genopt.files.project import Project
 from mascarin.optimization import (
     ArmijoGradient,
     ArmijoRules,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mascarin.genopt.command_file import read_command_file, resolve_functions
-from mascarin.genopt.configuration import read_configuration
-from mascarin.genopt.initialization import read_initialization
-from mascarin.genopt.project import Project
-from mascarin.genopt.syntax import Report
+from mascarin.genopt.files.command_file import read_command_file, resolve_functions
+from mascarin.genopt.files.configuration import read_configuration
+from mascarin.genopt.files.initialization import read_initialization
+from mascarin.genopt.files.project import Project
+from mascarin.genopt.files.syntax import Report
 
 
 def load(path: str | Path, *, lenient: bool = False) -> Project:

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 
 from mascarin._io.regular import is_file
 from mascarin.errors import InputError, did_you_mean
-from mascarin.genopt import functions
-from mascarin.genopt.entries import any_order, boolean, bound, integer, no_loose_entries, real
-from mascarin.genopt.numbers import single_text
-from mascarin.genopt.project import ContinuousInput, DiscreteInput, Objective, Project, Settings
-from mascarin.genopt.syntax import Block, Entry, Report, expect_blocks, read
+from mascarin.genopt.files import functions
+from mascarin.genopt.files.entries import any_order, boolean, bound, integer, no_loose_entries, real
+from mascarin.genopt.files.numbers import single_text
+from mascarin.genopt.files.project import ContinuousInput, DiscreteInput, Objective, Project, Settings
+from mascarin.genopt.files.syntax import Block, Entry, Report, expect_blocks, read
 
 
 def read_command_file(project: Project) -> None:

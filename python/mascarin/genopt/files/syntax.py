@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, did_you_mean
-from mascarin.genopt.numbers import normalised
+from mascarin.genopt.files.numbers import normalised
 
 _WORD = re.compile(r"[\w.:/\\*%+\-\x80-\U0010ffff]+")
 _NUMBER_WITH_EXPONENT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)[eE][+-]?\d+\Z")

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from mascarin.errors import did_you_mean
-from mascarin.genopt.numbers import parse_double
-from mascarin.genopt.syntax import Entry, Report
+from mascarin.genopt.files.numbers import parse_double
+from mascarin.genopt.files.syntax import Entry, Report
 
 
 @dataclass(frozen=True)

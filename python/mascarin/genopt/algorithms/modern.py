@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mascarin.genopt.searches import Context
-from mascarin.genopt.settings import Keys
+from mascarin.genopt.algorithms.searches import Context
+from mascarin.genopt.algorithms.settings import Keys
 from mascarin.optimization import CovarianceSearch, Optimizer
 
 

@@ -10,9 +10,9 @@ from typing import Literal
 
 from mascarin._io.regular import is_file
 from mascarin.errors import did_you_mean
-from mascarin.genopt.entries import integer, no_loose_entries
-from mascarin.genopt.project import FileEntry, Objective, Project
-from mascarin.genopt.syntax import Block, Entry, Report, expect_blocks, ordered, read
+from mascarin.genopt.files.entries import integer, no_loose_entries
+from mascarin.genopt.files.project import FileEntry, Objective, Project
+from mascarin.genopt.files.syntax import Block, Entry, Report, expect_blocks, ordered, read
 
 _NUMBERED = re.compile(r"([A-Za-z]+?)(\d+)\Z")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mascarin.genopt.numbers import parse_double
-from mascarin.genopt.syntax import Block, Entry, Report, ordered
+from mascarin.genopt.files.numbers import parse_double
+from mascarin.genopt.files.syntax import Block, Entry, Report, ordered
 
 
 def no_loose_entries(root: Block, report: Report) -> None:

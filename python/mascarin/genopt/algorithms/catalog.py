@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from mascarin.genopt import modern, searches
-from mascarin.genopt.searches import Context
-from mascarin.genopt.settings import Keys
+from mascarin.genopt.algorithms import modern, searches
+from mascarin.genopt.algorithms.searches import Context
+from mascarin.genopt.algorithms.settings import Keys
 from mascarin.optimization import CoordinateSearch, FibonacciSearch, GoldenSection, HookeJeeves, Optimizer
 from mascarin.optimization.line import fibonacci_points, golden_points
 

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 from mascarin.errors import did_you_mean
-from mascarin.genopt.catalog import ALGORITHMS, REMOVED, Algorithm
-from mascarin.genopt.project import Project
-from mascarin.genopt.searches import Context
-from mascarin.genopt.settings import check_groups, checked
-from mascarin.genopt.syntax import Block, ordered
+from mascarin.genopt.algorithms.catalog import ALGORITHMS, REMOVED, Algorithm
+from mascarin.genopt.algorithms.searches import Context
+from mascarin.genopt.algorithms.settings import check_groups, checked
+from mascarin.genopt.files.project import Project
+from mascarin.genopt.files.syntax import Block, ordered
 from mascarin.optimization import Continuous, Discrete, Observer, Optimizer, Space
 
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.genopt.numbers import parse_double
+from mascarin.genopt.files.numbers import parse_double
 
 _TOKEN = re.compile(r"\s*(?:([A-Za-z_]\w*)\s*\(|([(),])|([^\s(),]+))")
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from mascarin.genopt.numbers import double_text, single_text
-from mascarin.genopt.syntax import Block, Report
+from mascarin.genopt.files.numbers import double_text, single_text
+from mascarin.genopt.files.syntax import Block, Report
 
 
 @dataclass(frozen=True)
