@@ -14,7 +14,7 @@ from fmpy.validation import validate_fmu
 
 from fmu_support import HOUR, Unit, heated, instance, simulated, undefined_symbols, winter
 from mascarin import cli
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.tables import run_inputs
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
 from mascarin.fmu import export

@@ -14,7 +14,7 @@ import pytest
 import mascarin as mc
 from crossing_entrances import Bench, enter
 from crossing_features import description
-from mascarin.commands.exit_code import exit_code
+from mascarin.commands.options.exit_code import exit_code
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.store import Store
 from mascarin.errors import InputError

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, CheckSun, Shift, read_weather
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.options.inputs import AsJson, CheckSun, Shift, read_weather
+from mascarin.commands.options.output import print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

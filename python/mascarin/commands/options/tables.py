@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from mascarin.commands.inputs import read_weather
+from mascarin.commands.options.inputs import read_weather
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

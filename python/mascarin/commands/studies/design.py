@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import AsJson, Flag, Outside
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import AsJson, Flag, Outside
+from mascarin.commands.options.output import print_json, print_table
 
 if TYPE_CHECKING:
     from mascarin.design import DesignInputs, DesignResults

@@ -8,8 +8,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import Outside
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import Outside
 
 
 def genopt(

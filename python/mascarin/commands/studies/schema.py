@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import write
 from mascarin._io.locks import writing
-from mascarin.commands.output import json_text
+from mascarin.commands.options.output import json_text
 from mascarin.errors import InputError
 
 #: First line of a YAML file that names its schema, as editors with the YAML language server read it.

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from cyclopts import Parameter
 
 from mascarin._io.numbers import beside_limit, with_interval
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import AsJson, Outside
-from mascarin.commands.output import number, print_json, print_table
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import AsJson, Outside
+from mascarin.commands.options.output import number, print_json, print_table
 
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
@@ -186,7 +186,7 @@ def validate(
 def _open(file: str, allow_outside: bool) -> Study:
     """Open a study, and say on standard error what is suspicious in its tables and what is left out."""
     from mascarin.building.engine_input import measured_columns
-    from mascarin.commands.tables import show_columns
+    from mascarin.commands.options.tables import show_columns
     from mascarin.examples import locate
     from mascarin.study import Study
 

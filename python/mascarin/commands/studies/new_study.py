@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import write
 from mascarin._io.locks import writing_into
-from mascarin.commands.schema import HEADER, schema_file
+from mascarin.commands.studies.schema import HEADER, schema_file
 from mascarin.errors import InputError, did_you_mean
 
 _STUDY: Final = "study.yaml"
