@@ -21,8 +21,8 @@ import numpy as np
 import pandas as pd
 
 import fuzz_mutation
-from mascarin._io import own_files, own_records
-from mascarin._io.cache import _read
+from mascarin._io.sealed import own_files, own_records
+from mascarin._io.sealed.cache import _read
 from mascarin.building.outputs.output import Output
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor
 from mascarin.calibration.base import evaluations

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mascarin._io import own_files
 from mascarin._io.locks import FolderLock
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 from mascarin.study.context import step_cache as kept
 from mascarin.study.context.storage import Workspace

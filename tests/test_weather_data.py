@@ -7,7 +7,7 @@ from typing import Any
 import pooch
 import pytest
 
-from mascarin._io.cache import cache_folder
+from mascarin._io.sealed.cache import cache_folder
 from mascarin.errors import InputError
 from mascarin.weather import data as data_module
 from mascarin.weather.data import FILES, data_file

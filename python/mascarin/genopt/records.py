@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from mascarin._io import atomic, identity, own_files, own_records
+from mascarin._io import atomic, identity
+from mascarin._io.sealed import own_files, own_records
 from mascarin.errors import InputError
 from mascarin.genopt.files.project import Project
 

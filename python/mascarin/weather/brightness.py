@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin._io.cache import Cached, cached
+from mascarin._io.sealed.cache import Cached, cached
 from mascarin.tables.arrays import Flags
 from mascarin.tables.quality import Stretch, runs
 from mascarin.tables.times import stamps_of

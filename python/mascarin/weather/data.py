@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from mascarin._io.cache import cache_folder
+from mascarin._io.sealed.cache import cache_folder
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

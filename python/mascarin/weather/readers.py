@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from mascarin._io.cache import Cached, cached
+from mascarin._io.sealed.cache import Cached, cached
 from mascarin.errors import InputError
 from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin._io.cache import Cached, cached
+from mascarin._io.sealed.cache import Cached, cached
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
 from mascarin.tables.quality import Stretch

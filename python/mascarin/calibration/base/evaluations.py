@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin import __version__
-from mascarin._io import atomic, own_files, own_records
+from mascarin._io import atomic
+from mascarin._io.sealed import own_files, own_records
 from mascarin.calibration.base.cost import Cost
 from mascarin.errors import InputError
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:

@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import atomic, identity, own_files
+from mascarin._io import atomic, identity
 from mascarin._io.locks import FolderLock
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 from mascarin.pages.study import is_report
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin._io.cache import cache_folder
+from mascarin._io.sealed.cache import cache_folder
 from mascarin.building.engine_input import measured_columns
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.file.locations import Faults, Places

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 from mascarin.calibration import profiles
 from mascarin.calibration.base.evaluations import ForeignRecordError
 from mascarin.progress import Progress, reporting

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from mascarin._io.cache import Cached, cached
+from mascarin._io.sealed.cache import Cached, cached
 from mascarin.tables import columns, timezones, units
 from mascarin.tables.grid import Grid
 from mascarin.tables.reading import (

@@ -81,7 +81,7 @@ def opened(kind: str, sealed: bytes) -> bytes:
     b'abc'
     >>> opened("test", sealed("test", b"abc")[:-1])
     Traceback (most recent call last):
-    mascarin._io.own_files.DamagedError: its content is not that which was written
+    mascarin._io.sealed.own_files.DamagedError: its content is not that which was written
     """
     if not sealed.startswith(_MAGIC):
         raise DamagedError("it has no header of Mascarin")
@@ -169,7 +169,7 @@ def json_of(text: str | bytes, *, finite: bool = False) -> Any:
     --------
     >>> json_of("[1, 1e999]", finite=True)
     Traceback (most recent call last):
-    mascarin._io.own_files.DamagedError: it is no JSON (found the number 1e999)
+    mascarin._io.sealed.own_files.DamagedError: it is no JSON (found the number 1e999)
     """
     number = _finite if finite else None
     try:

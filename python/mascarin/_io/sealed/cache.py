@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mascarin import __version__
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 
 Array: TypeAlias = npt.NDArray[np.floating[Any]]

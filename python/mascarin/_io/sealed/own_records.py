@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 
 #: Length of the hash in hexadecimal digits: 128 bits.
 _DIGITS: Final = 32
@@ -46,7 +46,7 @@ def sealed(head: str, entry: Mapping[str, Any]) -> str:
     ('{"x":1.5', {'x': 1.5})
     >>> opened("test", line.replace("1.5", "1.6").encode())
     Traceback (most recent call last):
-    mascarin._io.own_files.DamagedError: it is not the line that was written
+    mascarin._io.sealed.own_files.DamagedError: it is not the line that was written
     """
     body = json.dumps(entry, separators=(",", ":"), allow_nan=False)[:-1]
     return f"{body}{_KEY}{_seal(head, body.encode())}{_LAST}\n"
