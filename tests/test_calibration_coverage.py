@@ -2,8 +2,9 @@
 
 Everything is drawn from the assumed process: parameters and offsets, the sizes of the errors from their
 priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % of the truths. Assumed is what
-`mascarin.calibration.errors.joint_posterior` says: the scale of the errors of the model is the stated uncertainty
-less the offset, the error within a day is at least half of a stated uncertainty, and no offset exceeds two.
+`mascarin.calibration.errors.joint_posterior` says: the scale of the errors of the model is the stated
+uncertainty less the offset, the error within a day is at least half of a stated uncertainty, and no offset
+exceeds two.
 """
 
 from __future__ import annotations

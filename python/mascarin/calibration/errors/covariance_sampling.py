@@ -1,10 +1,10 @@
 """A sample of the sizes of the errors of a model given the measurements: how well few days tell them.
 
-`mascarin.calibration.errors.discrepancy` finds the most probable sizes. Five days leave them doubtful by a factor of
-two, and the estimates of the parameters with them. Here the sizes are drawn from their distribution given the
-measurements (Gibbs sampling): in turn the errors given the sizes, which are normal, and the sizes given the
-errors. The prior of each covariance has standard deviations with half-t distributions, which allow an error
-to vanish and to be large, and correlations that are equally likely.
+`mascarin.calibration.errors.discrepancy` finds the most probable sizes. Five days leave them doubtful by a
+factor of two, and the estimates of the parameters with them. Here the sizes are drawn from their distribution
+given the measurements (Gibbs sampling): in turn the errors given the sizes, which are normal, and the sizes
+given the errors. The prior of each covariance has standard deviations with half-t distributions, which allow
+an error to vanish and to be large, and correlations that are equally likely.
 
 The block of a day is diagonal in the common eigenvectors of its two parts, which makes a move cheap. Values
 that are not there are drawn with the errors.
