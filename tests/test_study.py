@@ -425,11 +425,11 @@ def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureF
 
     study = Study(quick.study)
     out = quick.folder / "out"
-    with Workspace(out, study.inputs()):
+    with Workspace(out, study.context.identity()):
         for command in ("study", "sensitivity", "calibrate", "validate"):
             assert cli.main([command, str(quick.study), "-o", str(out)]) == 2
             assert "another process is writing to this folder" in capsys.readouterr().err
-    Workspace(out, study.inputs()).__exit__()
+    Workspace(out, study.context.identity()).__exit__()
 
 
 def test_date_and_run_time_are_in_a_separate_file(done: Done) -> None:

@@ -39,18 +39,18 @@ if TYPE_CHECKING:
 
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun
 
 
 def sensitivity(
-    study: Setup, out: Path, *, method: MethodName | None = None, progress: ProgressOption = True
+    study: StudyContext, out: Path, *, method: MethodName | None = None, progress: ProgressOption = True
 ) -> dict[str, Any]:
     """Sensitivity analysis.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         If it has no ``sensitivity``, the defaults are used.
     out : Path
         Folder for sensitivity.json, tables/sensitivity.csv and the figures.
@@ -69,7 +69,7 @@ def sensitivity(
     InputError
         The method does not support the plan of the study.
     """
-    with Workspace(out, study.inputs()) as workspace:
+    with Workspace(out, study.identity()) as workspace:
         # An empty plan takes the default of every key.
         plan = study.plan.sensitivity or SensitivityPlan.model_validate({})
         if method is not None and method != plan.method:
@@ -88,12 +88,12 @@ def sensitivity(
     return content
 
 
-def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> dict[str, Any]:
+def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = True) -> dict[str, Any]:
     """Calibration, and the comparison before and after it.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Has an identification.
     out : Path
         Folder for calibration.json, its tables and figures.
@@ -105,8 +105,8 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
     dict
         What calibration.json holds.
     """
-    _ = study.sought
-    with Workspace(out, study.inputs()) as workspace:
+    _ = study.inputs.calibration_plan
+    with Workspace(out, study.identity()) as workspace:
         runs = ModelRuns(study, workspace, progress)
         before = nominal(study)
         with study.keeping(workspace):
@@ -143,12 +143,12 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
     return content
 
 
-def validation(study: Setup, out: Path | None) -> dict[str, Any]:
+def validation(study: StudyContext, out: Path | None) -> dict[str, Any]:
     """Comparison of the uncalibrated model with the measurements.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Its calibration is not carried out.
     out : Path, optional
         Folder for validation.json, series.csv and the tables; without it nothing is written.
@@ -160,7 +160,7 @@ def validation(study: Setup, out: Path | None) -> dict[str, Any]:
     """
     if out is None:
         return _validated(study)[0]
-    with Workspace(out, study.inputs()) as workspace:  # raises before the run if the folder cannot be used
+    with Workspace(out, study.identity()) as workspace:  # raises before the run if the folder cannot be used
         content, tables, run = _validated(study)
         series = out / "series.csv"
         atomic.write(series, validation_series(study, run).to_csv(index=False, lineterminator="\n"))
@@ -168,7 +168,7 @@ def validation(study: Setup, out: Path | None) -> dict[str, Any]:
     return content
 
 
-def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
+def _validated(study: StudyContext) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
     run = nominal(study)
     verdicts = judged(study, run)
     tables = {

@@ -61,7 +61,7 @@ def genopt(
     print(write_project(study, out, options))
     opened = Study.from_yaml(locate(study), allow_outside=allow_outside)
     # Each evaluation is a process of its own, which says nothing: what holds for the runs is said here.
-    lines = of_nominal(opened.short())
+    lines = of_nominal(opened.context.models.for_calibration())
     for line in lines:
         print(f"warning: {line}", file=sys.stderr)
     return exit_code(warnings=lines)

@@ -87,9 +87,9 @@ def sensitivity(
     method : str
         Method to use instead of the one in the study; all but spectral need the package SALib.
     """
-    from mascarin.study import single_steps as steps
+    from mascarin.study import single_steps
 
-    content = steps.sensitivity(_open(file, allow_outside), out, method=method)
+    content = single_steps.sensitivity(_open(file, allow_outside).context, out, method=method)
     _print_warnings(content["warnings"])
     code = exit_code(warnings=content["warnings"])
     if as_json:
@@ -127,9 +127,9 @@ def calibrate(
     out : Path
         Folder for calibration.json, tables and intermediate results.
     """
-    from mascarin.study import single_steps as steps
+    from mascarin.study import single_steps
 
-    content = steps.calibration(_open(file, allow_outside), out)
+    content = single_steps.calibration(_open(file, allow_outside).context, out)
     _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
@@ -172,9 +172,9 @@ def validate(
         Folder for validation.json, series.csv (measured, predicted, band and residual of each sensor) and
         tables. Default: nothing is written.
     """
-    from mascarin.study import single_steps as steps
+    from mascarin.study import single_steps
 
-    content = steps.validation(_open(file, allow_outside), out)
+    content = single_steps.validation(_open(file, allow_outside).context, out)
     _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)
@@ -191,7 +191,7 @@ def _open(file: str, allow_outside: bool) -> Study:
     from mascarin.study import Study
 
     opened = Study.from_yaml(locate(file), allow_outside=allow_outside)
-    sensors = {name for entry in opened.file.sensors.values() for name in entry.columns}
+    sensors = {name for entry in opened.plan.sensors.values() for name in entry.columns}
     show_columns(opened.climate, opened.measurements, sensors | set(measured_columns(opened.building)))
     said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
     lines = [note for note in said if ": warning: " in note]
@@ -199,7 +199,7 @@ def _open(file: str, allow_outside: bool) -> Study:
         lines.append("suspicious periods in the measurements:")
         lines += [
             f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}"
-            f"{'; left out of all comparisons' if opened.leaves_out(s) else ''}"
+            f"{'; left out of all comparisons' if opened.context.inputs.leaves_out(s) else ''}"
             for s in opened.quality
         ]
     if lines:
@@ -261,8 +261,8 @@ def _exit_code(
 
 def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     """Print a summary on standard error."""
-    count = len(opened.file.sensors)
-    lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]
+    count = len(opened.plan.sensors)
+    lines = [f"{opened.plan.name}: {opened.plan.observed}, {count} sensor{'s' * (count != 1)}"]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
     for run in (results.nominal, results.fitted):
         for sensor, periods in run.scores.items():

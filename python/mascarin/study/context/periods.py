@@ -6,13 +6,17 @@ the weather data; the end of a period is not included.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError
+from mascarin.study.file.description import IdentificationPlan
 from mascarin.tables.timezones import moment
 from mascarin.validation.observation import PERIODS
 
@@ -21,7 +25,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.study.file.description import SensorPeriods, StudyPlan
+    from mascarin.study.file.field_types import Duration
     from mascarin.study.file.locations import Places
+    from mascarin.study.file.study_inputs import StudyInputs
+    from mascarin.tables.grid import Grid
     from mascarin.validation.observation import Observation
 
     Flags = npt.NDArray[np.bool_]
@@ -166,6 +173,97 @@ class Timeline:
                     "start; exchange the two times"
                 )
             return Span(start, end, place)
+
+
+class StudyPeriods:
+    """When a study runs, and what it compares.
+
+    Parameters
+    ----------
+    inputs : StudyInputs
+        What was read.
+    """
+
+    def __init__(self, inputs: StudyInputs) -> None:
+        self._inputs = inputs
+        self._plan = inputs.plan
+        #: Periods of the study and of its sensors.
+        self.timeline: Timeline = Timeline(inputs.plan, inputs.climate.grid.zone, inputs.places)
+
+    @cached_property
+    def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """Start of the first and end of the last identification period."""
+        return self.timeline.identification()
+
+    @cached_property
+    def start(self) -> pd.Timestamp:
+        """Start of the run: that of the warm-up, else of the record."""
+        span = self.timeline.warm_up()
+        return span.start if span is not None else self.record[0]
+
+    @cached_property
+    def compared_from(self) -> pd.Timestamp:
+        """First instant that is compared."""
+        span = self.timeline.warm_up()
+        return span.end if span is not None else self.start
+
+    @cached_property
+    def record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """Start and end of the time that weather and measurements both cover."""
+        import pandas as pd
+
+        first, last = max(grid.start for grid in self._grids), min(grid.end for grid in self._grids)
+        zone = self._inputs.climate.grid.zone
+        return (
+            pd.Timestamp(first, unit="s", tz="UTC").tz_convert(zone),
+            pd.Timestamp(last, unit="s", tz="UTC").tz_convert(zone),
+        )
+
+    @property
+    def _grids(self) -> list[Grid]:
+        weather = self._inputs.climate.grid
+        return [self._inputs.measurements.grid, *([] if weather.periodic else [weather])]
+
+    @cached_property
+    def moment_of_end(self) -> pd.Timestamp | None:
+        """End of the record to use, as the study gives it."""
+        text = self._plan.periods.end
+        with self._inputs.places.blame("periods", "end"):
+            return None if text is None else moment(text, self._inputs.climate.grid.zone, "end")
+
+    @cached_property
+    def end(self) -> pd.Timestamp:
+        """End of the run: that of the study, else of the record, a whole number of steps after the start."""
+        import pandas as pd
+
+        # Instants at the very end of a table have no value to interpolate to.
+        interval = max(grid.interval for grid in self._grids)
+        last = self.record[1] - pd.Timedelta(seconds=interval)
+        if self.moment_of_end is not None:
+            last = min(last, self.moment_of_end)
+        return self.start + self.whole_steps((last - self.start).total_seconds())
+
+    def whole_steps(self, seconds: float, length: Duration | None = None) -> pd.Timedelta:
+        """The longest whole number of steps in so much time; steps of the study, or of another length."""
+        import pandas as pd
+
+        step = seconds_of(length or self._plan.step)
+        return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
+
+    @cached_property
+    def lead_seconds(self) -> float:
+        """Length of the warm-up before the identification period, limited by the record. [s]"""
+        available = (self.identification[0] - self.start).total_seconds()
+        plan = self._plan.identification
+        length = IdentificationPlan.model_fields["lead"].default if plan is None else plan.lead
+        lead = min(seconds_of(length, "lead"), available)
+        return self.whole_steps(lead).total_seconds()
+
+    @property
+    def step_of_many(self) -> Duration:
+        """Time step of the runs in which all parameters vary."""
+        step = None if self._plan.sensitivity is None else self._plan.sensitivity.step
+        return step or self._plan.step
 
 
 def overlap(known: list[Span], held: list[Span]) -> tuple[Span, Span] | None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.context.storage import Workspace
     from mascarin.validation.observation import Observation
 
@@ -115,13 +115,13 @@ def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence
 
 
 def kept_series(
-    study: Setup, simulation: Simulation, vectors: Array, observation: Observation | None = None
+    study: StudyContext, simulation: Simulation, vectors: Array, observation: Observation | None = None
 ) -> Array:
     """Simulated series of parameter vectors at the instants of the comparison, kept in pieces.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Has the folder, if there is one.
     simulation : Simulation
         The model; its first outputs are those of the sensors.

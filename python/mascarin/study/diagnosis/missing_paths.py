@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
 
     Array = npt.NDArray[np.float64]
 
@@ -90,12 +90,12 @@ def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any]
             )
 
 
-def input_errors(setup: Setup, simulation: Simulation) -> Iterator[InputFault]:
+def input_errors(setup: StudyContext, simulation: Simulation) -> Iterator[InputFault]:
     """Errors of measured inputs, one at a time: radiation, outdoor air, wind, temperatures of boundaries.
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         Its measurements tell which channels were measured.
     simulation : Simulation
         The model.
@@ -122,11 +122,11 @@ def input_errors(setup: Setup, simulation: Simulation) -> Iterator[InputFault]:
         yield InputFault("gain", "wind_speed", scaled, 100.0 * _WIND, "%")
     temperatures = _boundaries(simulation.building)
     for k, channel in enumerate(simulation.channels, start=len(UNITS)):
-        if channel in temperatures and channel in setup.sources.driving.data:
+        if channel in temperatures and channel in setup.inputs.driving.data:
             yield InputFault("offset", channel, _added(forcing, k), _OFFSET, "K")
 
 
-def simulated_with(setup: Setup, simulation: Simulation, forcing: Array, vector: Array) -> Array:
+def simulated_with(setup: StudyContext, simulation: Simulation, forcing: Array, vector: Array) -> Array:
     """Series with another forcing, shape (n, S); NaN where the model cannot be run. [unit of each sensor]"""
     sensors = len(setup.observation.names)
     run = replace(simulation.compiled, forcing=forcing)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mascarin.calibration import Calibration
     from mascarin.progress import ProgressOption
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.context.storage import Workspace
 
     Array = npt.NDArray[np.float64]
@@ -77,7 +77,7 @@ class Model:
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         The study.
     simulation : Simulation
         The fitted model over the whole record.
@@ -91,7 +91,7 @@ class Model:
 
     def __init__(
         self,
-        setup: Setup,
+        setup: StudyContext,
         simulation: Simulation,
         fit: Calibration,
         store: Store,
@@ -202,7 +202,7 @@ class Model:
     def other(self, building: Building, further: Sequence[str] = ()) -> Simulation | None:
         """Another building over the same record; None where it cannot be compiled."""
         try:
-            return self.setup.over_record(building, further)
+            return self.setup.models.of_building(building, further)
         except InputError:
             return None
 

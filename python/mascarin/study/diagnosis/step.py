@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from mascarin.calibration import Calibration
     from mascarin.diagnosis.hypotheses import Cause
     from mascarin.progress import ProgressOption
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.context.storage import Workspace
     from mascarin.study.steps.findings import Combination, ModelRun
 
@@ -59,7 +59,7 @@ _ROWS: Final = 400
 
 @one_thread()
 def diagnosis(
-    setup: Setup,
+    setup: StudyContext,
     run: ModelRun,
     fit: Calibration,
     workspace: Workspace,
@@ -71,7 +71,7 @@ def diagnosis(
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         The study.
     run : ModelRun
         The fitted model.
@@ -115,13 +115,13 @@ def _weight(combination: Combination | None) -> float:
 
 
 def diagnosis_input(
-    setup: Setup, model: Model, vector: Array, weight: float, number: int = 1
+    setup: StudyContext, model: Model, vector: Array, weight: float, number: int = 1
 ) -> DiagnosisInput | None:
     """Plain arrays of a study: residuals, known effects and candidates.
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         The study.
     model : Model
         Its fitted model.
@@ -177,7 +177,7 @@ def diagnosis_input(
 
 
 def _series(
-    setup: Setup, model: Model, mask: npt.NDArray[np.bool_], vector: Array, simulated: Array
+    setup: StudyContext, model: Model, mask: npt.NDArray[np.bool_], vector: Array, simulated: Array
 ) -> Series:
     names = setup.observation.names
     return Series(
@@ -200,7 +200,7 @@ def _directions(effects: Array, mask: npt.NDArray[np.bool_], uncertainty: Array)
     return np.asarray(effects @ vectors[:, value > _SMALL**2])
 
 
-def _sensor_errors(setup: Setup, model: Model, simulated: Array) -> Array:
+def _sensor_errors(setup: StudyContext, model: Model, simulated: Array) -> Array:
     """Effects (n, S, k) of the errors that the sensors state; an uncertainty alone is one of the offset."""
     names, errors = setup.observation.names, []
     for s, name in enumerate(names):
@@ -250,7 +250,7 @@ def _paths(model: Model, series: Series, vector: Array, simulated: Array) -> Ite
 
 
 def _inputs(
-    setup: Setup, model: Model, series: Series, vector: Array, simulated: Array
+    setup: StudyContext, model: Model, series: Series, vector: Array, simulated: Array
 ) -> Iterator[Candidate]:
     """Errors of measured inputs of the model."""
     for error in input_errors(setup, model.simulation):
@@ -268,7 +268,7 @@ def _inputs(
 
 
 def _noise(
-    setup: Setup, model: Model, vector: Array
+    setup: StudyContext, model: Model, vector: Array
 ) -> tuple[dict[str, float], list[tuple[str, float, float, str]]]:
     """White noise of each sensor, and where it exceeds the stated uncertainty: name, size, error, unit."""
     # At every sample: slow errors of the model vanish in the second differences.

@@ -14,7 +14,7 @@ from mascarin.diagnosis.hypotheses import GROUPS, WORDS, Cause
 if TYPE_CHECKING:
     from mascarin.diagnosis.causes import Finding
     from mascarin.diagnosis.hypotheses import Candidate, Diagnosis
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
 
 #: Kinds of suspicious values that are faults of data.
 _FAULTY: Final = ("stuck", "forward_filled", "interpolated", "copied")
@@ -36,14 +36,14 @@ NOT_BLIND: Final = (
 )
 
 
-def of_table(setup: Setup) -> Iterator[Cause]:
+def of_table(setup: StudyContext) -> Iterator[Cause]:
     """Stretches of the sensors' columns that were not measured, the longest first."""
     sensors = {column: name for name, sensor in setup.plan.sensors.items() for column in sensor.columns}
     stretches = [s for s in setup.quality if s.channel in sensors and s.kind in _FAULTY]
     for stretch in sorted(stretches, key=lambda one: -one.count):
         left_out = (
             "they are left out of all comparisons"
-            if setup.leaves_out(stretch)
+            if setup.inputs.leaves_out(stretch)
             else f"leave them out with quality: {{mask: [{stretch.kind}]}}"
         )
         name = sensors[stretch.channel]
@@ -66,7 +66,7 @@ def of_noise(excess: Sequence[tuple[str, float, float, str]]) -> Cause:
     return Cause("data", "noise", tuple(one[0] for one in excess), text, sd, error, unit.replace("degC", "K"))
 
 
-def of_finding(setup: Setup, found: Finding) -> Cause:
+def of_finding(setup: StudyContext, found: Finding) -> Cause:
     """A cause that the residuals name, or the candidates that they cannot tell apart."""
     one, since = found.candidate, _since(setup, found.candidate.start)
     statement = _statement(setup, found, since)
@@ -109,7 +109,7 @@ def summary(found: Diagnosis) -> list[str]:
     ]
 
 
-def _statement(setup: Setup, found: Finding, since: str) -> str:
+def _statement(setup: StudyContext, found: Finding, since: str) -> str:
     """What is wrong if the candidate is the cause, with its size."""
     one, size = found.candidate, _size(found)
     what, subject = one.what, " and ".join(one.subject)
@@ -139,7 +139,7 @@ def _statement(setup: Setup, found: Finding, since: str) -> str:
     return f"{subject}: the law '{one.detail}' explains the measurements better than the present one"
 
 
-def _of_sensor(setup: Setup, found: Finding, since: str) -> str:
+def _of_sensor(setup: StudyContext, found: Finding, since: str) -> str:
     one, size, name = found.candidate, _size(found), found.candidate.subject[0]
     match one.what:
         case "swapped" | "swap_step":
@@ -161,14 +161,14 @@ def _of_sensor(setup: Setup, found: Finding, since: str) -> str:
             return f"{name}: its series contains {size} of {one.detail.removeprefix('part of ')}"
 
 
-def _short(setup: Setup, one: Candidate) -> str:
+def _short(setup: StudyContext, one: Candidate) -> str:
     """A candidate in few words."""
     return f"{' and '.join(one.subject)}: {GROUPS[one.group]}, {one.detail or WORDS[one.what]}" + _since(
         setup, one.start
     )
 
 
-def _since(setup: Setup, start: float) -> str:
+def _since(setup: StudyContext, start: float) -> str:
     """From when on; empty for the whole record."""
     if not math.isfinite(start):
         return ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +29,7 @@ from mascarin.study.file.inputs import (
 from mascarin.study.file.locations import Faults, Places
 from mascarin.study.file.names import check_names
 from mascarin.study.file.patterns import tied_building, written_out
+from mascarin.study.file.study_inputs import StudyInputs
 from mascarin.tables.quality import mask
 from mascarin.tables.quality.filled_values import filled_stretches
 from mascarin.tables.reading.files import file_hash
@@ -41,44 +42,7 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Measurements
 
 
-@dataclass(frozen=True, eq=False)
-class Inputs:
-    """Everything that a study needs, read and with its names checked.
-
-    Attributes
-    ----------
-    plan : StudyPlan
-        What is done.
-    building : Building
-        The building as described.
-    climate : Climate
-        The weather.
-    measurements : Measurements
-        The measured columns to compare with, masked by the plan.
-    driving : Measurements
-        The measured columns as inputs of the model: never masked, so that a column may be both.
-    quality : list of Stretch
-        Suspicious values of the measured columns.
-    places : Places
-        Lines of the study, for errors.
-    hashes : dict of str to str
-        SHA-256 of the study, the building, the measurements and the weather.
-    path : Path or None
-        The study file; None for a study made of objects.
-    """
-
-    plan: StudyPlan
-    building: Building
-    climate: Climate
-    measurements: Measurements
-    driving: Measurements
-    quality: list[Stretch]
-    places: Places
-    hashes: dict[str, str]
-    path: Path | None = None
-
-
-def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
+def from_file(path: Path, *, allow_outside: bool = False) -> StudyInputs:
     """Read a study file and the files that it names.
 
     Parameters
@@ -90,7 +54,7 @@ def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
 
     Returns
     -------
-    Inputs
+    StudyInputs
         The inputs.
 
     Raises
@@ -103,7 +67,7 @@ def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
         return _from_file(path, beside)
 
 
-def _from_file(path: Path, beside: Beside) -> Inputs:
+def _from_file(path: Path, beside: Beside) -> StudyInputs:
     file = read_study(path)
     places, faults = Places(path), Faults()
     with places.blame("building"):
@@ -133,7 +97,7 @@ def _from_file(path: Path, beside: Beside) -> Inputs:
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
-    return Inputs(file, building, climate, compared, read, quality, places, hashes, path)
+    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path)
 
 
 def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building:
@@ -147,7 +111,7 @@ def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building
 
 def from_objects(
     building: Building, climate: Climate, measurements: Measurements, plan: Mapping[str, Any]
-) -> Inputs:
+) -> StudyInputs:
     """Check a study that is made of objects.
 
     Parameters
@@ -159,7 +123,7 @@ def from_objects(
 
     Returns
     -------
-    Inputs
+    StudyInputs
         The inputs.
 
     Raises
@@ -187,22 +151,22 @@ def from_objects(
         "measurements": compared.sha256 or _digest_of_table(compared.data),
         "climate": climate.sha256 or _digest_of_table(climate.data),
     }
-    return Inputs(checked, building, climate, compared, measurements, quality, places, hashes)
+    return StudyInputs(checked, building, climate, compared, measurements, quality, places, hashes)
 
 
-def with_measurements(inputs: Inputs, measurements: Measurements) -> Inputs:
+def with_measurements(inputs: StudyInputs, measurements: Measurements) -> StudyInputs:
     """The inputs of a study with other measurements, whose quality is checked.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : StudyInputs
         Of a study.
     measurements : Measurements
         With the columns that its sensors name.
 
     Returns
     -------
-    Inputs
+    StudyInputs
     """
     plan = inputs.plan
     quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))

@@ -20,7 +20,7 @@ from mascarin.weather.measured import NEUTRAL
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.study.file.opening import Inputs
+    from mascarin.study.file.study_inputs import StudyInputs
     from mascarin.weather import Climate
 
 _BUILDING: Final = "building.yaml"
@@ -28,12 +28,12 @@ _CLIMATE: Final = "climate.csv"
 _MEASUREMENTS: Final = "measurements.csv"
 
 
-def study_text(inputs: Inputs) -> str:
+def study_text(inputs: StudyInputs) -> str:
     """The text of a study file.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : StudyInputs
         The study.
 
     Returns
@@ -49,12 +49,12 @@ def study_text(inputs: Inputs) -> str:
     return text_of(_content(inputs))
 
 
-def write_study(inputs: Inputs, path: Path) -> str:
+def write_study(inputs: StudyInputs, path: Path) -> str:
     """Write a study file; see `Study.to_yaml`.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : StudyInputs
         The study.
     path : Path
         File to write; its folder exists.
@@ -81,7 +81,7 @@ def write_study(inputs: Inputs, path: Path) -> str:
     return text
 
 
-def _content(inputs: Inputs) -> dict[str, Any]:
+def _content(inputs: StudyInputs) -> dict[str, Any]:
     """The keys of the study file."""
     plan = inputs.plan.model_dump(mode="json", exclude_unset=True)
     if isinstance(inputs.plan, StudyFile):

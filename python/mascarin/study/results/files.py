@@ -122,9 +122,9 @@ def _sensitivity_figures(findings: Findings, folder: Path, once: Once) -> list[P
     found = findings.sensitivity
     if found is None:
         return []
-    hours = analyzed_hours(findings.setup, found)
+    hours = analyzed_hours(findings.context, found)
     written = []
-    for name in findings.setup.observation.names:
+    for name in findings.context.observation.names:
 
         def draw(name: str = name) -> list[Path]:
             return list(save_all(found, name, folder, name, hours))
@@ -145,5 +145,5 @@ def _days(findings: Findings) -> Figure:
     day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, EXTRAPOLATION_RATIO)
     day_figures.information(lower, dates, found.information, found.used, found.proposed)
     upper.legend(fontsize="small", ncols=4, frameon=False)
-    lower.set_xlabel(f"local time ({findings.setup.climate.timezone})")
+    lower.set_xlabel(f"local time ({findings.context.climate.timezone})")
     return figure

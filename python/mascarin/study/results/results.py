@@ -60,7 +60,7 @@ class StudyResults(Findings):
         Forms of the model with their weights, where errors of sensors and model are estimated.
     contradictions : list of Contradiction
         By what the calibrated model contradicts its own data or what is known; read them first.
-    setup : Setup
+    context : StudyContext
         The study.
 
     Examples
@@ -162,7 +162,7 @@ class StudyResults(Findings):
         return display.page(self._title(), self._rows(), tables=tables)
 
     def _title(self) -> str:
-        return f"StudyResults '{self.setup.plan.name}'"
+        return f"StudyResults '{self.context.plan.name}'"
 
     def _rows(self) -> list[tuple[str, str]]:
         judged = self.criteria["fitted"]

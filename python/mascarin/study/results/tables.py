@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration
     from mascarin.diagnosis.hypotheses import Diagnosis
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Findings, ModelRun
     from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Verdict
@@ -146,12 +146,12 @@ def days_table(found: DayChoice) -> pd.DataFrame:
     )
 
 
-def validation_series(study: Setup, run: ModelRun) -> pd.DataFrame:
+def validation_series(study: StudyContext, run: ModelRun) -> pd.DataFrame:
     """Measured and predicted series of an uncalibrated model, one row for each instant; units in the header.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study.
     run : ModelRun
         The model.
@@ -190,7 +190,7 @@ def series_table(findings: Findings) -> pd.DataFrame:
     """Measured and simulated series, weather and states at the instants of the comparison."""
     import pandas as pd
 
-    observation = findings.setup.observation
+    observation = findings.context.observation
     table = pd.DataFrame({"time": observation.times.map(lambda stamp: stamp.isoformat())})
     for s, name in enumerate(observation.names):
         table[f"{name}.measured"] = observation.measured[:, s]

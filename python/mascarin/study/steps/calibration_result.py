@@ -14,7 +14,7 @@ from mascarin.study.steps.predictive_checks import contradictions, with_doubt
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.errors.posterior_checks import Contradiction
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Combination, ModelRun, PredictionIntervals
     from mascarin.study.steps.model_runs import ModelRuns
 
@@ -48,7 +48,7 @@ class Calibrated:
 
     @staticmethod
     def judged(
-        study: Setup,
+        study: StudyContext,
         run: ModelRun,
         fit: Calibration,
         intervals: PredictionIntervals,
@@ -62,12 +62,12 @@ class Calibrated:
 
 
 @one_thread()
-def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
+def calibrated(study: StudyContext, runs: ModelRuns) -> Calibrated:
     """Calibrate the model of a study: with the errors of sensors and model, if it states any.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study.
     runs : ModelRuns
         Its models.

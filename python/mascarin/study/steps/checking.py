@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
@@ -30,12 +30,12 @@ _FEWEST_HOURS: Final = 48.0
 _DARK: Final = 2.0
 
 
-def check(study: Setup) -> None:
+def check(study: StudyContext) -> None:
     """Check everything that a run needs.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Its names are checked already.
 
     Raises
@@ -45,7 +45,7 @@ def check(study: Setup) -> None:
     """
     _periods(study)
     with study.places.blame("periods"):
-        _ = study.simulation
+        _ = study.models.nominal
     _errors(study)
     require_rooms(study)
     _working(study)
@@ -53,9 +53,9 @@ def check(study: Setup) -> None:
     _plausible(study)
 
 
-def _periods(study: Setup) -> None:
-    blame, (first, last) = study.places.blame, study.record
-    given = study.moment_of_end
+def _periods(study: StudyContext) -> None:
+    blame, (first, last) = study.places.blame, study.periods.record
+    given = study.periods.moment_of_end
     with blame("periods", "end"):
         if given is not None and not first < given <= last:
             raise InputError(
@@ -66,7 +66,7 @@ def _periods(study: Setup) -> None:
     covered = (
         f"and periods.end leave, {_words(first, last)}" if given else f"both cover, {_words(first, last)}"
     )
-    timeline, warm_up = study.timeline, study.timeline.warm_up()
+    timeline, warm_up = study.periods.timeline, study.periods.timeline.warm_up()
     known, held = timeline.every("identification"), timeline.every("corroboration")
     for span in (*([] if warm_up is None else [warm_up]), *known, *held):
         with blame(*span.place):
@@ -87,10 +87,10 @@ def _periods(study: Setup) -> None:
     _ = timeline.every("exclude")
 
 
-def _apart(study: Setup, sensor: str) -> None:
+def _apart(study: StudyContext, sensor: str) -> None:
     """Refuse periods of one sensor that overlap."""
-    known = study.timeline.spans("identification", sensor)
-    held = study.timeline.spans("corroboration", sensor)
+    known = study.periods.timeline.spans("identification", sensor)
+    held = study.periods.timeline.spans("corroboration", sensor)
     for name, spans in (("identification", known), ("corroboration", held)):
         twice = next(((a, b) for k, a in enumerate(spans) for b in spans[:k] if a.overlaps(b)), None)
         if twice is not None:
@@ -108,7 +108,7 @@ def _apart(study: Setup, sensor: str) -> None:
             )
 
 
-def _errors(study: Setup) -> None:
+def _errors(study: StudyContext) -> None:
     """Refuse an identification from which errors of sensors and model cannot be estimated."""
     plan = study.plan.identification
     if plan is None:
@@ -151,12 +151,12 @@ def _errors(study: Setup) -> None:
                     "found true in a study that estimates errors of sensors and model, expected "
                     "alternatives, which are weighed with these errors; move it there, or leave candidate out"
                 )
-    _ = study.forms
+    _ = study.variants.forms
 
 
-def _persistence(study: Setup, hours: float) -> None:
+def _persistence(study: StudyContext, hours: float) -> None:
     """Refuse a statement that errors of days last longer than the days from which they are estimated."""
-    discrepancy = study.sought.discrepancy
+    discrepancy = study.inputs.calibration_plan.discrepancy
     if discrepancy is None or "persistence" not in discrepancy.model_fields_set:
         return
     if hours < seconds_of(discrepancy.persistence) / 3600.0:
@@ -171,9 +171,9 @@ def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:
     return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M}"
 
 
-def _working(study: Setup) -> None:
+def _working(study: StudyContext) -> None:
     """Refuse to calibrate with a sensor that repeats its value, unless the study says that it is masked."""
-    start, end = study.identification
+    start, end = study.periods.identification
     for name, sensor in study.plan.sensors.items():
         # What is left out by default may not be most of the identification; who writes it knows.
         written = study.plan.quality.mask if "mask" in study.plan.quality.model_fields_set else ()
@@ -192,7 +192,7 @@ def _working(study: Setup) -> None:
                     )
 
 
-def _runs(study: Setup) -> None:
+def _runs(study: StudyContext) -> None:
     """Compile every model and set up every calibration, so that their errors are raised now."""
     file, blame = study.plan, study.places.blame
     _require_validation_days(study)
@@ -206,20 +206,20 @@ def _runs(study: Setup) -> None:
             _ = study.problem()
     for name, variant in file.variants.items():
         with blame("variants", name):
-            study.whole(name)
+            study.models.over_record(name)
             if variant.identify and file.identification is not None:
                 study.problem(name)
-    for part, forms in study.forms.parts.items():
+    for part, forms in study.variants.forms.parts.items():
         for form in forms:
             with blame("alternatives", part):
-                study.problem(study.variant_of(study.forms.of({part: form})))
+                study.problem(study.variants.variant_of(study.variants.forms.of({part: form})))
 
 
-def _require_validation_days(study: Setup) -> None:
+def _require_validation_days(study: StudyContext) -> None:
     """Refuse a study without measured instants outside of the identification period."""
     if study.during["corroboration"].any():
         return
-    held = study.timeline.spans("corroboration")
+    held = study.periods.timeline.spans("corroboration")
     with study.places.blame("periods", "corroboration" if held else "identification"):
         why = "a model is validated on days that the identification does not use"
         if held:
@@ -228,18 +228,18 @@ def _require_validation_days(study: Setup) -> None:
                 "make it longer"
             )
         raise InputError(
-            f"found {_words(*study.identification)}, which leaves nothing of the record, up to "
-            f"{study.end:%Y-%m-%d %H:%M}, for the comparison; {why}: end it earlier, or give a "
+            f"found {_words(*study.periods.identification)}, which leaves nothing of the record, up to "
+            f"{study.periods.end:%Y-%m-%d %H:%M}, for the comparison; {why}: end it earlier, or give a "
             "corroboration period before it"
         )
 
 
-def _plausible(study: Setup) -> None:
+def _plausible(study: StudyContext) -> None:
     """Refuse temperatures that are error codes; warn of irradiances that look like kW/m2."""
     low, high = _TEMPERATURES
     observation = study.observation
     for s, name in enumerate(observation.names):
-        if study.simulation.outputs[s].unit != "degC":
+        if study.models.nominal.outputs[s].unit != "degC":
             continue
         measured = observation.measured[:, s]
         outside = np.flatnonzero(below(measured, low) | above(measured, high))

@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.comfort import Comfort
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Findings, ModelRun
 
 _OUTPUTS = ("air_temperature", "mean_radiant_temperature", "relative_humidity")
 
 
-def require_rooms(study: Setup) -> None:
+def require_rooms(study: StudyContext) -> None:
     """Refuse a comfort that cannot be rated, before the first run.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study.
 
     Raises
@@ -68,7 +68,7 @@ def rated(findings: Findings) -> dict[tuple[str, str], Comfort]:
     dict of (str, str) to Comfort
         Model and zone -> comfort; empty where the study asks for none.
     """
-    study = findings.setup
+    study = findings.context
     if not study.plan.comfort:
         return {}
     return {
@@ -78,7 +78,7 @@ def rated(findings: Findings) -> dict[tuple[str, str], Comfort]:
     }
 
 
-def _of_model(study: Setup, run: ModelRun) -> dict[str, Comfort]:
+def _of_model(study: StudyContext, run: ModelRun) -> dict[str, Comfort]:
     building = run.simulation.building.replace(run.results.provenance.changed)
     known = {output.name for output in building.outputs()}
     recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
@@ -87,7 +87,7 @@ def _of_model(study: Setup, run: ModelRun) -> dict[str, Comfort]:
         view = settings.view(building, zone)
         wanted += [] if view is None else [building.output(name).name for name in view.outputs]
     further = [name for name in dict.fromkeys(wanted) if name in known and name not in recorded]
-    results = study.over_record(building, further).run()
+    results = study.models.of_building(building, further).run()
     return {
         zone: results.comfort(zone, study.climate, settings, building)
         for zone, settings in study.plan.comfort.items()

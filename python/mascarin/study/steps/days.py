@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun, PredictionIntervals
 
     Array = npt.NDArray[np.float64]
@@ -22,13 +22,13 @@ _STATES = ("layer_temperature", "liquid_fraction")
 
 
 def days(
-    setup: Setup, run: ModelRun, fit: Calibration, slope: Array, intervals: PredictionIntervals
+    setup: StudyContext, run: ModelRun, fit: Calibration, slope: Array, intervals: PredictionIntervals
 ) -> DayChoice:
     """Compare the days of the record.
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         The study.
     run : ModelRun
         The fitted model.

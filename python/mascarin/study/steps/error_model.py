@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mascarin.calibration.errors.joint_posterior import JointPosterior
     from mascarin.calibration.errors.sensor_errors import SensorError
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
@@ -73,12 +73,12 @@ class Unknowns:
     directions: Array
 
 
-def used_sensors(study: Setup) -> list[str]:
+def used_sensors(study: StudyContext) -> list[str]:
     """Names of the sensors of the identification, in the order of its series."""
     return [name for name in study.observation.names if study.plan.sensors[name].use]
 
 
-def sensor_errors(study: Setup, names: list[str]) -> tuple[SensorError, ...]:
+def sensor_errors(study: StudyContext, names: list[str]) -> tuple[SensorError, ...]:
     """Errors that the readings of some sensors share."""
     found = []
     for name in names:
@@ -89,25 +89,25 @@ def sensor_errors(study: Setup, names: list[str]) -> tuple[SensorError, ...]:
     return tuple(found)
 
 
-def stated_sizes(study: Setup) -> dict[str, float]:
+def stated_sizes(study: StudyContext) -> dict[str, float]:
     """Standard uncertainty of each error of the used sensors, by its name in the joint distribution."""
     names = used_sensors(study)
     return sizes_of(names, sensor_errors(study, names))
 
 
-def scatter_of(study: Setup, name: str) -> float:
+def scatter_of(study: StudyContext, name: str) -> float:
     """Scatter of the readings of a sensor, as its record shows it; NaN if the record is too short. [unit]"""
     readings = study.observation.measured[:, study.observation.names.index(name)]
     return scatter(readings)
 
 
-def local_hours(study: Setup) -> Array:
+def local_hours(study: StudyContext) -> Array:
     """Local time of all instants of the comparison, from the midnight before the first, shape (n,). [h]"""
     local = study.observation.times.tz_localize(None)
     return np.asarray((local - local[0].normalize()).total_seconds() / 3600.0, dtype=np.float64)
 
 
-def unknowns(study: Setup, simulation: Simulation, fit: Calibration) -> list[Unknown]:
+def unknowns(study: StudyContext, simulation: Simulation, fit: Calibration) -> list[Unknown]:
     """Numbers that are not estimated: all others with a range, and the depths of sensors.
 
     A range contains a number with a probability of 95 %, so that its quarter is the standard uncertainty.
@@ -127,9 +127,9 @@ def unknowns(study: Setup, simulation: Simulation, fit: Calibration) -> list[Unk
     return [Unknown(path, uncertainty) for path, uncertainty in (found | depth).items()]
 
 
-def statement(study: Setup, fit: Calibration) -> ErrorStatement:
+def statement(study: StudyContext, fit: Calibration) -> ErrorStatement:
     """What is known of the errors before the calibration."""
-    plan = study.sought.discrepancy or DiscrepancyPlan()
+    plan = study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()
     seen = study.rows
     return ErrorStatement(
         sensor_errors(study, [sensor.name for sensor in fit.problem.sensors]),
@@ -141,13 +141,13 @@ def statement(study: Setup, fit: Calibration) -> ErrorStatement:
 
 
 def with_errors(
-    study: Setup, variant: str | None, fit: Calibration
+    study: StudyContext, variant: str | None, fit: Calibration
 ) -> tuple[Calibration, JointPosterior, Unknowns]:
     """Estimate the parameters of a calibration again, together with the errors.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Gives sensors and plan.
     variant : str or None
         Which model.
@@ -164,7 +164,7 @@ def with_errors(
         Numbers that are not estimated; their directions are the last effects of sensors of the joint
         distribution.
     """
-    short, seen = study.short(variant), study.rows
+    short, seen = study.models.for_calibration(variant), study.rows
     columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
     every = unknowns(study, short, fit)
     basis: list[Array] = []
@@ -178,7 +178,7 @@ def with_errors(
     def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
         return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
 
-    rules = SearchOptions(slopes=study.sought.slopes)
+    rules = SearchOptions(slopes=study.inputs.calibration_plan.slopes)
     found, joint = estimate_jointly(fit, statement(study, fit), rules, further, keep=keep)
     return found, joint, Unknowns(tuple(every), basis[0])
 
@@ -192,7 +192,7 @@ def _directions(effects: Array, sigma: Array, mask: npt.NDArray[np.bool_]) -> Ar
     return np.asarray(vector[:, value > _SMALL**2][:, ::-1])
 
 
-def effects_of_sensors(study: Setup, simulated: Array) -> Array:
+def effects_of_sensors(study: StudyContext, simulated: Array) -> Array:
     """Effects of the errors of used sensors on simulated series (n, S), shape (n, S, k). [unit of each]"""
     named = used_sensors(study)
     errors = sensor_errors(study, named)
@@ -209,13 +209,17 @@ def _part(observation: Observation, use: npt.NDArray[np.bool_]) -> Observation:
 
 
 def effects_of_unknowns(
-    study: Setup, observation: Observation, simulation: Simulation, base: Array, unknown: Sequence[Unknown]
+    study: StudyContext,
+    observation: Observation,
+    simulation: Simulation,
+    base: Array,
+    unknown: Sequence[Unknown],
 ) -> Array:
     """Effects of numbers that are not estimated on all series.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Has the folder where runs are kept.
     observation : Observation
         Gives the instants.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Scores, Setup
+    from mascarin.study.context.context import Scores, StudyContext
     from mascarin.study.steps.derived_quantities import DerivedQuantity
     from mascarin.study.steps.error_model import Unknowns
     from mascarin.tables.quality import Stretch
@@ -187,7 +187,7 @@ class Findings:
 
     Attributes
     ----------
-    setup : Setup
+    context : StudyContext
         The study.
     nominal, fitted : ModelRun
         The model before and after the calibration.
@@ -227,7 +227,7 @@ class Findings:
         Heat loss, capacity, time constant and U values of the calibrated building, with intervals.
     """
 
-    setup: Setup
+    context: StudyContext
     nominal: ModelRun
     fitted: ModelRun
     variants: dict[str, ModelRun]

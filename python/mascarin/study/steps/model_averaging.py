@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Combination, FormFit
 
     Array = npt.NDArray[np.float64]
 
 
-def estimates_of(study: Setup, found: Combination) -> Calibration:
+def estimates_of(study: StudyContext, found: Combination) -> Calibration:
     """The calibration of the best form, its intervals with the spread between forms.
 
     A parameter of which another form has one of the same meaning has the interval of both together. The
@@ -47,7 +47,9 @@ def estimates_of(study: Setup, found: Combination) -> Calibration:
         samples, weights = [], []
         for form, weight in found.kept:
             paths = form.fit.problem.paths
-            if parameter.path in paths and comparable(parameter.path, best.choice, form.choice, study.forms):
+            if parameter.path in paths and comparable(
+                parameter.path, best.choice, form.choice, study.variants.forms
+            ):
                 k = paths.index(parameter.path)
                 other = form.fit.problem.parameters[k]
                 samples.append(np.array([other.value(v) for v in form.joint.widened()[:, k]]))
@@ -60,7 +62,7 @@ def estimates_of(study: Setup, found: Combination) -> Calibration:
     return replace(fit, low=low, high=high, uncertainty_method=method)
 
 
-def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
+def combined_intervals(study: StudyContext, found: Combination) -> PredictionIntervals:
     """Prediction intervals of all forms together.
 
     The interval is about the expected reading: the simulated value of the fitted model, plus the estimated
@@ -97,7 +99,7 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
 
 
 def _predicted(
-    study: Setup, form: FormFit, hours: Array, effects: dict[str, Array]
+    study: StudyContext, form: FormFit, hours: Array, effects: dict[str, Array]
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Expected measured minus simulated value, its variance, that of the parameters, of a day, of a value.
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from mascarin.progress import ProgressOption, Report
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.context.forms import Choice
     from mascarin.study.context.storage import Workspace
     from mascarin.study.file.description import SensitivityPlan, Variant
@@ -46,7 +46,7 @@ class ModelRuns:
 
     Parameters
     ----------
-    setup : Setup
+    setup : StudyContext
         The study.
     workspace : Workspace
         Folder of the intermediate results.
@@ -54,7 +54,7 @@ class ModelRuns:
         Where progress is shown.
     """
 
-    def __init__(self, setup: Setup, workspace: Workspace, progress: ProgressOption = None) -> None:
+    def __init__(self, setup: StudyContext, workspace: Workspace, progress: ProgressOption = None) -> None:
         self._setup = setup
         self._workspace = workspace
         self._progress = progress
@@ -73,7 +73,7 @@ class ModelRuns:
         with reporting(self._progress, "sensitivity analysis") as report:
 
             def make() -> Sensitivity:
-                simulation, lead = setup.varied()
+                simulation, lead = setup.models.for_sensitivity()
                 chosen = factors(setup.building, plan)
                 names = setup.observation.names
                 analysis = analyze(simulation, plan, chosen, lead, names, self._workspace, report)
@@ -86,7 +86,7 @@ class ModelRuns:
 
         If the study names candidates, the one with the lowest cost in the identification period is taken.
         """
-        runs = {name: self.candidate(name) for name in self._setup.candidates}
+        runs = {name: self.candidate(name) for name in self._setup.inputs.candidates}
         chosen = min(runs, key=lambda name: runs[name][1].cost)
         run, fit = runs[chosen]
         note = "after the calibration; its parameters are the same on all other days"
@@ -97,7 +97,7 @@ class ModelRuns:
 
     def profiled(self, fit: Calibration) -> list[Profile]:
         """Profile likelihoods, if the study asks for them."""
-        if not self._setup.sought.profiles:
+        if not self._setup.inputs.calibration_plan.profiles:
             return []
         with reporting(self._progress, "profile likelihoods") as report:
             found = profiles(fit)
@@ -114,7 +114,7 @@ class ModelRuns:
 
     def variants(self) -> dict[str, ModelRun]:
         """Other choices of model; also the building as described, if a candidate has a lower cost."""
-        found, candidates = {}, self._setup.candidates
+        found, candidates = {}, self._setup.inputs.candidates
         if len(candidates) > 1:
             base, fit = self.candidate(None)
             if any(self.candidate(name)[1].cost < fit.cost for name in candidates[1:]):
@@ -133,7 +133,7 @@ class ModelRuns:
         Of many alternatives those that differ in one part are calibrated first, then those that differ in
         one part from the best form of every part.
         """
-        forms = self._setup.forms
+        forms = self._setup.variants.forms
         found = {choice: self._form(choice) for choice in forms.combinations()}
         density = {choice: float(form.joint.by_day.sum()) for choice, form in found.items()}
         best = {
@@ -151,7 +151,7 @@ class ModelRuns:
 
     def _form(self, choice: Choice) -> FormFit:
         """One form of the model, its search started at the estimates of the building as described."""
-        setup, name = self._setup, self._setup.variant_of(choice)
+        setup, name = self._setup, self._setup.variants.variant_of(choice)
         first = None if name is None else self._plain(None)
         plain = self._plain(name, first)
         with reporting(self._progress, f"errors of sensors and model ({label(choice)})"):
@@ -159,13 +159,13 @@ class ModelRuns:
             key = ("form", label(choice), plain.x.tolist(), plain.cost)
             known = (plain.problem, plain.trace, plain.nominal_building)
             fit, joint, unknown = kept(setup.workspace, key, lambda: with_errors(setup, name, plain), known)
-        whole = setup.whole(name)
+        whole = setup.models.over_record(name)
         note = "the building as described" if name is None else label(choice)
         run = compared(setup, label(choice), whole, whole.vector(fit.values), fit, note)
         return FormFit(choice, run, fit, joint, unknown)
 
     def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
-        fit, whole = self._plain(variant), self._setup.whole(variant)
+        fit, whole = self._plain(variant), self._setup.models.over_record(variant)
         return compared(self._setup, label, whole, whole.vector(fit.values), fit, note), fit
 
     def plain(self) -> Calibration:
@@ -177,14 +177,14 @@ class ModelRuns:
         if variant in self._fits:
             return self._fits[variant]
         setup, label = self._setup, "as described" if variant is None else variant
-        stated, plan, tolerance = setup.problem(variant), setup.sought, None
+        stated, plan, tolerance = setup.problem(variant), setup.inputs.calibration_plan, None
         if first is not None:
             stated, plan, tolerance = (
                 _starting(stated, first),
                 plan.model_copy(update={"starts": 1}),
                 _TOLERANCE,
             )
-        simulation = setup.short(variant)
+        simulation = setup.models.for_calibration(variant)
         with reporting(self._progress, f"calibration ({label})") as report:
             record = self._workspace.path(f"evaluations-{_safe(label)}.jsonl")
 
@@ -215,7 +215,7 @@ class ModelRuns:
     def _variant(self, name: str, variant: Variant) -> ModelRun:
         if variant.identify:
             return self.candidate(name)[0]
-        simulation = self._setup.whole(name)
+        simulation = self._setup.models.over_record(name)
         return compared(self._setup, name, simulation, simulation.values, None, self._note(name))
 
 
@@ -229,23 +229,23 @@ def _starting(problem: CalibrationProblem, first: Calibration) -> CalibrationPro
     return replace(problem, parameters=parameters)
 
 
-def nominal(setup: Setup) -> ModelRun:
+def nominal(setup: StudyContext) -> ModelRun:
     """The model as described, over the whole record."""
-    return compared(setup, "nominal", setup.simulation, setup.simulation.values, None, "as described")
+    return compared(setup, "nominal", setup.models.nominal, setup.models.nominal.values, None, "as described")
 
 
 def compared(
-    setup: Setup, label: str, simulation: Simulation, values: Any, fit: Calibration | None, note: str
+    setup: StudyContext, label: str, simulation: Simulation, values: Any, fit: Calibration | None, note: str
 ) -> ModelRun:
     """Run a model over the whole record and compare it with the measurements."""
     results = simulation.run_vector(values)
     return ModelRun(label, simulation, results, setup.scores(results), fit, note)
 
 
-def judged(setup: Setup, *runs: ModelRun) -> dict[str, list[Verdict]]:
+def judged(setup: StudyContext, *runs: ModelRun) -> dict[str, list[Verdict]]:
     """The criteria, model by model."""
     where = f"{setup.places.file}: criteria"
-    return {run.label: judge(setup.criteria, run.scores, where=where) for run in runs}
+    return {run.label: judge(setup.plan.criteria, run.scores, where=where) for run in runs}
 
 
 def _searching(report: Report) -> Callable[[int, float], object]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
 
     Array = npt.NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Effects:
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Has the folder where runs are kept.
     simulation : Simulation
         The model.
@@ -43,8 +43,8 @@ class Effects:
         Its parameter vector. [unit of each]
     """
 
-    def __init__(self, study: Setup, simulation: Simulation, base: Array, values: Array) -> None:
-        self._study, self._simulation = study, study.coarse(simulation)
+    def __init__(self, study: StudyContext, simulation: Simulation, base: Array, values: Array) -> None:
+        self._study, self._simulation = study, study.models.with_coarse_step(simulation)
         self._base, self._values = base, values
         if self._simulation is not simulation:
             self._base = kept_series(study, self._simulation, values[None])[0]

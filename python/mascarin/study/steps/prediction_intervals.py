@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun
 
     Array = npt.NDArray[np.float64]
@@ -31,12 +31,12 @@ _SHARED: Final = (
 )
 
 
-def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
+def slopes(study: StudyContext, run: ModelRun, fit: Calibration) -> Array:
     """Derivatives of the sensors with respect to the calibrated parameters.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Gives the instants of the comparison.
     run : ModelRun
         The fitted model.
@@ -61,12 +61,14 @@ def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
     return np.asarray((series[1:] - series[0]) / np.array(steps)[:, None, None])
 
 
-def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: Array) -> PredictionIntervals:
+def prediction_intervals(
+    study: StudyContext, run: ModelRun, fit: Calibration, slope: Array
+) -> PredictionIntervals:
     """Intervals in which new measurements are expected.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         Gives periods and measurements.
     run : ModelRun
         The fitted model.
@@ -99,7 +101,7 @@ def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: A
     return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage, np.zeros_like(half))
 
 
-def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
+def interval_table(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
     """Half-width and coverage of the intervals, as a table of the report."""
     rows = []
     for s, name in enumerate(study.observation.names):
@@ -138,7 +140,7 @@ def _doubt(found: PredictionIntervals) -> str:
     return ""
 
 
-def interval_entry(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
+def interval_entry(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
     """The intervals for study.json: sensor -> half_width, parameters, error, held."""
     return {
         name: {
@@ -153,7 +155,7 @@ def interval_entry(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
     }
 
 
-def interval_words(study: Setup, found: PredictionIntervals) -> list[str]:
+def interval_words(study: StudyContext, found: PredictionIntervals) -> list[str]:
     """Sensors with a low coverage on the blind days, in words."""
     return [
         f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {100.0 * share:.0f} % of "

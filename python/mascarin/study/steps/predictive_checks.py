@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from mascarin.calibration import Calibration
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Combination, ModelRun, PredictionIntervals
 
 #: Part of its own data that a nominal interval of 95 % has to contain.
@@ -37,7 +37,7 @@ _FEW_DAYS: Final = 3
 
 
 def contradictions(
-    study: Setup,
+    study: StudyContext,
     run: ModelRun,
     fit: Calibration,
     intervals: PredictionIntervals,
@@ -47,7 +47,7 @@ def contradictions(
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study.
     run : ModelRun
         The calibrated model.
@@ -67,19 +67,19 @@ def contradictions(
     return [*all_found, *statements(study)]
 
 
-def statements(study: Setup) -> list[Contradiction]:
+def statements(study: StudyContext) -> list[Contradiction]:
     """What the study states that its data contradict, or that says nothing; known before the first run.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study; nothing is run.
     """
     return [*_scatters(study), *_twins(study), *_few_days(study), *_priors(study), *_not_estimated(study)]
 
 
 def with_doubt(
-    study: Setup,
+    study: StudyContext,
     run: ModelRun,
     fit: Calibration,
     intervals: PredictionIntervals,
@@ -113,12 +113,12 @@ def with_doubt(
     return fit, replace(intervals, half_width=half, coverage=coverage, factor=stated)
 
 
-def _misses(study: Setup, run: ModelRun) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _misses(study: StudyContext, run: ModelRun) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     observation = study.observation
     return observation.simulated(run.results.index, run.results.records) - observation.measured
 
 
-def _coverage(study: Setup, run: ModelRun, intervals: PredictionIntervals) -> Iterator[Contradiction]:
+def _coverage(study: StudyContext, run: ModelRun, intervals: PredictionIntervals) -> Iterator[Contradiction]:
     """Identification data outside of their own bands."""
     misses, use = _misses(study, run) + intervals.center, study.used["identification"]
     for s, name in enumerate(study.observation.names):
@@ -137,7 +137,7 @@ def _coverage(study: Setup, run: ModelRun, intervals: PredictionIntervals) -> It
         )
 
 
-def _periods(study: Setup, intervals: PredictionIntervals) -> Iterator[Contradiction]:
+def _periods(study: StudyContext, intervals: PredictionIntervals) -> Iterator[Contradiction]:
     """Other days on which the bands do not hold."""
     for period in ("corroboration", "blind"):
         if period == "blind" and np.array_equal(study.during["blind"], study.during["corroboration"]):
@@ -156,16 +156,16 @@ def _periods(study: Setup, intervals: PredictionIntervals) -> Iterator[Contradic
                 )
 
 
-def _reasons(study: Setup, fit: Calibration) -> dict[str, str]:
+def _reasons(study: StudyContext, fit: Calibration) -> dict[str, str]:
     """Reasons of estimates on a bound, those of the study first."""
     reasons = dict(fit.on_bound)
-    for path, free in study.sought.parameters.items():
+    for path, free in study.inputs.calibration_plan.parameters.items():
         if path in reasons and free is not None and free.at_bound:
             reasons[path] = f"on its bound, {free.at_bound}"
     return reasons
 
 
-def _days(study: Setup) -> list[str]:
+def _days(study: StudyContext) -> list[str]:
     """Dates of the days of the identification, as the joint distribution has them."""
     hours = local_hours(study)[study.rows]
     first = study.observation.times[0].tz_localize(None).normalize()
@@ -175,7 +175,7 @@ def _days(study: Setup) -> list[str]:
     return [f"{first + pd.Timedelta(days=int(day)):%Y-%m-%d}" for day in numbers]
 
 
-def _scatters(study: Setup) -> Iterator[Contradiction]:
+def _scatters(study: StudyContext) -> Iterator[Contradiction]:
     """Sensors whose record scatters by more than they state."""
     for name, sensor in study.plan.sensors.items():
         unit = study.building.output(sensor.output).unit
@@ -191,7 +191,7 @@ def _scatters(study: Setup) -> Iterator[Contradiction]:
             )
 
 
-def _twins(study: Setup) -> Iterator[Contradiction]:
+def _twins(study: StudyContext) -> Iterator[Contradiction]:
     """Columns of one sensor, of which the mean is used, that differ by more than is stated."""
     observation = study.observation
     for name, sensor in study.plan.sensors.items():
@@ -214,7 +214,7 @@ def _twins(study: Setup) -> Iterator[Contradiction]:
                 )
 
 
-def _few_days(study: Setup) -> Iterator[Contradiction]:
+def _few_days(study: StudyContext) -> Iterator[Contradiction]:
     days = len(_days(study)) if study.estimates_errors else _FEW_DAYS
     if days < _FEW_DAYS:
         yield Contradiction(
@@ -227,7 +227,7 @@ def _few_days(study: Setup) -> Iterator[Contradiction]:
         )
 
 
-def _priors(study: Setup) -> Iterator[Contradiction]:
+def _priors(study: StudyContext) -> Iterator[Contradiction]:
     for parameter in study.problem().parameters if study.plan.identification is not None else ():
         if parameter.prior is None:
             continue
@@ -242,7 +242,7 @@ def _priors(study: Setup) -> Iterator[Contradiction]:
             )
 
 
-def _not_estimated(study: Setup) -> Iterator[Contradiction]:
+def _not_estimated(study: StudyContext) -> Iterator[Contradiction]:
     """Why stated uncertainties count as scatter, where they should not."""
     if study.estimates_errors or all_scatter(study.plan):
         return

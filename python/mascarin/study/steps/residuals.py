@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration
     from mascarin.progress import ProgressOption
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun
 
 #: Weather channels that residuals are correlated with, by words.
@@ -35,9 +35,9 @@ MOST_EFFECTS: Final = 20_000_000
 NORMAL_95: Final = 1.96
 
 
-def drivers(setup: Setup) -> dict[str, npt.NDArray[np.float64]]:
+def drivers(setup: StudyContext) -> dict[str, npt.NDArray[np.float64]]:
     """Weather that acts on the building, at the instants of the comparison, by words for the report."""
-    run = setup.simulation
+    run = setup.models.nominal
     return {
         word: setup.observation.sampled(run.index, run.weather(channel))
         for word, channel in DRIVERS.items()
@@ -45,7 +45,7 @@ def drivers(setup: Setup) -> dict[str, npt.NDArray[np.float64]]:
     }
 
 
-def too_few(setup: Setup) -> list[str]:
+def too_few(setup: StudyContext) -> list[str]:
     """Sensors with too few values on the blind days, in words."""
     return [
         f"{name}: {count} values on the blind days are too few for an analysis of the residuals; at least "
@@ -55,7 +55,7 @@ def too_few(setup: Setup) -> list[str]:
     ]
 
 
-def examined(setup: Setup, run: ModelRun) -> dict[str, ResidualAnalysis]:
+def examined(setup: StudyContext, run: ModelRun) -> dict[str, ResidualAnalysis]:
     """Structure of the residuals of each sensor on the blind days."""
     observation, local = setup.observation, setup.observation.times.tz_localize(None)
     simulated = observation.simulated(run.results.index, run.results.records)
@@ -77,7 +77,7 @@ def examined(setup: Setup, run: ModelRun) -> dict[str, ResidualAnalysis]:
 
 
 def error_sources(
-    setup: Setup, run: ModelRun, fit: Calibration, progress: ProgressOption = None
+    setup: StudyContext, run: ModelRun, fit: Calibration, progress: ProgressOption = None
 ) -> ErrorSources | None:
     """Parameters whose change would explain the remaining error on the blind days."""
     observation, blind, analyzed = setup.observation, setup.during["blind"].copy(), _analyzed(setup)
@@ -99,22 +99,22 @@ def error_sources(
         standard_uncertainty=[setup.plan.sensors[name].uncertainty / NORMAL_95 for name in analyzed],
         allowed=effects.room,
         days=np.asarray((local[blind] - local[0]).days),
-        weight=independent_weight(setup.sought, observation.interval),
+        weight=independent_weight(setup.inputs.calibration_plan, observation.interval),
     )
 
 
-def _blind(setup: Setup) -> npt.NDArray[np.float64]:
+def _blind(setup: StudyContext) -> npt.NDArray[np.float64]:
     """Measured values of the blind days, NaN elsewhere, shape (n, S). [unit of each sensor]"""
     return np.where(setup.used["blind"], setup.observation.measured, np.nan)
 
 
-def _blind_values(setup: Setup) -> dict[str, int]:
+def _blind_values(setup: StudyContext) -> dict[str, int]:
     """Number of values of each sensor on the blind days."""
     count = np.isfinite(_blind(setup)).sum(axis=0)
     return dict(zip(setup.observation.names, count.tolist(), strict=True))
 
 
-def _analyzed(setup: Setup) -> dict[str, int]:
+def _analyzed(setup: StudyContext) -> dict[str, int]:
     """Sensors with enough values on the blind days, and their columns."""
     enough = (count >= FEWEST_EXAMINED for count in _blind_values(setup).values())
     return {name: s for s, (name, use) in enumerate(zip(_blind_values(setup), enough, strict=True)) if use}

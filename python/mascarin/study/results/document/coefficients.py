@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun
 
     Array = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ _LAW: Final = re.compile(r"surfaces\.(?P<surface>[^.]+)\.(?P<side>[^.]+)\.convec
 _PERIOD: Final = "identification"
 
 
-def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[str]) -> dict[str, Any]:
+def coefficients(study: StudyContext, models: Mapping[str, ModelRun], paths: Iterable[str]) -> dict[str, Any]:
     """Effective mean coefficient of each convection law that has one of some parameters.
 
     It is the constant that exchanges as much heat: the mean of the heat flux without its sign, over the mean
@@ -33,7 +33,7 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The study.
     models : mapping of str to ModelRun
         The models to compare.
@@ -66,7 +66,7 @@ def _members(buildings: Iterable[Building], path: str) -> list[str]:
     return list(dict.fromkeys(found[0] for member in members if (found := _LAW.match(member))))
 
 
-def _means(study: Setup, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> dict[str, float]:
+def _means(study: StudyContext, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> dict[str, float]:
     """Effective mean coefficients of one model, W/(m2 K); laws that it does not have are left out."""
     building = run.simulation.building.replace(run.results.provenance.changed)
     known = {output.name for output in building.outputs()}
@@ -78,9 +78,9 @@ def _means(study: Setup, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> di
     if not wanted:
         return {}
     recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
-    simulation = study.over_record(building, [name for name in wanted if name not in recorded])
+    simulation = study.models.of_building(building, [name for name in wanted if name not in recorded])
     results = simulation.run()
-    first, last = study.identification
+    first, last = study.periods.identification
     during = np.asarray((results.index >= first) & (results.index < last))
     air = simulation.weather("air_temperature")
     columns = [output.name for output in results.outputs]

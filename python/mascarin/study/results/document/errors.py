@@ -12,7 +12,7 @@ from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_O
 from mascarin.study.steps.error_model import stated_sizes, statement
 
 if TYPE_CHECKING:
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import Combination
 
 #: Weight from which a form is named beside the best one. [-]
@@ -21,7 +21,7 @@ _NAMED: Final = 0.05
 _REACHED: Final = 0.98
 
 
-def error_entries(study: Setup, found: Combination | None) -> dict[str, Any]:
+def error_entries(study: StudyContext, found: Combination | None) -> dict[str, Any]:
     """Weights of the forms, estimated errors of the sensors, and sizes of the errors of the model."""
     if found is None:
         return {}
@@ -32,7 +32,7 @@ def error_entries(study: Setup, found: Combination | None) -> dict[str, Any]:
     }
 
 
-def error_tables(study: Setup, found: Combination | None) -> list[dict[str, Any]]:
+def error_tables(study: StudyContext, found: Combination | None) -> list[dict[str, Any]]:
     """The same as tables of the report."""
     if found is None:
         return []
@@ -40,7 +40,7 @@ def error_tables(study: Setup, found: Combination | None) -> list[dict[str, Any]
     return [_table_of_forms(found), *tables] if len(found.forms) > 1 else tables
 
 
-def error_words(study: Setup, found: Combination | None) -> list[str]:
+def error_words(study: StudyContext, found: Combination | None) -> list[str]:
     """What the identification can tell of the form of the model, and errors that reach their limit."""
     if found is None:
         return []
@@ -97,7 +97,7 @@ def _forms(found: Combination) -> list[dict[str, Any]]:
     ]
 
 
-def _of_sensors(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
+def _of_sensors(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
     """Estimate and standard uncertainty of each error, with that stated."""
     joint, count = found.forms[0].joint, found.forms[0].fit.x.size
     stated = stated_sizes(study)
@@ -122,7 +122,7 @@ _PARTS: Final = {
 }
 
 
-def _of_model(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
+def _of_model(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
     best = found.forms[0]
     sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
     columns = {
@@ -167,7 +167,7 @@ def _table_of_forms(found: Combination) -> dict[str, Any]:
     }
 
 
-def _table_of_sensors(study: Setup, found: Combination) -> dict[str, Any]:
+def _table_of_sensors(study: StudyContext, found: Combination) -> dict[str, Any]:
     return {
         "title": "Errors of the sensors",
         "caption": (
@@ -182,7 +182,7 @@ def _table_of_sensors(study: Setup, found: Combination) -> dict[str, Any]:
     }
 
 
-def _row_of_sensor(study: Setup, name: str, entry: Mapping[str, float]) -> list[Any]:
+def _row_of_sensor(study: StudyContext, name: str, entry: Mapping[str, float]) -> list[Any]:
     """Name and unit for readers, estimate and uncertainties."""
     sensor, _, what = name.rpartition(" ")
     known = sensor in study.plan.sensors
@@ -191,15 +191,15 @@ def _row_of_sensor(study: Setup, name: str, entry: Mapping[str, float]) -> list[
     return [label, difference(unit), entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
 
 
-def _label(study: Setup, name: str) -> str:
+def _label(study: StudyContext, name: str) -> str:
     return study.plan.sensors[name].label or name.replace("_", " ")
 
 
-def _unit(study: Setup, name: str) -> str:
+def _unit(study: StudyContext, name: str) -> str:
     return study.building.output(study.plan.sensors[name].output).unit
 
 
-def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
+def _table_of_model(study: StudyContext, found: Combination) -> dict[str, Any]:
     return {
         "title": "Errors of the model",
         "caption": (

@@ -10,7 +10,7 @@ from mascarin.study.steps.prediction_intervals import interval_entry
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.file.description import IdentificationPlan
     from mascarin.study.steps.findings import PredictionIntervals
 
@@ -24,12 +24,12 @@ _COSTS: Final = {
 }
 
 
-def estimates(study: Setup, fit: Calibration, *, stated: bool) -> dict[str, Any]:
+def estimates(study: StudyContext, fit: Calibration, *, stated: bool) -> dict[str, Any]:
     """Parameters with their uncertainty, and facts about the calibration.
 
     Where intervals are not stated, each parameter has its whole range in place of one.
     """
-    entries = parameters(study, fit, study.sought)
+    entries = parameters(study, fit, study.inputs.calibration_plan)
     if not stated:
         entries = {path: {**entry, "stated": False} for path, entry in entries.items()}
     return {
@@ -56,12 +56,12 @@ def profile_entries(found: Sequence[Profile]) -> dict[str, Any]:
     return {"profiles": entries} if entries else {}
 
 
-def prediction_entries(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
+def prediction_entries(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
     """The prediction intervals in numbers."""
     return {"band": interval_entry(study, found)}
 
 
-def parameters(study: Setup, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
+def parameters(study: StudyContext, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
     """Estimates by path, with interval, range and source."""
     known = {parameter.path for parameter in study.building.parameters()}
     given = {

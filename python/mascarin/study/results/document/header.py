@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.file.description import StudyPlan
 
 
@@ -30,12 +30,12 @@ _WORDS: Final = {
 }
 
 
-def header(study: Setup, command: str) -> dict[str, Any]:
+def header(study: StudyContext, command: str) -> dict[str, Any]:
     """Inputs, periods, sensors and building; part of every result.
 
     Parameters
     ----------
-    study : Setup
+    study : StudyContext
         The inputs.
     command : str
         Name of the command.
@@ -61,9 +61,9 @@ def header(study: Setup, command: str) -> dict[str, Any]:
     }
 
 
-def _command(study: Setup, command: str) -> list[str]:
+def _command(study: StudyContext, command: str) -> list[str]:
     """The command that gives the same result; for a study made of objects there is none."""
-    file = study.sources.path
+    file = study.inputs.path
     return [] if file is None else [f"mascarin {command} {_called(file)} -o out/"]
 
 
@@ -78,8 +78,8 @@ def _seed(file: StudyPlan) -> int | None:
     return next((plan.seed for plan in (file.identification, file.sensitivity) if plan is not None), None)
 
 
-def _inputs(study: Setup) -> list[dict[str, str]]:
-    path, plan, found = study.sources.path, study.plan, study.sources.hashes
+def _inputs(study: StudyContext) -> list[dict[str, str]]:
+    path, plan, found = study.inputs.path, study.plan, study.inputs.hashes
     named = [
         ("study", "" if path is None else path.name, found["study"]),
         (
@@ -106,7 +106,7 @@ def _versions() -> dict[str, str]:
     }
 
 
-def _sensor_info(study: Setup) -> dict[str, dict[str, Any]]:
+def _sensor_info(study: StudyContext) -> dict[str, dict[str, Any]]:
     return {
         name: {
             "label": sensor.label or name.replace("_", " "),
@@ -118,7 +118,7 @@ def _sensor_info(study: Setup) -> dict[str, dict[str, Any]]:
     }
 
 
-def _periods(study: Setup) -> dict[str, dict[str, Any]]:
+def _periods(study: StudyContext) -> dict[str, dict[str, Any]]:
     return {
         name: {
             "label": _WORDS[name][0],
@@ -142,7 +142,7 @@ def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float)
     ]
 
 
-def _quality(study: Setup) -> list[dict[str, Any]]:
+def _quality(study: StudyContext) -> list[dict[str, Any]]:
     return [
         {
             "channel": stretch.channel,
@@ -151,7 +151,7 @@ def _quality(study: Setup) -> list[dict[str, Any]]:
             "end": stretch.end.tz_localize(None).isoformat(),
             "count": stretch.count,
             "detail": stretch.detail,
-            "masked": study.leaves_out(stretch),
+            "masked": study.inputs.leaves_out(stretch),
         }
         for stretch in study.quality
     ]

@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building, PhaseChangeMaterial
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
     from mascarin.study.context.phase_change import MeltingLayer
     from mascarin.study.steps.findings import ModelRun
 
 
-def phase_change(study: Setup, run: ModelRun) -> list[dict[str, Any]]:
+def phase_change(study: StudyContext, run: ModelRun) -> list[dict[str, Any]]:
     """States of each phase-change layer over the record."""
     building = run.simulation.building.replace(run.results.provenance.changed)
     return [_melting(study, run, building, layer) for layer in melting_layers(building)]
 
 
-def _melting(study: Setup, run: ModelRun, building: Building, layer: MeltingLayer) -> dict[str, Any]:
+def _melting(study: StudyContext, run: ModelRun, building: Building, layer: MeltingLayer) -> dict[str, Any]:
     names = [output.name for output in run.results.outputs]
     fraction = run.results.records[:, names.index(layer.liquid_fraction)]
     temperature, enthalpy = path(run.results, building, layer)
@@ -66,13 +66,15 @@ def _own_path(material: PhaseChangeMaterial) -> dict[str, str]:
 
 
 def _shown_days(
-    run: ModelRun, study: Setup, enthalpy: npt.NDArray[np.float64]
+    run: ModelRun, study: StudyContext, enthalpy: npt.NDArray[np.float64]
 ) -> list[tuple[str, str, npt.NDArray[np.intp]]]:
     """The coldest and the warmest whole day, and the one with the largest change of enthalpy."""
     index = run.results.index
     day = index.tz_localize(None).normalize()
     whole = round(86400.0 / run.simulation.step_seconds)
-    rows = {date: np.flatnonzero((day == date) & (index >= study.compared_from)) for date in day.unique()}
+    rows = {
+        date: np.flatnonzero((day == date) & (index >= study.periods.compared_from)) for date in day.unique()
+    }
     rows = {date: at for date, at in rows.items() if at.size >= whole}
     if len(rows) < 3:
         return []

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.sensitivity import Sensitivity
-    from mascarin.study.context.context import Setup
+    from mascarin.study.context.context import StudyContext
 
 
 #: Parameters named in the spectra and indices over the day.
 _SHOWN: Final = 8
 
 
-def importance(study: Setup, found: Sensitivity) -> dict[str, Any]:
+def importance(study: StudyContext, found: Sensitivity) -> dict[str, Any]:
     """Sensitivity indices; for the spectral method also the spectra and the indices over the day."""
     rows = [
         ["method", found.method],
@@ -48,20 +48,21 @@ def _frequencies(found: SpectralSensitivity) -> dict[str, int]:
     }
 
 
-def analyzed_hours(study: Setup, found: Sensitivity) -> npt.NDArray[np.float64] | None:
+def analyzed_hours(study: StudyContext, found: Sensitivity) -> npt.NDArray[np.float64] | None:
     """Hour of the day of each analyzed time, local; None for methods that keep no times. [h]"""
     times = getattr(found, "variance_t", None)
     return None if times is None or len(times) < 2 else _hours(study, len(times))
 
 
-def _hours(study: Setup, count: int) -> npt.NDArray[np.float64]:
+def _hours(study: StudyContext, count: int) -> npt.NDArray[np.float64]:
     """Hour of the day of each analyzed time, local."""
     import pandas as pd
 
     step = pd.Timedelta(
-        seconds=(study.identification[1] - study.identification[0]).total_seconds() / max(count - 1, 1)
+        seconds=(study.periods.identification[1] - study.periods.identification[0]).total_seconds()
+        / max(count - 1, 1)
     )
-    times = pd.date_range(study.identification[0], periods=count, freq=step).tz_localize(None)
+    times = pd.date_range(study.periods.identification[0], periods=count, freq=step).tz_localize(None)
     return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
 
 

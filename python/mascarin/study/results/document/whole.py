@@ -50,7 +50,7 @@ def document(findings: Findings) -> dict[str, Any]:
         Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model;
         those of every model stand beside them under its name.
     """
-    study, fit = findings.setup, findings.calibration
+    study, fit = findings.context, findings.calibration
     reference = study.plan.reference
     published = [] if reference is None else [entry.parameter for entry in reference.parameters]
     content = {
@@ -82,7 +82,9 @@ def document(findings: Findings) -> dict[str, Any]:
         "days": findings.days.to_dict(),
         "phase_change": phase_change(study, findings.fitted),
         "variant_parameters": {
-            name: parameters(study, run.fit, study.plan_of(name if name in study.plan.variants else None))
+            name: parameters(
+                study, run.fit, study.variants.plan_of(name if name in study.plan.variants else None)
+            )
             for name, run in findings.variants.items()
             if run.fit is not None
         },
