@@ -20,7 +20,7 @@ from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.timezones import fixed_zone, zone_name
-from mascarin.weather.shipped import COMPRESSED, PACKED, content
+from mascarin.weather.shipped import COMPRESSED, content
 
 _HEADER = 8
 _FIELDS = 35
@@ -127,7 +127,7 @@ def read_epw(path: Path) -> Year:
         Header or rows are broken; the line is named.
     """
     found = file_hash(path)  # refuses what is no file
-    where = path.name.removesuffix(PACKED).removesuffix(COMPRESSED)
+    where = path.name.removesuffix(COMPRESSED)
     kept_year = cached((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
     return _unpacked(kept_year, where)
 

@@ -22,8 +22,7 @@ FOLDER: Final = Path(__file__).parent / "climates"
 PREFIX: Final = "shipped:"
 """What stands before the name of a shipped climate where a weather file is named."""
 COMPRESSED: Final = ".xz"
-PACKED: Final = ".columns.xz"
-"""Ending of a shipped file: compressed, with a line for each column (`packaging/climates.py`)."""
+"""Ending of a shipped file: an EPW file that the program ``xz`` compressed."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class ShippedClimate:
     @property
     def path(self) -> Path:
         """The compressed file."""
-        return FOLDER / f"{self.file}{PACKED}"
+        return FOLDER / f"{self.file}{COMPRESSED}"
 
 
 _ALL: Final = (
@@ -111,7 +110,7 @@ def found(path: str | Path) -> Path:
     Examples
     --------
     >>> found("shipped:tampa").name
-    'USA_FL_Tampa.Intl.AP.722110_TMY3.epw.columns.xz'
+    'USA_FL_Tampa.Intl.AP.722110_TMY3.epw.xz'
     """
     text = str(path)
     if not text.startswith(PREFIX):
@@ -151,32 +150,8 @@ def content(path: Path) -> bytes:
     if path.suffix.lower() != COMPRESSED:
         return path.read_bytes()
     try:
-        text = lzma.decompress(path.read_bytes())
+        return lzma.decompress(path.read_bytes())
     except (lzma.LZMAError, EOFError) as error:
         raise InputError(
             f"{path}: found no complete xz file ({error}); expected a compressed EPW file"
         ) from None
-    return by_rows(text) if path.name.endswith(PACKED) else text
-
-
-def by_rows(text: bytes) -> bytes:
-    r"""An EPW file from its header, an empty line, and a line for each of its columns.
-
-    Parameters
-    ----------
-    text : bytes
-        What `packaging/climates.py` compressed.
-
-    Returns
-    -------
-    bytes
-        The file, byte for byte.
-
-    Examples
-    --------
-    >>> by_rows(b"header\n\n1,2\n3,4")
-    b'header\n1,3\n2,4\n'
-    """
-    header, _, columns = text.partition(b"\n\n")
-    rows = zip(*(column.split(b",") for column in columns.split(b"\n")), strict=True)
-    return b"\n".join([header, *(b",".join(row) for row in rows), b""])
