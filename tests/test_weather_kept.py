@@ -12,7 +12,9 @@ import pytest
 from mascarin._io.sealed.cache import FOLDER, MOST, Cached, cache_folder, cached
 from mascarin.errors import InputError
 from mascarin.tables.reading import table
-from mascarin.weather import Climate, Measurements, readers, shipped, sun_check
+from mascarin.weather import Climate, Measurements
+from mascarin.weather.checks import sun_check
+from mascarin.weather.reading import readers, shipped
 
 PLACE = (39.74, -105.18)
 

@@ -194,7 +194,7 @@ def read_weather(file: Path, *, check_sun: bool = True, shift: str | None = None
         If it is neither EPW nor TMY3, or damaged.
     """
     from mascarin.weather import Climate
-    from mascarin.weather.shipped import PREFIX
+    from mascarin.weather.reading.shipped import PREFIX
 
     if str(file).startswith(PREFIX):
         return Climate.from_epw(file, check_sun=check_sun, shift=shift)

@@ -25,7 +25,7 @@ from mascarin.study.file.inputs import Beside, find
 from mascarin.study.file.locations import Faults, Places
 from mascarin.tables.reading.files import file_hash
 from mascarin.weather import Climate
-from mascarin.weather.shipped import PREFIX, found
+from mascarin.weather.reading.shipped import PREFIX, found
 
 if TYPE_CHECKING:
     from mascarin.design.evaluation.objectives import AnyObjective

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from mascarin.weather.channels import CHANNELS, RADIATION, UNITS
+from mascarin.weather.records.channels import CHANNELS, RADIATION, UNITS
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -17,9 +17,9 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.study.file.locations import Faults, Places
 from mascarin.tables.reading.table import read_table
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.data import FOLDER, data_file
-from mascarin.weather.shipped import FOLDER as CLIMATES
-from mascarin.weather.shipped import PREFIX
+from mascarin.weather.reading.data import FOLDER, data_file
+from mascarin.weather.reading.shipped import FOLDER as CLIMATES
+from mascarin.weather.reading.shipped import PREFIX
 
 if TYPE_CHECKING:
     from mascarin.building import Building

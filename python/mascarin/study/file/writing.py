@@ -14,8 +14,8 @@ from mascarin.building.files.yaml_text import text_of
 from mascarin.errors import InputError
 from mascarin.study.file.description import StudyFile
 from mascarin.study.file.inputs import KNOWN
-from mascarin.weather.channels import BY_NAME
-from mascarin.weather.measured import NEUTRAL
+from mascarin.weather.reading.measured import NEUTRAL
+from mascarin.weather.records.channels import BY_NAME
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -20,7 +20,7 @@ from mascarin.tables.reading.table import Stamps, read_table
 from mascarin.tables.reading.table_cache import cached_record
 from mascarin.tables.record import Record
 from mascarin.tables.times import epoch_seconds
-from mascarin.weather.view import RecordView
+from mascarin.weather.records.view import RecordView
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,9 +17,9 @@ from mascarin.tables.reading.interval_labels import knot_lines, to_starts
 from mascarin.tables.reading.records import converted
 from mascarin.tables.reading.table import Table
 from mascarin.tables.record import Kind, Origin
-from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS
-from mascarin.weather.likely_units import require_likely_unit
-from mascarin.weather.record import WeatherRecord
+from mascarin.weather.reading.likely_units import require_likely_unit
+from mascarin.weather.records.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS
+from mascarin.weather.records.record import WeatherRecord
 
 NEUTRAL: Final[Mapping[str, float]] = {
     "dew_point": np.nan,

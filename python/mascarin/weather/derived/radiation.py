@@ -17,8 +17,8 @@ import numpy as np
 
 from mascarin.tables.arrays import Array
 from mascarin.tables.profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
-from mascarin.weather.channels import Basis
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import Basis
 
 BEAM_CEILING: Final = 2.0
 """A beam above this multiple of the clear-sky beam is not plausible (low sun, noise). [-]"""

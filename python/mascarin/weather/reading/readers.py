@@ -20,7 +20,7 @@ from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.timezones import fixed_zone, zone_name
-from mascarin.weather.shipped import COMPRESSED, content
+from mascarin.weather.reading.shipped import COMPRESSED, content
 
 _HEADER = 8
 _FIELDS = 35

@@ -15,10 +15,10 @@ from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
 from mascarin.tables.reading.table import Table, read_table
 from mascarin.tables.timezones import fixed_offset, parse_timezone, zone_name, zone_of
-from mascarin.weather.channels import BY_NAME, RADIATION, UNITS
-from mascarin.weather.measured import record_of_table
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.site import Place
+from mascarin.weather.reading.measured import record_of_table
+from mascarin.weather.records.channels import BY_NAME, RADIATION, UNITS
+from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.site import Place
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,7 +14,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.grid import Grid
 from mascarin.tables.record import Kind, Record
 from mascarin.tables.timezones import zone_name
-from mascarin.weather.channels import UNITS
+from mascarin.weather.records.channels import UNITS
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from mascarin.tables.record import Record
-from mascarin.weather.channels import RADIATION, Basis
-from mascarin.weather.site import Place
+from mascarin.weather.records.channels import RADIATION, Basis
+from mascarin.weather.records.site import Place
 
 
 @dataclass(frozen=True, eq=False)

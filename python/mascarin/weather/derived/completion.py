@@ -10,11 +10,11 @@ from mascarin.tables.arrays import Array
 from mascarin.tables.grid import Grid
 from mascarin.tables.profile import node_times, pieces_for, trapezoid_weights
 from mascarin.tables.record import Kind
-from mascarin.weather import derive
-from mascarin.weather.channels import RADIATION, Basis
-from mascarin.weather.radiation import clear_beam, direct_by_closure
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived import derive
+from mascarin.weather.derived.radiation import clear_beam, direct_by_closure
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import RADIATION, Basis
+from mascarin.weather.records.record import WeatherRecord
 
 
 def complete(record: WeatherRecord, latitude: float, longitude: float) -> WeatherRecord:

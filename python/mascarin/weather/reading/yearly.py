@@ -14,10 +14,10 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid
 from mascarin.tables.record import Kind
-from mascarin.weather.channels import RADIATION
-from mascarin.weather.readers import Year, kind_of
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.site import Place
+from mascarin.weather.reading.readers import Year, kind_of
+from mascarin.weather.records.channels import RADIATION
+from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.site import Place
 
 _FREE = ("infrared", "pressure", "cloud_cover")
 

@@ -22,8 +22,8 @@ from mascarin.tables.arrays import Flags
 from mascarin.tables.quality import Stretch, runs
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import zone_name
-from mascarin.weather import completion
-from mascarin.weather.record import WeatherRecord
+from mascarin.weather.derived import completion
+from mascarin.weather.records.record import WeatherRecord
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,8 +8,8 @@ from typing import Final
 from mascarin.errors import InputError
 from mascarin.tables.times import local_time
 from mascarin.tables.timezones import parse_timezone, standard_offset, zone_name
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.site import SiteLike
+from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.site import SiteLike
 
 _FAR: Final = 2.0
 """Larger differences of latitude or longitude are another place. [deg]"""

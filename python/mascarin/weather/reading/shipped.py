@@ -18,7 +18,7 @@ from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
 
-FOLDER: Final = Path(__file__).parent / "climates"
+FOLDER: Final = Path(__file__).parents[1] / "climates"
 PREFIX: Final = "shipped:"
 """What stands before the name of a shipped climate where a weather file is named."""
 COMPRESSED: Final = ".xz"

@@ -6,7 +6,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
-from mascarin.weather.channels import RADIATION, UNITS
+from mascarin.weather.records.channels import RADIATION, UNITS
 
 #: Higher than the highest air temperature ever measured, 56.7 degC (World Meteorological Organization,
 #: doi:10.1175/BAMS-D-12-00093.1). [degC]

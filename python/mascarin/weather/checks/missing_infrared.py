@@ -18,7 +18,7 @@ import numpy as np
 
 from mascarin.physics import KELVIN, STEFAN_BOLTZMANN
 from mascarin.tables.arrays import Array
-from mascarin.weather.record import WeatherRecord
+from mascarin.weather.records.record import WeatherRecord
 
 _CLOUD_SCALE_HEIGHT: Final = 8200.0
 """Scale height of the effect of clouds (Martin & Berdahl 1984). [m]"""
@@ -62,7 +62,7 @@ def with_whole_infrared(record: WeatherRecord) -> WeatherRecord:
     Parameters
     ----------
     record : WeatherRecord
-        With cloud cover, see `mascarin.weather.completion`.
+        With cloud cover, see `mascarin.weather.derived.completion`.
 
     Returns
     -------

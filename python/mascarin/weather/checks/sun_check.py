@@ -14,13 +14,13 @@ from mascarin.tables.arrays import Array
 from mascarin.tables.quality import Stretch
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset, zone_name
-from mascarin.weather import clock_shift
-from mascarin.weather import sun as sun_module
-from mascarin.weather.brightness import findings
-from mascarin.weather.channels import RADIATION
-from mascarin.weather.clock_shift import ClockShift, shifts_of
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.sun import SunPath
+from mascarin.weather.checks import clock_shift
+from mascarin.weather.checks.brightness import findings
+from mascarin.weather.checks.clock_shift import ClockShift, shifts_of
+from mascarin.weather.derived import sun as sun_module
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import RADIATION
+from mascarin.weather.records.record import WeatherRecord
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -53,12 +53,12 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     """Refuse a climate whose radiation does not follow the sun over the given place.
 
     The shift of the clock is determined from the balance of measured irradiances and from the form of clear
-    hours (`mascarin.weather.clock_shift`), and refused where it exceeds ten minutes and three times its
-    uncertainty. Beside it three numbers are checked: the part of the radiation that is recorded while the sun
-    is below the horizon, the hour angle around which the radiation is centered, and in records of four weeks
-    or more how far this center moves at once, as with a clock that follows summer time. Clouds and hills
-    shift the center, by more than an hour where mornings are in fog: a center alone proves nothing. A wrong
-    time zone shifts it by whole hours and puts radiation into the night.
+    hours (`mascarin.weather.checks.clock_shift`), and refused where it exceeds ten minutes and three times
+    its uncertainty. Beside it three numbers are checked: the part of the radiation that is recorded while the
+    sun is below the horizon, the hour angle around which the radiation is centered, and in records of four
+    weeks or more how far this center moves at once, as with a clock that follows summer time. Clouds and
+    hills shift the center, by more than an hour where mornings are in fog: a center alone proves nothing. A
+    wrong time zone shifts it by whole hours and puts radiation into the night.
 
     Parameters
     ----------

@@ -20,9 +20,9 @@ from typing import Final, Literal
 import numpy as np
 
 from mascarin.tables.arrays import Array, Flags
-from mascarin.weather.channels import RADIATION
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import RADIATION
+from mascarin.weather.records.record import WeatherRecord
 
 _NODE: Final = 300.0
 """Step of the sun and of the shifts that are tried. [s]"""
