@@ -267,8 +267,8 @@ def _terminate(number: int, frame: object) -> NoReturn:
 
 def _take_debug(words: list[str]) -> bool:
     """Take ``--debug`` out of `words`; every command accepts it."""
-    own = words[: words.index("--")] if "--" in words else words
-    if "--debug" in own:
+    options = words[: words.index("--")] if "--" in words else words
+    if "--debug" in options:
         words.remove("--debug")
         return True
     return os.environ.get("MASCARIN_DEBUG", "") not in ("", "0")
@@ -284,8 +284,8 @@ def _report(error: BaseException) -> int:
         _say(f"error: {error}")
         return error.exit_code
     if isinstance(error, OSError):
-        place = "a file" if error.filename is None else f"'{error.filename}'"
-        _say(f"error: cannot use {place}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
+        file = "a file" if error.filename is None else f"'{error.filename}'"
+        _say(f"error: cannot use {file}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
         return EXIT_INPUT
     if isinstance(error, ValueError) and str(error).startswith("embedded null"):
         _say("error: found a name of a file with a zero in it, which no system has; correct the name")
