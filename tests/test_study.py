@@ -477,7 +477,7 @@ from mascarin import cli
 from mascarin._io.tables import read_csv
 from mascarin.calibration.base.evaluations import Evaluator
 from mascarin._io import atomic
-from mascarin.study import sensitivity_step as screening
+from mascarin.study.steps import sensitivity as screening
 
 # Background jobs of a shell inherit that the signal is ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
