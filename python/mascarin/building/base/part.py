@@ -213,14 +213,10 @@ class Part(BaseModel, metaclass=PartType):
         """Kinds of the parts that a field may hold."""
         kinds, pending = [], [getattr(cls.model_fields.get(key), "annotation", None)]
         while pending:
-            annotation = pending.pop(0)
-            if (
-                isinstance(annotation, type)
-                and issubclass(annotation, Part)
-                and "kind" in annotation.model_fields
-            ):
-                kinds.append(str(annotation.model_fields["kind"].default))
-            pending += get_args(annotation)
+            form = pending.pop(0)
+            if isinstance(form, type) and issubclass(form, Part) and "kind" in form.model_fields:
+                kinds.append(str(form.model_fields["kind"].default))
+            pending += get_args(form)
         return kinds or ["a kind"]
 
     @classmethod
@@ -419,14 +415,12 @@ def fault(location: Location, actual: str, expected: str, help_: str) -> InitErr
     return InitErrorDetails(type=problem(actual, expected, help_), loc=location, input=None)
 
 
-def text_fault(
-    location: Location, words: Sequence[str], position: tuple[int, int] | None
-) -> InitErrorDetails:
-    """Describe an error inside of a text; `words`: found, expected, help; `position`: line and column."""
+def text_fault(location: Location, words: Sequence[str], where: tuple[int, int] | None) -> InitErrorDetails:
+    """Describe an error inside of a text; `words`: found, expected, help; `where`: line and column."""
     actual, expected, help_ = words
     context: dict[str, Any] = {"found": actual, "expected": expected, "help": help_}
-    if position is not None:
-        line, column = position
+    if where is not None:
+        line, column = where
         context |= {"text_line": line, "column": column}
         context["found"] = f"{actual} ({f'line {line}, ' if line > 1 else ''}column {column} of the text)"
     return InitErrorDetails(type=text_problem(context), loc=location, input=None)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from mascarin.genopt.algorithms import modern, searches
+from mascarin.genopt.algorithms import searches
 from mascarin.genopt.algorithms.searches import Context
 from mascarin.genopt.algorithms.settings import Keys
 from mascarin.optimization import CoordinateSearch, FibonacciSearch, GoldenSection, HookeJeeves, Optimizer
@@ -126,7 +126,7 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
         _GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, discrete=True, extension=True
     ),
     "MascarinCMAES": Algorithm(
-        ("Seed", "Sigma", "PopulationSize"), modern.covariance, ("Sigma", "PopulationSize"), extension=True
+        ("Seed", "Sigma", "PopulationSize"), searches.covariance, ("Sigma", "PopulationSize"), extension=True
     ),
 }
 """All algorithms by name, GenOpt's own first."""

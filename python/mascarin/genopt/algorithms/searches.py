@@ -18,6 +18,7 @@ from mascarin.optimization import (
     ArmijoGradient,
     ArmijoRules,
     CoordinateSearch,
+    CovarianceSearch,
     Evaluation,
     FibonacciSearch,
     GoldenSection,
@@ -283,3 +284,16 @@ def _check_logarithms(context: Context) -> None:
                 f"{p.location}: Step of '{p.name}' is a number of intervals, cut to {int(p.step)}"
             )
     report.raise_if_any()
+
+
+def covariance(context: Context, keys: Keys) -> Optimizer:
+    """Make a CMA-ES search, which GenOpt does not have; MaxIte is the largest number of evaluations."""
+    return CovarianceSearch(
+        context.space,
+        sigma=keys.get("Sigma", 0.25),
+        population=keys.get("PopulationSize"),
+        max_evaluations=context.project.settings.max_iterations,
+        seed=keys["Seed"],
+        observer=context.observer,
+        remember=False,
+    )
