@@ -96,7 +96,7 @@ def melting_of(
     ----------
     scan : Scan
         The run.
-    given : (float, float) or None
+    stated : (float, float) or None
         Specific heat of solid and liquid, where the baseline was subtracted. [J/(kg K)]
     span : (float, float) or None
         First and last temperature of melting. [degC]

@@ -39,9 +39,9 @@ def segments_of(
         Label of the segment of each row; empty where there is none.
     signal : Column
         Its name can contain the direction.
-    wanted : sequence of str
+    labels_to_take : sequence of str
         Labels to use; empty: all.
-    place : str
+    location : str
         File and line, for errors.
 
     Returns

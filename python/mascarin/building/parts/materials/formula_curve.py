@@ -87,7 +87,7 @@ class FormulaCurve(Formula, ClosedLaw):
 
         Parameters
         ----------
-        at : tuple
+        location : tuple
             Path of the law.
         """
         ranges = {name: number.range for name, number in self.numbers.items() if number.range is not None}
