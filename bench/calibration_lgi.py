@@ -27,8 +27,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
 
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, SearchOptions, solve
-from mascarin.calibration.least_squares import derivative, least_squares
-from mascarin.calibration.search_options import SLOPES
+from mascarin.calibration.base.search_options import SLOPES
+from mascarin.calibration.methods.least_squares import derivative, least_squares
 
 Floats = NDArray[np.float64]
 

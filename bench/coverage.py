@@ -31,9 +31,9 @@ from mascarin.examples import STUDIES
 from mascarin.linear_algebra import one_thread
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study import Study
-from mascarin.study.combined import combined_intervals, estimates_of
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.model_averaging import combined_intervals, estimates_of
+from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.weather import Measurements
 
 Floats = NDArray[np.float64]
@@ -61,13 +61,13 @@ def truth(
     study: Study, rng: np.random.Generator, named: bool
 ) -> tuple[Any, dict[str, float], dict[str, str], list[str]]:
     """Draw the building that makes the data: its parameters, the forms chosen, and what they replace."""
-    forms = study.forms
+    forms = study.context.variants.forms
     changes: dict[str, Any] = {}
     chosen: dict[str, str | None]
     if named:
         chosen = {part: [None, *known][rng.integers(1 + len(known))] for part, known in forms.parts.items()}
-        variant = study.variant_of(forms.of(chosen))
-        building = study.building_of(variant)
+        variant = study.context.variants.variant_of(forms.of(chosen))
+        building = study.context.variants.building_of(variant)
     else:
         changes = {"surfaces.roof.outside.convection": {"kind": "measured", "column": COLUMN}}
         chosen, variant = {"outside convection": "by direction of the wind"}, None
@@ -77,7 +77,7 @@ def truth(
                 chosen[part] = "not named"
         building = study.building.replace(changes)
     values: dict[str, float] = {}
-    known_parameters = {p.path: p for p in study.problem(variant).parameters}
+    known_parameters = {p.path: p for p in study.context.problem(variant).parameters}
     for factor in factors_of(building):
         parameter = building.parameter(factor.path)
         low, high = max(parameter.low, parameter.lower), min(parameter.high, parameter.upper)
@@ -109,12 +109,12 @@ def experiment(study: Study, seed: int) -> tuple[Study, dict[str, float], dict[s
     table = study.measurements.data.copy()
     table[COLUMN] = by_direction(table["wind_speed"].to_numpy(), table["wind_direction"].to_numpy())
     driven = study.with_measurements(Measurements.from_table(table, timezone="UTC+4"))
-    simulation = driven.over_record(building)
+    simulation = driven.context.models.of_building(building)
     records = simulation.run_vector(simulation.vector(values)).records
-    series = study.observation.simulated(simulation.index, records)
+    series = study.context.observation.simulated(simulation.index, records)
     noise = float(rng.uniform(0.1, 0.3))
-    phi = math.exp(-study.observation.interval / 3600.0 / CORRELATION)
-    rows = table.index.get_indexer(study.observation.times)
+    phi = math.exp(-study.context.observation.interval / 3600.0 / CORRELATION)
+    rows = table.index.get_indexer(study.context.observation.times)
     for s, sensor in enumerate(study.plan.sensors.values()):
         size = len(series)
         drift = lfilter([math.sqrt(1.0 - phi**2)], [1.0, -phi], rng.standard_normal(size + 300))[300:]
@@ -131,15 +131,18 @@ def judge(
     study: Study, values: dict[str, float], chosen: dict[str, str], replaced: list[str]
 ) -> dict[str, Any]:
     """Calibrate one experiment and compare with the truth."""
-    with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), study.inputs()) as workspace:
-        found = ModelRuns(study, workspace, False).combination()
-    fit, intervals = estimates_of(study, found), combined_intervals(study, found)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Workspace(Path(folder), study.context.identity()) as workspace,
+    ):
+        found = ModelRuns(study.context, workspace, False).combination()
+    fit, intervals = estimates_of(study.context, found), combined_intervals(study.context, found)
     best = dict(found.forms[0].choice)
     held = {}
     for i, path in enumerate(fit.problem.paths):
         changed = [
             part
-            for part, known in study.forms.parts.items()
+            for part, known in study.context.variants.forms.parts.items()
             for form in known.values()
             if best.get(part, "as described") != chosen.get(part, "as described")
             and any(path.startswith(f"{place}.") for place in form.changes)
@@ -155,8 +158,12 @@ def judge(
             scores[path] = float((values[path] - 0.5 * (fit.low[i] + fit.high[i])) / sd[i])
     return {
         "held": held,
-        "blind": dict(zip(study.observation.names, intervals.coverage["blind"].tolist(), strict=True)),
-        "half": dict(zip(study.observation.names, intervals.half_width.mean(axis=0).tolist(), strict=True)),
+        "blind": dict(
+            zip(study.context.observation.names, intervals.coverage["blind"].tolist(), strict=True)
+        ),
+        "half": dict(
+            zip(study.context.observation.names, intervals.half_width.mean(axis=0).tolist(), strict=True)
+        ),
         "sd": [periods["blind"].sd for periods in found.forms[0].run.scores.values()],
         "rms": float(np.sqrt(np.mean(np.square(list(scores.values()))))),
         "best": best,

@@ -30,9 +30,9 @@ from scipy import stats
 
 from mascarin import Study
 from mascarin.examples import STUDIES
-from mascarin.study.diagnosis_step import diagnosis
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.diagnosis.step import diagnosis
+from mascarin.study.steps.model_runs import ModelRuns
 from mascarin.weather import Climate, Measurements
 
 Edit = Callable[[pd.DataFrame], None]
@@ -141,10 +141,13 @@ def judged(table: pd.DataFrame) -> dict[str, Any]:
     """Calibrate and diagnose."""
     began = time.monotonic()
     study = study_of(table)
-    with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), study.inputs()) as workspace:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Workspace(Path(folder), study.context.identity()) as workspace,
+    ):
         # The calibration without errors of sensors: the diagnosis estimates those of the model itself.
-        run, fit = ModelRuns(study, workspace).fitted()
-        result = diagnosis(study, run, fit, workspace)
+        run, fit = ModelRuns(study.context, workspace).fitted()
+        result = diagnosis(study.context, run, fit, workspace)
     return {**result.to_dict(), "seconds": time.monotonic() - began}
 
 

@@ -19,7 +19,7 @@ from playwright.sync_api import sync_playwright
 
 import mascarin as mc
 from mascarin import examples
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.tables import run_inputs
 from mascarin.pages.explore import Server, Session
 from mascarin.pages.explore.page import render
 

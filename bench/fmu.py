@@ -25,7 +25,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from mascarin.building import load
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.tables import run_inputs
 from mascarin.examples import FOLDER
 from mascarin.fmu import export
 from mascarin.simulation import Simulation

@@ -25,7 +25,7 @@ from lgi_seven import VARIANT
 from matplotlib.figure import Figure
 
 from mascarin.calibration import Calibration, CalibrationProblem, SearchOptions, solve
-from mascarin.calibration.result import PlotKind
+from mascarin.calibration.base.result import PlotKind
 from mascarin.examples import FOLDER
 from mascarin.figures.files import save
 from mascarin.progress import Progress

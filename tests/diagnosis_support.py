@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from mascarin.calibration.day_blocks import DayGrid
-from mascarin.calibration.discrepancy import DayData, Discrepancy, hour_basis
+from mascarin.calibration.errors.day_blocks import DayGrid
+from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, hour_basis
 from mascarin.diagnosis import (
     Candidate,
     DiagnosisInput,

@@ -21,10 +21,11 @@ import numpy as np
 import pandas as pd
 
 import fuzz_mutation
-from mascarin._io import own_files, own_records
-from mascarin._io.cache import _read
+from mascarin._io.sealed import own_files, own_records
+from mascarin._io.sealed.cache import _read
 from mascarin.building.outputs.output import Output
-from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor, evaluations
+from mascarin.calibration import CalibrationProblem, Cost, Evaluator, FitParameter, FitSensor
+from mascarin.calibration.base import evaluations
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.store import Store
 from mascarin.ensemble.work import Chunk
@@ -39,9 +40,9 @@ from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
 from mascarin.simulation.single_precision import Difference
-from mascarin.study import kept
-from mascarin.study.findings import PredictionIntervals
-from mascarin.study.storage import Workspace
+from mascarin.study.context import step_cache as kept
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.findings import PredictionIntervals
 from mascarin.tables.timezones import parse_timezone
 
 CODES = (

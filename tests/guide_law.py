@@ -22,7 +22,7 @@ from mascarin.figures import text
 from mascarin.fmu import export
 from mascarin.pages.run import page as run_page
 from mascarin.simulation import Mean
-from mascarin.study.other_laws import forms
+from mascarin.study.diagnosis.other_laws import forms
 from mascarin.validation.sensors import Sensor
 from sitepages import assemble, keys, laws
 from sitepages.snippets import Snippets

@@ -12,7 +12,7 @@ import pandas as pd
 
 from mascarin._io.durations import seconds_of
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.channels import UNITS
+from mascarin.weather.records.channels import UNITS
 from random_draw import Draw
 from random_schedules import COLUMNS
 

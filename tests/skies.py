@@ -9,8 +9,8 @@ import numpy as np
 from mascarin.tables.arrays import Array
 from mascarin.tables.grid import Grid
 from mascarin.tables.record import Kind
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.record import WeatherRecord
 
 NAMES = ("global_horizontal", "direct_normal", "diffuse_horizontal")
 #: 2024-01-01 UTC. [s]

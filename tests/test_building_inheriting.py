@@ -215,7 +215,7 @@ def test_the_hash_of_a_study_follows_the_base_of_its_building(tmp_path: Path) ->
     (tmp_path / "building.yaml").write_text("extends: base.yaml\n", encoding="utf-8")
     (tmp_path / "study.yaml").write_text(STUDY, encoding="utf-8")
     logger_table(tmp_path / "base.yaml").to_csv(tmp_path / "logger.csv")
-    before = mc.Study(tmp_path / "study.yaml").sources.hashes["building"]
+    before = mc.Study(tmp_path / "study.yaml").context.inputs.hashes["building"]
     assert before != hashlib.sha256((tmp_path / "building.yaml").read_bytes()).hexdigest()
     (tmp_path / "base.yaml").write_text(BUILDING.replace("area: 4.0", "area: 5.0"), encoding="utf-8")
-    assert mc.Study(tmp_path / "study.yaml").sources.hashes["building"] != before
+    assert mc.Study(tmp_path / "study.yaml").context.inputs.hashes["building"] != before

@@ -81,7 +81,7 @@ def test_a_word_may_replace_a_number() -> None:
 
 
 def test_a_whole_number() -> None:
-    count = Quantity("-", "", Fixed(""), whole=True)
+    count = Quantity("-", "", Fixed(""), integer=True)
     assert count.read(3) == 3.0
     with pytest.raises(PydanticCustomError, match="a whole number"):
         count.read(3.5)

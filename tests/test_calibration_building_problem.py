@@ -22,8 +22,8 @@ from mascarin.calibration import (
     fit_parameter,
     solve,
 )
-from mascarin.calibration.building_problem import problem_of
-from mascarin.calibration.least_squares import derivative
+from mascarin.calibration.base.building_problem import problem_of
+from mascarin.calibration.methods.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
 from mascarin.simulation.preparation import prepare
@@ -221,8 +221,8 @@ def seven() -> CalibrationProblem:
     monkeypatch.setattr(prepare, "REPEATED_WITHIN", 1e-9)
     study = Study(FOLDER / "lgi" / "study.yaml")
     variant = "the paper's seven, 25 outside"
-    building = study.building_of(variant)
-    free = [fit_parameter(building, path) for path in study.plan_of(variant).parameters]
+    building = study.context.variants.building_of(variant)
+    free = [fit_parameter(building, path) for path in study.context.variants.plan_of(variant).parameters]
     sensors = {
         "room.operative_temperature": Sensor("room_air", 0.3),
         "ceiling.energain_plasterboard_temperature": Sensor("pcm_plasterboard", 0.3),

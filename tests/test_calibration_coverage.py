@@ -2,8 +2,9 @@
 
 Everything is drawn from the assumed process: parameters and offsets, the sizes of the errors from their
 priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % of the truths. Assumed is what
-`mascarin.calibration.joint_posterior` says: the scale of the errors of the model is the stated uncertainty
-less the offset, the error within a day is at least half of a stated uncertainty, and no offset exceeds two.
+`mascarin.calibration.errors.joint_posterior` says: the scale of the errors of the model is the stated
+uncertainty less the offset, the error within a day is at least half of a stated uncertainty, and no offset
+exceeds two.
 """
 
 from __future__ import annotations
@@ -14,10 +15,10 @@ from numpy.typing import NDArray
 from scipy.stats import truncnorm
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
-from mascarin.calibration.bounded_coefficients import LARGEST_ERROR
-from mascarin.calibration.covariance_sampling import inverse_wishart
-from mascarin.calibration.day_blocks import DayGrid
-from mascarin.calibration.discrepancy import (
+from mascarin.calibration.errors.bounded_coefficients import LARGEST_ERROR
+from mascarin.calibration.errors.covariance_sampling import inverse_wishart
+from mascarin.calibration.errors.day_blocks import DayGrid
+from mascarin.calibration.errors.discrepancy import (
     CORRELATION_HOURS,
     Discrepancy,
     alike_days,
@@ -26,8 +27,8 @@ from mascarin.calibration.discrepancy import (
     hour_basis,
     root_of,
 )
-from mascarin.calibration.joint_posterior import LEAST_ERROR, ErrorStatement, Linear, joint_posterior
-from mascarin.calibration.sensor_errors import SensorError, error_columns
+from mascarin.calibration.errors.joint_posterior import LEAST_ERROR, ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
-from mascarin.calibration.day_blocks import DayGaussian, DayGrid
-from mascarin.calibration.discrepancy import (
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
+from mascarin.calibration.errors.discrepancy import (
     DayData,
     Discrepancy,
     alike_days,
@@ -17,11 +17,11 @@ from mascarin.calibration.discrepancy import (
     estimate_discrepancy,
     hour_basis,
 )
-from mascarin.calibration.joint_estimation import estimate_jointly
-from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
-from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
-from mascarin.calibration.sensor_errors import SensorError, error_columns
-from mascarin.calibration.truncated_normal import within_bounds
+from mascarin.calibration.errors.joint_estimation import estimate_jointly
+from mascarin.calibration.errors.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
+from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
+from mascarin.calibration.errors.truncated_normal import within_bounds
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin._io import own_records
+from mascarin._io.sealed import own_records
 from mascarin.calibration import (
     CalibrationProblem,
     Cost,
@@ -23,7 +23,7 @@ from mascarin.calibration import (
     SearchOptions,
     solve,
 )
-from mascarin.calibration.least_squares import Squares, derivative, exact, scale_of
+from mascarin.calibration.methods.least_squares import Squares, derivative, exact, scale_of
 from mascarin.errors import InputError, SolverError
 
 Floats = NDArray[np.float64]

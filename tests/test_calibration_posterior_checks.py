@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mascarin.calibration import FitParameter
-from mascarin.calibration.day_blocks import DayGaussian
-from mascarin.calibration.posterior_checks import of_errors, of_estimates, widened, widening
+from mascarin.calibration.errors.day_blocks import DayGaussian
+from mascarin.calibration.errors.posterior_checks import of_errors, of_estimates, widened, widening
 from mascarin.materials.iso_10456 import kind_of, unusual
 
 DAYS = [f"2024-01-0{k}" for k in range(1, 7)]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin._io import own_records
+from mascarin._io.sealed import own_records
 from mascarin.calibration import (
     Calibration,
     CalibrationProblem,

@@ -281,7 +281,7 @@ def test_what_cannot_be_used_is_said_before_the_run(
 
 
 def test_a_climate_without_wind_is_refused(tmp_path: Path) -> None:
-    from mascarin.weather.shipped import content, found
+    from mascarin.weather.reading.shipped import content, found
 
     rows = content(found("shipped:tampa")).decode("latin-1").splitlines()
     calm = [*rows[:8], *(",".join([*r.split(",")[:21], "0.0", *r.split(",")[22:]]) for r in rows[8:])]
@@ -334,7 +334,7 @@ def test_cooling_counts_the_latent_heat_of_drying(tmp_path: Path) -> None:
     The coil of a second objective takes ``1/9`` of its sensible heat as latent heat. A design without
     drying has sensible heat alone, and the same heat: it does not depend on vapour.
     """
-    from mascarin.weather.shipped import content, found
+    from mascarin.weather.reading.shipped import content, found
 
     def steady(row: str) -> str:
         fields = row.split(",")

@@ -24,7 +24,7 @@ from diagnosis_support import (
     given,
     slots,
 )
-from mascarin.calibration.day_blocks import DayGaussian
+from mascarin.calibration.errors.day_blocks import DayGaussian
 from mascarin.diagnosis.causes import Finding, covariance_of, diagnose, log_prior, scores_of
 from mascarin.diagnosis.hypotheses import Cause
 from mascarin.diagnosis.likelihood_ratio import Scores, Simulator, p_value

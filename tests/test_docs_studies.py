@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from mascarin.simulation.preparation.initial_state import GivenStart
-from mascarin.study import data_sources, description
+from mascarin.study.file import data_sources, description
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"

@@ -13,9 +13,9 @@ from mascarin.building import Building, load
 from mascarin.building.geometry import Polygon, view_factors, volume
 from mascarin.examples import STUDIES
 from mascarin.study import Study
-from mascarin.study.description import read_study
-from mascarin.study.model_runs import ModelRuns, judged
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
+from mascarin.study.file.description import read_study
+from mascarin.study.steps.model_runs import ModelRuns, judged
 
 FOLDER = STUDIES["lgi"].parent
 SHA256 = "f148c2fc65ce14ee8cadda7b3ce04cdce9d4fc38abcd97bdc1402ee9edd31f96"
@@ -146,8 +146,8 @@ BIAS = 0.3  # K, what the sensors allow
 def test_the_calibrated_cell_is_accurate_on_days_not_used(tmp_path: Path) -> None:
     """The identification as the study does it, on five days; its numbers frozen on all the others."""
     study = Study.from_yaml(STUDIES["lgi"])
-    with Workspace(tmp_path, study.inputs()) as workspace:
-        run, fit = ModelRuns(study, workspace, False).candidate(None)
+    with Workspace(tmp_path, study.context.identity()) as workspace:
+        run, fit = ModelRuns(study.context, workspace, False).candidate(None)
     assert run.results.energy.closure < 1e-10
     assert not fit.on_bound
     for periods, held, blind in zip(run.scores.values(), CORROBORATION, BLIND, strict=True):
@@ -156,21 +156,21 @@ def test_the_calibrated_cell_is_accurate_on_days_not_used(tmp_path: Path) -> Non
         for metrics in periods.values():
             assert abs(metrics.bias) < BIAS
             assert metrics.mean_error_percent < 5.0
-    assert all(verdict.passed for verdict in judged(study, run)[run.label])
+    assert all(verdict.passed for verdict in judged(study.context, run)[run.label])
 
 
 def test_the_study_leaves_the_form_of_the_model_open() -> None:
     study = Study.from_yaml(STUDIES["lgi"])
-    assert study.candidates == [None]
-    assert {part: list(forms) for part, forms in study.forms.parts.items()} == {
+    assert study.context.inputs.candidates == [None]
+    assert {part: list(forms) for part, forms in study.context.variants.forms.parts.items()} == {
         "outside convection": ["DOE-2", "TARP", "power of the wind"],
         "sky": ["Brunt", "Clark and Allen"],
         "convection in the gap": ["Alamdari and Hammond"],
         "diffuse radiation": ["Hay and Davies"],
     }
-    free = study.variant_of((("outside convection", "power of the wind"),))
-    paths = set(study.plan_of(free).parameters)
-    shared = set(study.sought.parameters)
+    free = study.context.variants.variant_of((("outside convection", "power of the wind"),))
+    paths = set(study.context.variants.plan_of(free).parameters)
+    shared = set(study.context.inputs.calibration_plan.parameters)
     assert shared - paths == {"surfaces.roof.outside.convection.factor"}
     assert paths - shared == {f"surfaces.roof.outside.convection.*.{number}" for number in "abcm"}
 
@@ -178,7 +178,9 @@ def test_the_study_leaves_the_form_of_the_model_open() -> None:
 def test_all_outdoor_surfaces_have_one_law_in_an_alternative() -> None:
     study = Study.from_yaml(STUDIES["lgi"])
     for name, kind in (("DOE-2", "doe2"), ("TARP", "tarp")):
-        building = study.building_of(study.variant_of((("outside convection", name),)))
+        building = study.context.variants.building_of(
+            study.context.variants.variant_of((("outside convection", name),))
+        )
         for surface, entry in building.surfaces.items():
             if entry.outside.outdoors and not (kind == "doe2" and surface in ("door", "jalousie")):
                 assert entry.outside.convection is not None

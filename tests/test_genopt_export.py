@@ -14,7 +14,7 @@ import pytest
 from genopt_support import body
 from mascarin import cli
 from mascarin.calibration import Cost, Evaluator, SearchOptions, solve
-from mascarin.calibration.problem import FitParameter
+from mascarin.calibration.base.problem import FitParameter
 from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options as RunOptions
 from mascarin.genopt import optimize
@@ -25,7 +25,7 @@ from mascarin.genopt.export.compiling import compile_study, compiled
 from mascarin.genopt.export.evaluation import evaluate_files
 from mascarin.genopt.export.internal_search import search
 from mascarin.genopt.export.writing import FILES, Options, _command, variable, write_project
-from mascarin.genopt.numbers import single
+from mascarin.genopt.files.numbers import single
 from mascarin.genopt.program import Program
 from mascarin.genopt.run import check
 from mascarin.optimization import Evaluation, HookeJeeves, Observer, box, uniform_starts
@@ -106,10 +106,10 @@ def edit(path: Path, before: str, after: str) -> None:
 def test_the_cost_of_a_case_equals_that_of_the_study_exactly(
     study: Study, case: Case, tmp_path: Path
 ) -> None:
-    problem = study.problem()
+    problem = study.context.problem()
     assert replace(problem, identity="").fingerprint() == case.problem.fingerprint()
     case.save(tmp_path / "case.npz")
-    read = open_case(tmp_path / "case.npz", str(study.path.resolve()))
+    read = open_case(tmp_path / "case.npz", str(study.context.inputs.source_file.resolve()))
     assert read is not None
     for x in np.array([[0.033, 0.62], [0.0512345678, 0.2], [0.02, 0.8]]):
         residuals = problem.residuals(x[None])
@@ -168,9 +168,9 @@ def test_a_broken_case_is_made_again(copy: Path, case: Case, content: bytes | st
 
 
 def test_a_case_belongs_to_one_state_of_the_program(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = inputs_of("study", [str(study.path)])
-    monkeypatch.setattr("mascarin.genopt.export.case._PACKAGE", study.path.parent)
-    assert inputs_of("study", [str(study.path)])["program"] != before["program"]
+    before = inputs_of("study", [str(study.context.inputs.source_file)])
+    monkeypatch.setattr("mascarin.genopt.export.case._PACKAGE", study.context.inputs.source_file.parent)
+    assert inputs_of("study", [str(study.context.inputs.source_file)])["program"] != before["program"]
 
 
 def test_an_evaluation_imports_nothing_that_reads_studies(bench: Path, tmp_path: Path) -> None:
@@ -299,7 +299,7 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         rounding=rounded,
         observer=rows,
     )
-    evaluator = Evaluator(Cost(study.problem(), study.sought.cost))
+    evaluator = Evaluator(Cost(study.context.problem(), study.context.inputs.calibration_plan.cost))
     while points := optimizer.ask():
         told = []
         for point in points:
@@ -369,7 +369,7 @@ def test_the_project_is_searched_like_a_calibration(
     )
     outcome = optimize(ini, RunOptions(workers=1))
     rules = SearchOptions(sequences=1, agree=1, step=0.125, reductions=3)
-    fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", options=rules)
+    fit = solve(Study(copy / "study.yaml").context.problem(), method="hooke-jeeves", cost="sd", options=rules)
     assert len(fit.trace.x) == len(without_processes) > 20
     assert [r.key[1] for r in outcome.records] == [tuple(x) for x in fit.trace.x]
     assert [r.costs[0] for r in outcome.records if r.costs] == list(fit.trace.cost)

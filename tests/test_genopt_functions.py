@@ -5,7 +5,7 @@ import math
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.genopt.functions import evaluate, resolve, substitute
+from mascarin.genopt.files.functions import evaluate, resolve, substitute
 
 
 @pytest.mark.parametrize(

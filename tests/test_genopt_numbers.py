@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mascarin.genopt.numbers import double_text, normalised, parse_double, single, single_text
+from mascarin.genopt.files.numbers import double_text, normalised, parse_double, single, single_text
 
 
 @pytest.mark.parametrize(

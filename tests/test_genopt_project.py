@@ -7,7 +7,7 @@ import pytest
 from genopt_support import HOOKE_JEEVES, SWARM, TWO_CONTINUOUS, write_project
 from mascarin.errors import InputError
 from mascarin.genopt import load
-from mascarin.genopt.algorithm import build
+from mascarin.genopt.algorithms.algorithm import build
 from mascarin.genopt.listing import Listings
 
 

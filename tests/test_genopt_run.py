@@ -380,7 +380,7 @@ def test_a_project_can_be_checked_without_running(tmp_path: Path) -> None:
 
 
 def test_a_log_of_another_format_is_refused(tmp_path: Path) -> None:
-    from mascarin._io import own_records
+    from mascarin._io.sealed import own_records
     from mascarin.genopt import records
 
     path = tmp_path / "opt.evaluations.jsonl"

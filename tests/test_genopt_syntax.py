@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.genopt.syntax import Block, Report, ordered, read
+from mascarin.genopt.files.syntax import Block, Report, ordered, read
 
 
 def parse(folder: Path, text: str, *, lenient: bool = False) -> tuple[Block, Report]:

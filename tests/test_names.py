@@ -21,13 +21,15 @@ EMPTY_WORDS = frozenset([
 PACKAGES = (
     "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
     "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
-    "_io", "building/checks", "building/files", "building/geometry", "building/outputs",
-    "building/parameters", "building/parts/air", "building/parts/openings", "building/quantities",
+    "_io", "building", "materials",
 )  # fmt: skip
 
 
 #: Names that users or files have: a key of a record, a key of YAML.
-PUBLIC = {("simulation/checks/judgement.py", "place"), ("building/parts/air/schedule.py", "at")}
+PUBLIC = {
+    ("simulation/checks/judgement.py", "place"), ("building/parts/air/schedule.py", "at"),
+    ("building/gamma.py", "near"), ("building/parts/self_shading.py", "near"),
+}  # fmt: skip
 
 
 def bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:

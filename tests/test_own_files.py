@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mascarin._io import own_files
 from mascarin._io.locks import FolderLock
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
-from mascarin.study import kept
-from mascarin.study.storage import Workspace
+from mascarin.study.context import step_cache as kept
+from mascarin.study.context.storage import Workspace
 
 
 def test_every_changed_byte_is_found() -> None:

@@ -361,7 +361,7 @@ def test_the_data_folder_may_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_a_panic_is_a_defect_wherever_it_happens(
     border: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import mascarin.commands.schema as commands
+    import mascarin.commands.studies.schema as commands
 
     def broken(*words: object) -> None:
         _engine._panic("index 7 of 3", border)
@@ -388,7 +388,7 @@ def test_a_panic_in_a_worker_is_a_defect(folder: Path) -> None:
 def test_a_full_disk_is_no_defect(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import mascarin.commands.schema as commands
+    import mascarin.commands.studies.schema as commands
 
     def full(*words: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -398,7 +398,7 @@ def test_a_full_disk_is_no_defect(
 
 
 def test_no_memory_is_no_defect(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    import mascarin.commands.schema as commands
+    import mascarin.commands.studies.schema as commands
 
     def huge(*words: object) -> None:
         raise MemoryError("Unable to allocate 7 GiB")

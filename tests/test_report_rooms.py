@@ -12,7 +12,7 @@ import pytest
 from mascarin import load
 from mascarin.examples import FOLDER
 from mascarin.pages.study.figures import rooms
-from mascarin.study.document.building import building_entry
+from mascarin.study.results.document.building import building_entry
 
 
 def wall(inside: str, outside: str, azimuth: float, area: float = 10.0) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from mascarin import cli, examples
 from mascarin.building import json_schema
 from mascarin.building.files.yaml_document import plain
 from mascarin.design.schema import design_schema
-from mascarin.study.schema import study_schema
+from mascarin.study.file.schema import study_schema
 
 SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
     "building": json_schema, "study": study_schema, "design": design_schema

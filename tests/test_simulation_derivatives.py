@@ -44,7 +44,7 @@ def days(cell: Study) -> Simulation:
         cell.climate,
         start="2010-09-20",
         end="2010-09-22",
-        outputs=[sensor.output for sensor in cell.file.sensors.values()] + ["room.operative_temperature"],
+        outputs=[sensor.output for sensor in cell.plan.sensors.values()] + ["room.operative_temperature"],
         measurements=cell.measurements,
         initial=23.0,
     )

@@ -365,7 +365,13 @@ def test_a_sensor_without_a_first_value_is_named(wall: Bench) -> None:
     ):
         Study(started(wall, "late.yaml", "measured", text))
     shown = text.replace("uncertainty: 0.3", "uncertainty: 0.3, use: false")
-    assert "core" not in Study(started(wall, "shown.yaml", "measured", shown)).whole().run().provenance.start
+    assert (
+        "core"
+        not in Study(started(wall, "shown.yaml", "measured", shown))
+        .context.models.over_record()
+        .run()
+        .provenance.start
+    )
 
 
 def test_the_lgi_cell_starts_at_its_first_measured_values(tmp_path: Path) -> None:
@@ -375,15 +381,15 @@ def test_the_lgi_cell_starts_at_its_first_measured_values(tmp_path: Path) -> Non
     text = (folder / "study.yaml").read_text("utf-8")
     (tmp_path / "study.yaml").write_text("initial: measured\n" + text, "utf-8")
     study = Study(tmp_path / "study.yaml")
-    simulation = study.whole()
+    simulation = study.context.models.over_record()
     run = Simulation(
         study.building, study.climate, step="15min", start=simulation.start, end="2010-08-01 06:00",
         outputs=[output.name for output in simulation.outputs], measurements=study.measurements,
-        initial=study.initial,
+        initial=study.context.models.initial,
     ).run()  # fmt: skip
     first = {
         name: study.measurements.at(sensor.columns[0], run.index[:1])[0]
-        for name, sensor in study.file.sensors.items()
+        for name, sensor in study.plan.sensors.items()
     }
     start = {name: float(run.records[0, k]) for k, name in enumerate(first)}
     for name in ("room_air", "gap_air"):

@@ -198,7 +198,7 @@ def test_a_run_that_does_not_converge_leaves_no_file(
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_command_that_is_ended_leaves_no_file(how: signal.Signals, tmp_path: Path) -> None:
     code = (
-        "import sys, time; from mascarin.simulation import blocks, netcdf; from mascarin import cli\n"
+        "import sys, time; from mascarin.simulation.records import blocks, netcdf; from mascarin import cli\n"
         "blocks.SIZE = 80\ntake = netcdf.NetcdfDraft.take\n"
         "def slow(self, rows):\n    take(self, rows); print('row', flush=True); time.sleep(0.05)\n"
         "netcdf.NetcdfDraft.take = slow\nsys.exit(cli.main())"

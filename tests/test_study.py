@@ -421,15 +421,15 @@ def test_a_variant_may_hold_dots_in_its_name(quick: Bench, capsys: pytest.Captur
 
 def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     from mascarin.study import Study
-    from mascarin.study.storage import Workspace
+    from mascarin.study.context.storage import Workspace
 
     study = Study(quick.study)
     out = quick.folder / "out"
-    with Workspace(out, study.inputs()):
+    with Workspace(out, study.context.identity()):
         for command in ("study", "sensitivity", "calibrate", "validate"):
             assert cli.main([command, str(quick.study), "-o", str(out)]) == 2
             assert "another process is writing to this folder" in capsys.readouterr().err
-    Workspace(out, study.inputs()).__exit__()
+    Workspace(out, study.context.identity()).__exit__()
 
 
 def test_date_and_run_time_are_in_a_separate_file(done: Done) -> None:
@@ -475,9 +475,9 @@ KILLED = """
 import os, signal, sys
 from mascarin import cli
 from mascarin._io.tables import read_csv
-from mascarin.calibration.evaluations import Evaluator
+from mascarin.calibration.base.evaluations import Evaluator
 from mascarin._io import atomic
-from mascarin.study import sensitivity_step as screening
+from mascarin.study.steps import sensitivity as screening
 
 # Background jobs of a shell inherit that the signal is ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -575,7 +575,7 @@ def test_interrupted_it_ends_with_130_and_keeps_its_work(long: Bench) -> None:
 
 
 def test_chunks_of_work_last_about_a_second() -> None:
-    from mascarin.study.sensitivity_step import CHUNK_SECONDS, _Pace
+    from mascarin.study.steps.sensitivity import CHUNK_SECONDS, _Pace
 
     assert CHUNK_SECONDS <= 1.0
     pace = _Pace()

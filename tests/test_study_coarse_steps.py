@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from mascarin.study import Study
-from mascarin.study.kept import kept_series
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.parameter_effects import Effects
-from mascarin.study.storage import Workspace
+from mascarin.study.context.step_cache import kept_series
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.model_runs import ModelRuns
+from mascarin.study.steps.parameter_effects import Effects
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 
@@ -34,11 +34,12 @@ def opened(bench: Bench, step: str) -> Study:
 
 def test_only_the_runs_with_all_parameters_take_the_long_step(bench: Bench) -> None:
     study = opened(bench, "1h")
-    simulation, lead = study.varied()
+    simulation, lead = study.context.models.for_sensitivity()
     assert (simulation.step_seconds, lead) == (3600.0, 86400.0)
     assert simulation.index[0] == pd.Timestamp("2023-03-01 00:00", tz=simulation.index.tz)
-    assert study.short().step_seconds == study.whole().step_seconds == 1800.0
-    assert opened(bench, "30min").varied()[0] is not simulation
+    models = study.context.models
+    assert models.for_calibration().step_seconds == models.over_record().step_seconds == 1800.0
+    assert opened(bench, "30min").context.models.for_sensitivity()[0] is not simulation
 
 
 def test_sensitivities_with_the_long_step_are_those_of_the_short_one(bench: Bench, tmp_path: Path) -> None:
@@ -46,8 +47,8 @@ def test_sensitivities_with_the_long_step_are_those_of_the_short_one(bench: Benc
     for step in ("30min", "1h"):
         study = opened(bench, step)
         assert study.plan.sensitivity is not None
-        with Workspace(tmp_path / step, study.inputs()) as workspace:
-            found.append(ModelRuns(study, workspace).sensitivity(study.plan.sensitivity).table())
+        with Workspace(tmp_path / step, study.context.identity()) as workspace:
+            found.append(ModelRuns(study.context, workspace).sensitivity(study.plan.sensitivity).table())
     fine, coarse = (one.set_index(["output", "parameter"])["share"] for one in found)
     assert np.abs(fine - coarse).max() < 0.02
     assert fine.max() > 0.2
@@ -57,10 +58,10 @@ def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> 
     effects = []
     for step in ("30min", "1h"):
         study = opened(bench, step)
-        simulation = study.simulation
+        simulation = study.context.models.nominal
         values = simulation.vector({})
-        base = kept_series(study, simulation, values[None])[0]
-        effects.append(dict(Effects(study, simulation, base, values).each(lambda done, of: None)))
+        base = kept_series(study.context, simulation, values[None])[0]
+        effects.append(dict(Effects(study.context, simulation, base, values).each(lambda done, of: None)))
     fine, coarse = effects
     assert set(fine) == set(coarse)
     largest = max(np.abs(one).max() for one in fine.values())

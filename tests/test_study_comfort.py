@@ -40,7 +40,7 @@ def test_a_study_rates_its_rooms_before_and_after_the_calibration(tmp_path: Path
     assert set(table["model"]) == {"nominal", "fitted"}
     # A study meshes its walls for the ranges of their parameters: `mc.simulate` alone differs by 0.03 K.
     changed = results.fitted.results.provenance.changed
-    run = made.over_record(box().replace(changed), ["room.mean_radiant_temperature"]).run()
+    run = made.context.models.of_building(box().replace(changed), ["room.mean_radiant_temperature"]).run()
     expected = run.comfort("room", index="operative", band=[18, 26])
     found = table[table["model"] == "fitted"]["degree_hours"].sum()
     assert found == pytest.approx(expected.degree_hours, rel=1e-9)

@@ -13,7 +13,7 @@ import pytest
 
 from mascarin.diagnosis.causes import Finding
 from mascarin.diagnosis.hypotheses import Candidate, Diagnosis
-from mascarin.study import diagnosis_words
+from mascarin.study.diagnosis import words as diagnosis_words
 
 TIMES = pd.date_range("2023-03-02 06:00", periods=96, freq="1h", tz="UTC")
 SETUP: Any = SimpleNamespace(

@@ -14,11 +14,11 @@ from mascarin.examples import STUDIES
 from mascarin.sensitivity import Factor
 from mascarin.sensitivity.spectral import analyze, design
 from mascarin.simulation import Simulation
-from mascarin.study.document.phase_change import phase_change
-from mascarin.study.document.sensitivity import importance
-from mascarin.study.findings import ModelRun
-from mascarin.study.phase_change import melting_layers
-from mascarin.study.setup import Setup
+from mascarin.study.context.context import StudyContext
+from mascarin.study.context.phase_change import melting_layers
+from mascarin.study.results.document.phase_change import phase_change
+from mascarin.study.results.document.sensitivity import importance
+from mascarin.study.steps.findings import ModelRun
 from mascarin.weather import Climate, Measurements
 
 
@@ -35,7 +35,7 @@ def test_frequencies_are_those_of_the_groups() -> None:
     results = {"of_walls": x[:, 0] + x[:, 1], "of_c": x[:, 2], "of_d": x[:, 3]}
     found = {name: analyze(plan, y, names=[name]) for name, y in results.items()}
     days = (pd.Timestamp("2023-03-01", tz="UTC"), pd.Timestamp("2023-03-02", tz="UTC"))
-    study = cast("Setup", SimpleNamespace(identification=days))
+    study = cast("StudyContext", SimpleNamespace(periods=SimpleNamespace(identification=days)))
     for output, group in (("of_walls", "walls"), ("of_c", "c"), ("of_d", "d")):
         content = importance(study, found[output])
         power = content["spectra"][output]["power"]
@@ -70,7 +70,7 @@ def test_the_states_of_a_phase_change_layer_are_those_of_the_run() -> None:
     )
     run = cast("ModelRun", SimpleNamespace(simulation=simulation, results=simulation.run()))
     compared_from = run.results.index[0] + pd.Timedelta(days=1)
-    study = cast("Setup", SimpleNamespace(compared_from=compared_from))
+    study = cast("StudyContext", SimpleNamespace(periods=SimpleNamespace(compared_from=compared_from)))
     (found,) = phase_change(study, run)
     assert found["label"] == "ceiling: energain"
     fraction = run.results[layer.liquid_fraction].to_numpy()

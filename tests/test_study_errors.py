@@ -11,11 +11,12 @@ import pandas as pd
 import pytest
 
 from mascarin import cli
-from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form
-from mascarin.study import Study, model_runs
-from mascarin.study.forms import comparable
-from mascarin.study.model_runs import ModelRuns
-from mascarin.study.storage import Workspace
+from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form
+from mascarin.study import Study
+from mascarin.study.context.forms import comparable
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps import model_runs
+from mascarin.study.steps.model_runs import ModelRuns
 from study_support import BUILDING, STUDY, TRUTH, logger_table
 
 OFFSET = 0.25  # K, added to one sensor
@@ -122,7 +123,7 @@ def test_tables_and_notes_are_in_the_report(content: dict[str, Any], folder: Pat
 
 
 def test_a_list_of_values_leaves_out_the_one_of_the_building(folder: Path) -> None:
-    forms = Study.from_yaml(folder / "study.yaml").forms
+    forms = Study.from_yaml(folder / "study.yaml").context.variants.forms
     assert {part: list(known) for part, known in forms.parts.items()} == {
         "outside convection": ["windy"],
         "site.ground_reflectance": ["0.5"],
@@ -131,7 +132,7 @@ def test_a_list_of_values_leaves_out_the_one_of_the_building(folder: Path) -> No
 
 
 def test_parameters_of_a_replaced_law_are_not_compared(folder: Path) -> None:
-    forms = Study.from_yaml(folder / "study.yaml").forms
+    forms = Study.from_yaml(folder / "study.yaml").context.variants.forms
     windy = (("outside convection", "windy"),)
     assert not comparable("surfaces.wall.outside.convection.coefficient", (), windy, forms)
     assert comparable("surfaces.wall.outside.absorptance", (), windy, forms)
@@ -149,8 +150,8 @@ def test_tied_parameters_of_an_alternative_are_one_parameter(folder: Path) -> No
     path = folder / "tied.yaml"
     path.write_text(text + free, encoding="utf-8")
     study = Study.from_yaml(path)
-    variant = study.variant_of((("outside convection", "free"),))
-    found = {p.path: p for p in study.problem(variant).parameters}
+    variant = study.context.variants.variant_of((("outside convection", "free"),))
+    found = {p.path: p for p in study.context.problem(variant).parameters}
     law = found["surfaces.wall.outside.convection.*.c"]
     assert (law.nominal, law.lower, law.upper, law.prior) == (4.0, 1.0, 8.0, (4.0, 1.5))
     assert not any(path.endswith("ward.c") for path in found)
@@ -160,14 +161,14 @@ def test_a_finished_calibration_is_not_searched_again(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study = Study.from_yaml(folder / "study.yaml")
-    with Workspace(tmp_path, study.inputs()) as workspace, study.keeping(workspace):
-        first = ModelRuns(study, workspace, False).plain()
+    with Workspace(tmp_path, study.context.identity()) as workspace, study.context.keeping(workspace):
+        first = ModelRuns(study.context, workspace, False).plain()
 
         def searched(*_: Any, **__: Any) -> Any:
             raise AssertionError("the calibration was kept")
 
         monkeypatch.setattr(model_runs, "identify", searched)
-        again = ModelRuns(study, workspace, False).plain()
+        again = ModelRuns(study.context, workspace, False).plain()
     np.testing.assert_array_equal(again.x, first.x)
     assert (again.cost, again.warnings) == (first.cost, first.warnings)
     np.testing.assert_array_equal(again.trace.x, first.trace.x)
@@ -183,7 +184,7 @@ def test_incomplete_files_of_a_killed_study_are_removed(folder: Path, tmp_path: 
     (tmp_path / "tables").mkdir()
     for file in [*left, *others]:
         file.write_text("half", encoding="utf-8")
-    with Workspace(tmp_path, study.inputs()):
+    with Workspace(tmp_path, study.context.identity()):
         assert not any(file.exists() for file in left)
         assert all(file.exists() for file in others)
 

@@ -11,13 +11,15 @@ import pytest
 from mascarin.examples import STUDIES
 from mascarin.pages import study as report
 from mascarin.pages.study.data.folder import read_folder
-from mascarin.study import Study, findings
-from mascarin.study.document.coefficients import coefficients
-from mascarin.study.document.phase_change import phase_change
-from mascarin.study.forms import label
-from mascarin.study.model_runs import compared
-from mascarin.study.outputs import write_all
-from mascarin.study.storage import Workspace
+from mascarin.study import Study
+from mascarin.study.context.forms import label
+from mascarin.study.context.storage import Workspace
+from mascarin.study.results.document.coefficients import coefficients
+from mascarin.study.results.document.phase_change import phase_change
+from mascarin.study.results.files import write_all
+from mascarin.study.steps import findings
+from mascarin.study.steps.model_runs import compared
+from mascarin.study.study import all_steps
 from study_support import BUILDING, STUDY, logger_table
 
 #: Forms with parameters that the building as described does not have: alone and tied.
@@ -66,14 +68,14 @@ def test_the_report_is_written_with_every_form_as_the_used_one(
     bench: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study, out = Study.from_yaml(bench / "study.yaml"), bench / "out"
-    choices = study.forms.combinations()
+    choices = study.context.variants.forms.combinations()
     assert len(choices) == 3
     used: list[Any] = []
-    with Workspace(out, study.inputs()) as workspace, study.keeping(workspace):
+    with Workspace(out, study.context.identity()) as workspace, study.context.keeping(workspace):
         for place, choice in enumerate(choices):
             # The forms are calibrated once; what is kept serves all that follow.
             monkeypatch.setattr(findings, "used_form", lambda *_, place=place: place)
-            results = study._carried_out(workspace, None)
+            results = all_steps(study.context, workspace, None)
             assert results.combination is not None
             assert results.combination.forms[0].choice == choice
             write_all(results, workspace, figures=False)
@@ -95,13 +97,13 @@ def test_documents_of_shipped_studies_know_the_parameters_of_every_form(name: st
     study = Study.from_yaml(STUDIES[name])
     assert study.plan.reference is not None
     published = [entry.parameter for entry in study.plan.reference.parameters]
-    for choice in study.forms.combinations():
-        variant = study.variant_of(choice)
-        paths = study.problem(variant).paths
-        simulation = study.whole(variant)
-        run = compared(study, "fitted", simulation, simulation.values, None, label(choice))
-        models = coefficients(study, {"fitted": run}, (*paths, *published))["coefficients"]["models"]
+    for choice in study.context.variants.forms.combinations():
+        variant = study.context.variants.variant_of(choice)
+        paths = study.context.problem(variant).paths
+        simulation = study.context.models.over_record(variant)
+        run = compared(study.context, "fitted", simulation, simulation.values, None, label(choice))
+        models = coefficients(study.context, {"fitted": run}, (*paths, *published))["coefficients"]["models"]
         laws = {path.rpartition(".convection")[0] for path in paths if ".convection" in path}
         assert {f"{law}.convection" for law in laws} <= set(models["fitted"]), label(choice)
         assert all(value > 0.0 for value in models["fitted"].values())
-        assert phase_change(study, run)
+        assert phase_change(study.context, run)

@@ -9,7 +9,7 @@ from mascarin.building import load
 from mascarin.building.gamma import peak_capacity
 from mascarin.examples import STUDIES
 from mascarin.simulation.simulation import Simulation
-from mascarin.study.phase_change import law_curve, melting_layers, path
+from mascarin.study.context.phase_change import law_curve, melting_layers, path
 from mascarin.weather import Climate, Measurements
 
 CELL = load(STUDIES["lgi"].with_name("building.yaml"))

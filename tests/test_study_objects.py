@@ -17,7 +17,7 @@ from mascarin.examples import SyntheticWall, synthetic_wall
 from mascarin.simulation.checks.energy import FLOWS
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Sensor, Study, StudyResults
-from mascarin.study.document.comparison import FLOW_LABELS
+from mascarin.study.results.document.comparison import FLOW_LABELS
 from mascarin.weather import Climate, Measurements
 
 SENSOR = Sensor(column="joint", output="wall.interface_1_temperature", expanded_uncertainty=0.1)
@@ -66,7 +66,7 @@ def test_a_study_of_objects_finds_the_true_parameters(results: StudyResults) -> 
 def test_results_give_tables_and_a_report(results: StudyResults, tmp_path: Path) -> None:
     metrics = results.to_dataframe()
     assert set(metrics["model"]) == {"nominal", "fitted"}
-    assert len(results.to_dataframe("series")) == len(results.setup.observation.times)
+    assert len(results.to_dataframe("series")) == len(results.context.observation.times)
     with pytest.raises(InputError, match="expected one of metrics, parameters"):
         results.to_dataframe("metric")
     page = results.report(tmp_path / "report.html").read_text(encoding="utf-8")
@@ -83,8 +83,8 @@ def test_descriptions_are_short(study: Study, results: StudyResults) -> None:
 
 def test_studies_and_results_can_be_pickled(study: Study, results: StudyResults) -> None:
     again = pickle.loads(pickle.dumps(study))  # noqa: S301 (our own bytes)
-    assert again.inputs() == study.inputs()
-    assert again.simulation.identity == study.simulation.identity
+    assert again.context.identity() == study.context.identity()
+    assert again.context.models.nominal.identity == study.context.models.nominal.identity
     copy = pickle.loads(pickle.dumps(results))  # noqa: S301
     assert copy.to_dict() == results.to_dict()
 
@@ -93,14 +93,14 @@ def test_written_as_a_file_it_is_the_same_study(study: Study, results: StudyResu
     text = study.to_yaml(tmp_path / "study.yaml")
     assert text == study.to_yaml() == (tmp_path / "study.yaml").read_text(encoding="utf-8")
     read = Study.from_yaml(tmp_path / "study.yaml")
-    assert read.simulation.identity == study.simulation.identity
+    assert read.context.models.nominal.identity == study.context.models.nominal.identity
     found = read.run(tmp_path / "out", figures=False)
     assert found.calibration.values == pytest.approx(results.calibration.values, rel=1e-9)  # noqa: PD011
     (tmp_path / "elsewhere").mkdir()
     read.to_yaml(tmp_path / "elsewhere" / "moved.yaml")
     moved = Study.from_yaml(tmp_path / "elsewhere" / "moved.yaml", allow_outside=True)
     assert moved.plan.sensors == study.plan.sensors
-    assert moved.simulation.identity == study.simulation.identity
+    assert moved.context.models.nominal.identity == study.context.models.nominal.identity
 
 
 def test_progress_is_called_with_done_and_total(wall: SyntheticWall) -> None:
@@ -131,7 +131,7 @@ def test_what_cannot_be_used_is_refused(wall: SyntheticWall, changed: dict[str, 
 
 def test_ranges_given_as_pairs_are_used(wall: SyntheticWall) -> None:
     study = Study(**options(wall, parameters={PARAMETERS[0]: (0.03, 0.05), PARAMETERS[1]: None}))
-    first, second = study.problem().parameters
+    first, second = study.context.problem().parameters
     assert (first.lower, first.upper) == (0.03, 0.05)
     assert (second.lower, second.upper) == (0.2, 0.8)
 
@@ -251,13 +251,14 @@ def test_a_column_that_is_sensor_and_input_is_masked_as_a_sensor_only(wall: Synt
     sensors = {"joint": SENSOR, "air": Sensor(column="room", output="wall.inside_temperature", use=False)}
     study = Study(**options(wall, measurements=measured, sensors=sensors))
     assert [(s.channel, s.kind) for s in study.quality] == [("room", "stuck")]
-    stuck = np.isnan(study.observation.measured)
+    stuck = np.isnan(study.context.observation.measured)
     assert (stuck[:, 0].sum(), stuck[:, 1].sum()) == (0, 39)
     every = Study(**options(wall, measurements=measured, sensors=sensors, quality={"mask": []}))
-    assert np.isfinite(every.observation.measured).all()
-    assert np.array_equal(study.simulation.run().records, every.simulation.run().records)
+    assert np.isfinite(every.context.observation.measured).all()
+    runs = [opened.context.models.nominal.run() for opened in (study, every)]
+    assert np.array_equal(runs[0].records, runs[1].records)
     again = study.with_measurements(measured)
-    assert np.isfinite(again.simulation.run().records).all()
+    assert np.isfinite(again.context.models.nominal.run().records).all()
 
 
 def test_a_study_writes_the_inputs_unmasked(wall: SyntheticWall, tmp_path: Path) -> None:
@@ -267,5 +268,5 @@ def test_a_study_writes_the_inputs_unmasked(wall: SyntheticWall, tmp_path: Path)
     study = Study(**options(wall, measurements=Measurements.from_table(table), sensors=sensors))
     study.to_yaml(tmp_path / "study.yaml")
     read = Study.from_yaml(tmp_path / "study.yaml")
-    assert read.sources.driving.data["room"].notna().all()
-    assert np.isnan(read.observation.measured[:, 1]).sum() == 39
+    assert read.context.inputs.driving.data["room"].notna().all()
+    assert np.isnan(read.context.observation.measured[:, 1]).sum() == 39

@@ -8,7 +8,7 @@ import pytest
 
 from mascarin.errors import SolverError
 from mascarin.pages.study import Series, write
-from mascarin.study.storage import Workspace
+from mascarin.study.context.storage import Workspace
 
 INPUTS = {"study": "a", "building": "b"}
 

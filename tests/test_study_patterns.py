@@ -220,7 +220,7 @@ def test_a_tied_convection_law_has_one_mean_coefficient(
 
 
 def test_exact_slopes_of_a_tie_agree_with_differences(wall: Building) -> None:
-    problem = study_of(wall, {CONDUCTIVITY: {"tie": True, "low": 0.6, "high": 1.6}}).problem()
+    problem = study_of(wall, {CONDUCTIVITY: {"tie": True, "low": 0.6, "high": 1.6}}).context.problem()
     step, x = 1e-4, np.array([1.1])
     residuals = problem.residuals(np.array([x + step, x - step]))
     differences = (residuals[0] - residuals[1]) / (2.0 * step)
@@ -231,7 +231,7 @@ def test_exact_slopes_of_a_tie_agree_with_differences(wall: Building) -> None:
 
 def test_a_pattern_without_a_tie_stands_for_each(wall: Building) -> None:
     study = study_of(wall, {CONDUCTIVITY: None, "materials.brick.conductivity": {"low": 0.4, "high": 1.0}})
-    sought = study.sought.parameters
+    sought = study.context.inputs.calibration_plan.parameters
     assert list(sought) == ["materials.insulation.conductivity", "materials.brick.conductivity"]
     assert sought["materials.brick.conductivity"].low == 0.4  # type: ignore[union-attr]
 

@@ -12,7 +12,7 @@ import pytest
 from mascarin import cli
 from mascarin.errors import InputError
 from mascarin.study import Study
-from mascarin.study.description import Periods
+from mascarin.study.file.description import Periods
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 WARM_UP = '  warm_up: ["2023-03-01 00:00", "2023-03-02 00:00"]\n'
@@ -38,9 +38,9 @@ def bench(tmp_path: Path, table: pd.DataFrame) -> Bench:
 
 def days_of(study: Study, period: str, sensor: int) -> list[int]:
     """Days of March of which a sensor has values in a period."""
-    measured = np.isfinite(study.observation.measured[:, sensor])
-    use = study.used[period][:, sensor] & measured
-    return sorted({stamp.day for stamp in study.observation.times[use]})
+    measured = np.isfinite(study.context.observation.measured[:, sensor])
+    use = study.context.used[period][:, sensor] & measured
+    return sorted({stamp.day for stamp in study.context.observation.times[use]})
 
 
 def test_several_periods(bench: Bench) -> None:
@@ -50,11 +50,11 @@ def test_several_periods(bench: Bench) -> None:
     assert days_of(study, "identification", 0) == [2, 3, 6]
     assert days_of(study, "corroboration", 0) == [4, 7]
     assert days_of(study, "blind", 0) == [5, 8, 9]
-    problem = study.problem()
+    problem = study.context.problem()
     # One series of regular instants: the days between count as not compared.
     assert problem.measured.shape == (5 * 48, 2)
     assert int(problem.mask.sum()) == 2 * 3 * 48
-    assert study.inputs()["study"]
+    assert study.context.identity()["study"]
 
 
 def test_excluded_days_and_hours(bench: Bench) -> None:
@@ -64,7 +64,7 @@ def test_excluded_days_and_hours(bench: Bench) -> None:
         '  exclude_hours: [["22:00", "02:00"]]\n',
     )
     study = Study.from_yaml(bench.study)
-    times, measured = study.observation.times, study.observation.measured
+    times, measured = study.context.observation.times, study.context.observation.measured
     gone = np.isnan(measured[:, 0])
     local: Any = times.tz_localize(None)
     expected = (
@@ -103,8 +103,8 @@ def test_periods_of_a_sensor(bench: Bench) -> None:
     assert days_of(study, "identification", 1) == [5, 6]
     assert days_of(study, "corroboration", 1) == [3]
     assert days_of(study, "blind", 1) == [2, 4, 7, 9]
-    assert study.identification[1].day == 7
-    mask = study.problem().mask
+    assert study.context.periods.identification[1].day == 7
+    mask = study.context.problem().mask
     assert mask.sum(axis=0).tolist() == [4 * 48, 2 * 48]
     results = study.run()
     scores = results.fitted.scores["core"]

@@ -788,4 +788,4 @@ def test_a_bare_number_is_seconds(bench: Bench) -> None:
     from mascarin.study import Study
 
     bench.edit("step: 30min", "step: 1800")
-    assert Study(bench.study).simulation.step_seconds == 1800.0
+    assert Study(bench.study).context.models.nominal.step_seconds == 1800.0

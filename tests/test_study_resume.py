@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from mascarin._io import atomic
-from mascarin.study import Study, kept
-from mascarin.study.findings import PredictionIntervals
-from mascarin.study.storage import Workspace
+from mascarin.study import Study
+from mascarin.study.context import step_cache as kept
+from mascarin.study.context.storage import Workspace
+from mascarin.study.steps.findings import PredictionIntervals
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 

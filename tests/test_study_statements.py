@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from mascarin.study import Study
-from mascarin.study.predictive_checks import statements
+from mascarin.study.steps.predictive_checks import statements
 from study_support import BUILDING, STUDY, Bench, logger_table
 
 
@@ -22,7 +22,7 @@ def bench(tmp_path: Path) -> Bench:
 
 
 def said(bench: Bench) -> dict[str, str]:
-    return {one.subject: one.text for one in statements(Study.from_yaml(bench.study))}
+    return {one.subject: one.text for one in statements(Study.from_yaml(bench.study).context)}
 
 
 def test_a_study_as_it_should_be_says_nothing(bench: Bench) -> None:
@@ -65,13 +65,13 @@ def test_uncertainties_that_count_as_scatter_are_said(
 ) -> None:
     bench.edit(*edit)
     study = Study.from_yaml(bench.study)
-    assert not study.estimates_errors
+    assert not study.context.estimates_errors
     assert reason in said(bench)["sensors"]
 
 
 def test_sensors_without_an_offset_say_so(bench: Bench) -> None:
-    assert Study.from_yaml(bench.study).estimates_errors
+    assert Study.from_yaml(bench.study).context.estimates_errors
     bench.edit("uncertainty: 0.2}", "uncertainty: 0.2, offset: 0}")
     bench.edit("uncertainty: 0.3}", "repeatability: 0.03}")
-    assert not Study.from_yaml(bench.study).estimates_errors
+    assert not Study.from_yaml(bench.study).context.estimates_errors
     assert said(bench) == {}

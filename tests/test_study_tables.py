@@ -42,7 +42,7 @@ def test_one_table_is_described_once(bench: Bench, measured: str) -> None:
     bench.edit(MEASURED + "  stamps: end\n", measured)
     once = Study(bench.study)
     pd.testing.assert_frame_equal(once.measurements.data, both.measurements.data)
-    assert once.file.measurements.stamps == "end"
+    assert once.context.inputs.file_plan.measurements.stamps == "end"
 
 
 def test_what_the_measurements_say_holds_for_the_weather(bench: Bench) -> None:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from mascarin.calibration.stated_errors import only_scatter, shared_errors
-from mascarin.study.sensor import Sensor as StudySensor
+from mascarin.calibration.errors.stated_errors import only_scatter, shared_errors
+from mascarin.study.file.sensor import Sensor as StudySensor
 from mascarin.validation import Sensor
 from mascarin.validation.scatter import resolution, scatter
 

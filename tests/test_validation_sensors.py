@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.study.description import Sensor as StudySensor
+from mascarin.study.file.description import Sensor as StudySensor
 from mascarin.validation import Sensor, SensorUncertainty
 
 

@@ -14,7 +14,7 @@ import pytest
 import mascarin as mc
 from crossing_entrances import Bench, enter
 from crossing_features import description
-from mascarin.commands.exit_code import exit_code
+from mascarin.commands.options.exit_code import exit_code
 from mascarin.ensemble import sweep_into
 from mascarin.ensemble.store import Store
 from mascarin.errors import InputError
@@ -22,7 +22,7 @@ from mascarin.examples import box, box_climate
 from mascarin.simulation.checks.judgement import Judgement
 from mascarin.simulation.checks.warning_kinds import UNSOUND, Kind, RunWarning, with_kinds
 from mascarin.simulation.preparation.engine_run import CompiledRun
-from mascarin.study.kept import _decoded, _encoded
+from mascarin.study.context.step_cache import _decoded, _encoded
 
 DAMP = {"humidity": {"zones": {"room": {"gains": {"people": {"power": 100}}}}}}
 

@@ -9,8 +9,8 @@ import pytest
 from mascarin.examples import box
 from mascarin.simulation.run import simulate
 from mascarin.weather import Climate
-from mascarin.weather.brightness import MOST, OFFSET, findings, too_bright
-from mascarin.weather.completion import extraterrestrial_horizontal
+from mascarin.weather.checks.brightness import MOST, OFFSET, findings, too_bright
+from mascarin.weather.derived.completion import extraterrestrial_horizontal
 
 COLUMNS = (
     "air_temperature", "dew_point", "wind_speed", "wind_direction", "global_horizontal", "diffuse_horizontal",

@@ -12,10 +12,10 @@ import pytest
 from mascarin import Climate, Measurements
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
-from mascarin.weather.clock_shift import shifts_of
-from mascarin.weather.sun import SunPath
-from mascarin.weather.sun_check import check_clock
-from mascarin.weather.yearly import shifted
+from mascarin.weather.checks.clock_shift import shifts_of
+from mascarin.weather.checks.sun_check import check_clock
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.reading.yearly import shifted
 from skies import NAMES, sky
 
 

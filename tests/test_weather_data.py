@@ -7,10 +7,10 @@ from typing import Any
 import pooch
 import pytest
 
-from mascarin._io.cache import cache_folder
+from mascarin._io.sealed.cache import cache_folder
 from mascarin.errors import InputError
-from mascarin.weather import data as data_module
-from mascarin.weather.data import FILES, data_file
+from mascarin.weather.reading import data as data_module
+from mascarin.weather.reading.data import FILES, data_file
 
 
 @pytest.fixture

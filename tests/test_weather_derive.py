@@ -9,9 +9,9 @@ from pvlib.irradiance import erbs, get_extra_radiation
 
 from mascarin.physics import dew_point
 from mascarin.weather import Climate
-from mascarin.weather.derive import cloud_cover, diffuse_erbs
-from mascarin.weather.radiation import BEAM_CEILING, clear_beam, direct_by_closure
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.derive import cloud_cover, diffuse_erbs
+from mascarin.weather.derived.radiation import BEAM_CEILING, clear_beam, direct_by_closure
+from mascarin.weather.derived.sun import SunPath
 
 
 def test_dew_point_of_saturated_air_is_its_temperature() -> None:

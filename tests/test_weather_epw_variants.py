@@ -14,8 +14,8 @@ from mascarin import Climate, cli, simulate
 from mascarin.errors import InputError
 from mascarin.examples import box
 from mascarin.weather import CHANNELS, Place, write_epw
-from mascarin.weather.missing_infrared import sky_emission
-from mascarin.weather.shipped import SHIPPED, content, found
+from mascarin.weather.checks.missing_infrared import sky_emission
+from mascarin.weather.reading.shipped import SHIPPED, content, found
 
 Fields = list[str]
 

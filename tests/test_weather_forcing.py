@@ -9,7 +9,7 @@ import pytest
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather import CHANNELS, IRRADIANCES, STAGES, TEMPERATURES, Climate, Measurements, Place
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
 
 REUNION = Place(-21.34, 55.48, 55.0)
 BEAM, SKY, ALL, UP = (

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mascarin._io.cache import FOLDER, MOST, Cached, cache_folder, cached
+from mascarin._io.sealed.cache import FOLDER, MOST, Cached, cache_folder, cached
 from mascarin.errors import InputError
 from mascarin.tables.reading import table
-from mascarin.weather import Climate, Measurements, readers, shipped, sun_check
+from mascarin.weather import Climate, Measurements
+from mascarin.weather.checks import sun_check
+from mascarin.weather.reading import readers, shipped
 
 PLACE = (39.74, -105.18)
 
@@ -181,7 +183,7 @@ def test_a_table_that_is_refused_is_not_kept(folder: Path, tmp_path: Path) -> No
 
 
 def test_a_large_table_is_not_kept(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mascarin._io.cache.LARGEST", 10)
+    monkeypatch.setattr("mascarin._io.sealed.cache.LARGEST", 10)
     file = tmp_path / "table.csv"
     file.write_text(ROWS, encoding="utf-8")
     weather(file)

@@ -7,7 +7,7 @@ import pytest
 
 from mascarin.errors import InputError
 from mascarin.weather import Climate, Place
-from mascarin.weather.place_check import require_place
+from mascarin.weather.checks.place_check import require_place
 
 
 @dataclass(frozen=True)

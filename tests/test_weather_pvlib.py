@@ -13,7 +13,7 @@ import pytest
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather import CHANNELS, STAGES, Climate
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
 
 LATITUDE, LONGITUDE = 45.8, 4.8
 GREENSBORO = Path(pvlib.__file__).parent / "data" / "723170TYA.CSV"

@@ -7,9 +7,9 @@ from pvlib import atmosphere, clearsky, solarposition
 
 from mascarin.tables.profile import trapezoid_weights
 from mascarin.tables.times import epoch_seconds
-from mascarin.weather.channels import Basis
-from mascarin.weather.radiation import clear_beam, direct_by_closure, from_instants, from_means
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.radiation import clear_beam, direct_by_closure, from_instants, from_means
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import Basis
 
 LATITUDE, LONGITUDE, DAYS = -21.34, 55.48, 12
 

@@ -8,7 +8,7 @@ import pytest
 
 from mascarin.errors import InputError
 from mascarin.weather import CHANNELS, Climate
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
 
 
 @pytest.fixture(scope="module")

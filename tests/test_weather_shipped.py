@@ -13,7 +13,7 @@ import mascarin as mc
 from mascarin import cli
 from mascarin.physics import humidity_of_dew_point
 from mascarin.weather import SHIPPED, MonthlyChanges, morphed, overview, write_epw
-from mascarin.weather.shipped import content
+from mascarin.weather.reading.shipped import content
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from pvlib import irradiance, solarposition
 
 from mascarin.tables.times import epoch_seconds
-from mascarin.weather.sun import SOLAR_CONSTANT, SunPath
+from mascarin.weather.derived.sun import SOLAR_CONSTANT, SunPath
 
 PLACES = {
     "Denver": (39.83, -104.65),
@@ -78,8 +78,8 @@ def test_origin_only_moves_the_zero_of_time() -> None:
 
 def test_a_yearly_file_and_its_sun_need_one_file_of_pvlib(data_dir: Path) -> None:
     script = (
-        "import sys; from pathlib import Path; from mascarin.weather.readers import read_epw;"
-        "from mascarin.weather.sun import SunPath;"
+        "import sys; from pathlib import Path; from mascarin.weather.reading.readers import read_epw;"
+        "from mascarin.weather.derived.sun import SunPath;"
         f"year = read_epw(Path({str(data_dir / 'bestest' / '725650TYCST.epw')!r}));"
         "SunPath.over(*year.place[:2], 0.0, 86400.0);"
         "print([name for name in ('pvlib', 'scipy') if name in sys.modules])"

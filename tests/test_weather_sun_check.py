@@ -11,7 +11,7 @@ import pytest
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather import Climate, Measurements, Place
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
 
 SITE = Place(45.0, 5.0)
 

@@ -1,6 +1,6 @@
 //! Finds the library that goes into an FMU: Cargo builds all crate types of a dependency, the `cdylib` of `mascarin-fmu` beside its
 //! `rlib`, and before this crate, whose own library needs the `rlib`. So one build makes both, and the engine is compiled once. This
-//! program may run before it is there; `packed_file` reads it when this crate is compiled.
+//! program may run before it is there; `include_bytes!` reads it when this crate is compiled.
 
 use std::env::var;
 use std::fs::OpenOptions;

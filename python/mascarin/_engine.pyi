@@ -82,7 +82,7 @@ def interrupt() -> None:
     """Stop all calls that are running now, on whatever thread, with KeyboardInterrupt."""
 
 def fmu_library() -> tuple[bytes, str, str, str]:
-    """The library of an FMU: bytes packed as LZMA, ending, and the architecture and system it is for."""
+    """The library of an FMU: bytes, ending, and the architecture and system it is for."""
 
 def saturation_pressure(temperature: _Array) -> _Array:
     """Saturation pressure over water, also below 0 degC, at temperatures [degC]: [Pa]."""

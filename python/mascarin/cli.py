@@ -51,12 +51,12 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     "Describe": (
         Command(
             "init",
-            "mascarin.commands.new_study:init",
+            "mascarin.commands.studies.new_study:init",
             "Copy an example study into a new folder.",
         ),
         Command(
             "schema",
-            "mascarin.commands.schema:schema",
+            "mascarin.commands.studies.schema:schema",
             "Print the JSON Schema of a building, a study or a design.",
         ),
         Command(
@@ -91,20 +91,28 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command("fmu", "mascarin.commands.fmu:fmu", "Write a building as a unit for co-simulation (FMU)."),
         Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
         Command(
-            "design", "mascarin.commands.design:design", "Compare designs: which product, how much, where."
+            "design",
+            "mascarin.commands.studies.design:design",
+            "Compare designs: which product, how much, where.",
         ),
     ),
     "Compare with measurements": (
-        Command("study", "mascarin.commands.study:study", "Run a whole study: compare, calibrate, validate."),
+        Command(
+            "study",
+            "mascarin.commands.studies.study:study",
+            "Run a whole study: compare, calibrate, validate.",
+        ),
         Command(
             "sensitivity",
-            "mascarin.commands.study:sensitivity",
+            "mascarin.commands.studies.study:sensitivity",
             "Run the sensitivity analysis of a study.",
         ),
-        Command("calibrate", "mascarin.commands.study:calibrate", "Calibrate the parameters of a study."),
+        Command(
+            "calibrate", "mascarin.commands.studies.study:calibrate", "Calibrate the parameters of a study."
+        ),
         Command(
             "validate",
-            "mascarin.commands.study:validate",
+            "mascarin.commands.studies.study:validate",
             "Compare the uncalibrated model with measurements.",
         ),
     ),
@@ -119,17 +127,17 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     "Optimize": (
         Command(
             "optimize",
-            "mascarin.commands.genopt:optimize",
+            "mascarin.commands.studies.genopt:optimize",
             "Run a GenOpt project with any simulation program.",
         ),
         Command(
             "genopt",
-            "mascarin.commands.genopt_export:genopt",
+            "mascarin.commands.studies.genopt_export:genopt",
             "Write the calibration of a study as a GenOpt project.",
         ),
         Command(
             "cost",
-            "mascarin.commands.genopt_export:cost",
+            "mascarin.commands.studies.genopt_export:cost",
             "Evaluate the calibration cost of a study once.",
         ),
     ),
@@ -259,8 +267,8 @@ def _terminate(number: int, frame: object) -> NoReturn:
 
 def _take_debug(words: list[str]) -> bool:
     """Take ``--debug`` out of `words`; every command accepts it."""
-    own = words[: words.index("--")] if "--" in words else words
-    if "--debug" in own:
+    options = words[: words.index("--")] if "--" in words else words
+    if "--debug" in options:
         words.remove("--debug")
         return True
     return os.environ.get("MASCARIN_DEBUG", "") not in ("", "0")
@@ -276,8 +284,8 @@ def _report(error: BaseException) -> int:
         _say(f"error: {error}")
         return error.exit_code
     if isinstance(error, OSError):
-        place = "a file" if error.filename is None else f"'{error.filename}'"
-        _say(f"error: cannot use {place}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
+        file = "a file" if error.filename is None else f"'{error.filename}'"
+        _say(f"error: cannot use {file}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
         return EXIT_INPUT
     if isinstance(error, ValueError) and str(error).startswith("embedded null"):
         _say("error: found a name of a file with a zero in it, which no system has; correct the name")

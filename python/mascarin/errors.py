@@ -38,14 +38,14 @@ class SolverError(MascarinError):
     exit_code = 3
 
 
-def did_you_mean(found: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, names: Iterable[str]) -> str:
     """Sentence that helps with a name that is not known.
 
     Parameters
     ----------
-    found : str
+    name : str
         The name as it was given.
-    known : iterable of str
+    names : iterable of str
         The names that would have been understood.
 
     Returns
@@ -53,13 +53,13 @@ def did_you_mean(found: str, known: Iterable[str]) -> str:
     str
         The closest names, or the whole list where it is short, or an empty string.
     """
-    names = sorted(set(known))
+    sorted_names = sorted(set(names))
     # What was given may be anything: None, a number.
-    close = difflib.get_close_matches(str(found), names, n=3, cutoff=0.6)
+    close = difflib.get_close_matches(str(name), sorted_names, n=3, cutoff=0.6)
     if close:
         return f"Did you mean {_either(close)}?"
-    if names and len(names) <= 20:
-        return f"Known: {', '.join(names)}."
+    if sorted_names and len(sorted_names) <= 20:
+        return f"Known: {', '.join(sorted_names)}."
     return ""
 
 

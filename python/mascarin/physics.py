@@ -65,10 +65,10 @@ _DRIEST: Final = 0.1
 """A lower relative humidity is read as this: it has no dew point of use [%]."""
 
 
-def _each(function: Callable[..., Floats], *given: npt.ArrayLike) -> Floats:
+def _each(function: Callable[..., Floats], *arguments: npt.ArrayLike) -> Floats:
     """A function of the engine for each element of arrays, broadcast against each other."""
-    arrays = np.broadcast_arrays(*(np.asarray(one, dtype=np.float64) for one in given))
-    flat = (np.ascontiguousarray(one).ravel() for one in arrays)
+    arrays = np.broadcast_arrays(*(np.asarray(values, dtype=np.float64) for values in arguments))
+    flat = (np.ascontiguousarray(values).ravel() for values in arrays)
     return function(*flat).reshape(arrays[0].shape)
 
 
@@ -409,9 +409,9 @@ class MeltingCurve:
 
     def __call__(self, temperature: npt.ArrayLike) -> Floats:
         """Liquid fraction at temperatures [degC], with their shape. [-]"""
-        whole = np.asarray(temperature, dtype=np.float64)
-        flat = np.ascontiguousarray(whole).ravel()
-        return _engine.liquid_fraction(self._curve, self._values, flat).reshape(whole.shape)
+        array = np.asarray(temperature, dtype=np.float64)
+        flat = np.ascontiguousarray(array).ravel()
+        return _engine.liquid_fraction(self._curve, self._values, flat).reshape(array.shape)
 
     @property
     def reach(self) -> tuple[float, float]:

@@ -166,8 +166,8 @@ class Progress:
                 self._first = (self._started if done == 0 else now, done)
             if now - self._started < SILENT_FOR:
                 return
-            every = _REDRAW_EVERY if self._terminal else _LINE_EVERY
-            if self._shown_at is not None and now - self._shown_at < every:
+            interval = _REDRAW_EVERY if self._terminal else _LINE_EVERY
+            if self._shown_at is not None and now - self._shown_at < interval:
                 return
             self._shown_at = now
             self._show(printable(self._text(now, done, total, note)))
@@ -224,12 +224,12 @@ def duration(seconds: float) -> str:
     seconds : float
         Duration. [s]
     """
-    whole = round(max(seconds, 0.0))
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60}:{whole % 60:02d} min"
-    return f"{whole // 3600}:{whole % 3600 // 60:02d} h"
+    rounded = round(max(seconds, 0.0))
+    if rounded < 60:
+        return f"{rounded} s"
+    if rounded < 3600:
+        return f"{rounded // 60}:{rounded % 60:02d} min"
+    return f"{rounded // 3600}:{rounded % 3600 // 60:02d} h"
 
 
 def _is_terminal(stream: TextIO) -> bool:

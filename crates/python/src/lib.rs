@@ -9,7 +9,6 @@ mod trajectory;
 
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
 use mascarin_engine::run::outputs::Output;
-use mascarin_packed::packed_file;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -22,10 +21,10 @@ fn _panic(py: Python<'_>, message: &str, border: bool) -> PyResult<()> {
     })
 }
 
-/// The library that goes into an FMU: its bytes packed as LZMA, its ending, and the architecture and system that it is for.
+/// The library that goes into an FMU: its bytes, its ending, and the architecture and system that it is for.
 #[pyfunction]
 fn fmu_library(py: Python<'_>) -> (Bound<'_, PyBytes>, &'static str, &'static str, &'static str) {
-    static LIBRARY: &[u8] = packed_file!(MASCARIN_FMU_LIBRARY);
+    static LIBRARY: &[u8] = include_bytes!(env!("MASCARIN_FMU_LIBRARY"));
     (PyBytes::new(py, LIBRARY), env!("MASCARIN_FMU_SUFFIX"), std::env::consts::ARCH, std::env::consts::OS)
 }
 

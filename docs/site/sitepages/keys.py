@@ -182,7 +182,7 @@ def holds(annotation: Any) -> str:
 
 def number(quantity: Quantity) -> str:
     """A number with unit and limits, in words."""
-    kind = "whole number" if quantity.whole else "number"
+    kind = "whole number" if quantity.integer else "number"
     limits = f", {quantity.limits}" if str(quantity.limits) else ""
     words = f"; or {', '.join(f'`{word}`' for word in quantity.words)}" if quantity.words else ""
     return f"{kind} [{quantity.unit}]{limits}{words}"

@@ -83,7 +83,7 @@ class Building(Description):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _whole(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def _assembled(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Let parts refer to each other by name, then check how they fit together."""
         if isinstance(data, Building):
             return handler(data)
@@ -183,12 +183,12 @@ class Building(Description):
         >>> cell.to_dict()["site"]["timezone"]
         'UTC+4'
         """
-        given = self.written()
-        again = {path: number for path, number, _ in leaves(type(self).model_validate(given))}
+        written = self.written()
+        again = {path: number for path, number, _ in leaves(type(self).model_validate(written))}
         for path, number, _ in leaves(self):
             if number.derived and again.get(path) != number:
-                put(given, self, path.split("."), Number(number, assumed=number.assumed))
-        plain: dict[str, Any] = plain_value(given)
+                put(written, self, path.split("."), Number(number, assumed=number.assumed))
+        plain: dict[str, Any] = plain_value(written)
         return plain
 
     def to_yaml(self, path: str | Path | None = None) -> str:
@@ -225,7 +225,7 @@ class Building(Description):
 
     @cached_property
     def _parameters(self) -> dict[str, Parameter]:
-        return {one.path: one for one in with_tied(self, parameters(self))}
+        return {parameter.path: parameter for parameter in with_tied(self, parameters(self))}
 
     def parameters(self) -> Listing[Parameter]:
         """All numbers of the description, each with its path, unit, range and source.
@@ -302,10 +302,12 @@ class Building(Description):
         'brunt'
         """
         changes = spread(self, mapping_of("values", values, "values or parts by path"))
-        places = {self._place(path, value): without_parts(value) for path, value in changes.items()}
-        structural = any(self._is_structural(path) for path in places)
+        values_by_path = {
+            self._resolved(path, value): without_parts(value) for path, value in changes.items()
+        }
+        structural = any(self._is_structural(path) for path in values_by_path)
         plain = self.written(keep_derived=not structural)
-        for path, value in places.items():
+        for path, value in values_by_path.items():
             put(plain, self, path.split("."), value)
         return self._read(plain, self.name)
 
@@ -346,7 +348,7 @@ class Building(Description):
                     ) from None
         return self.replace({self.parameter(path).path: float(value) for path, value in values.items()})
 
-    def _place(self, path: str, value: Any) -> str:
+    def _resolved(self, path: str, value: Any) -> str:
         """Find what a path means: a number, or a whole part, given so far or not."""
         number = lookup(self, path, self._parameters)
         if number is not None and (number == path or is_number(value)):
@@ -379,8 +381,8 @@ class Building(Description):
         >>> cell.outputs()[0].name
         'room.air_temperature'
         """
-        found = results.outputs(self)
-        return Listing(found, f"{len(found)} outputs", ("name", "unit"))
+        all_outputs = results.outputs(self)
+        return Listing(all_outputs, f"{len(all_outputs)} outputs", ("name", "unit"))
 
     def output(self, name: str) -> Output:
         """One result.

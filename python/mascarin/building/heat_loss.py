@@ -96,13 +96,13 @@ def heat_loss(building: Description) -> HeatLoss:
         glazed = sum(float(building.windows[window].area or 0.0) for window in windows)
         opaque = max(float(surface.area or 0.0) - glazed, 0.0)
         capacity += opaque * _areal_capacity(building, surface) / 3600.0
-        place = _destination(surface)
-        if place is None:
+        destination = _destination(surface)
+        if destination is None:
             continue
         u_values[name] = described_u_value(building, surface)
-        destinations[place] += u_values[name] * opaque
+        destinations[destination] += u_values[name] * opaque
         for window in windows:
-            destinations[place] += _window(building, window)
+            destinations[destination] += _window(building, window)
     air = _air(building)
     for zone in building.zones.values():
         leak = zone.infiltration

@@ -12,13 +12,12 @@ import numpy as np
 from mascarin._io.arguments import kind_of, mapping_of, require_type
 from mascarin._io.durations import seconds_of
 from mascarin.building.parameters.ties import expanded
-from mascarin.calibration.building_problem import fit_parameter, problem_of
-from mascarin.calibration.cost import CostName
-from mascarin.calibration.problem import FitParameter
-from mascarin.calibration.result import Calibration
-from mascarin.calibration.search import solve
-from mascarin.calibration.search_options import MethodName, SearchOptions
-from mascarin.calibration.stated_errors import (
+from mascarin.calibration.base.building_problem import fit_parameter, problem_of
+from mascarin.calibration.base.cost import CostName
+from mascarin.calibration.base.problem import FitParameter
+from mascarin.calibration.base.result import Calibration
+from mascarin.calibration.base.search_options import MethodName, SearchOptions
+from mascarin.calibration.errors.stated_errors import (
     counted_as_scatter,
     depth_paths,
     only_scatter,
@@ -26,6 +25,7 @@ from mascarin.calibration.stated_errors import (
     require_supported,
     with_sensor_errors,
 )
+from mascarin.calibration.methods.search import solve
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.progress import ProgressOption

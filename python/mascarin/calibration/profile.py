@@ -24,9 +24,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.cost import Cost
-from mascarin.calibration.joint_estimation import METHOD
-from mascarin.calibration.least_squares import derivative, scale_of
+from mascarin.calibration.base.cost import Cost
+from mascarin.calibration.errors.joint_estimation import METHOD
+from mascarin.calibration.methods.least_squares import derivative, scale_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from mascarin.calibration.result import Calibration
+    from mascarin.calibration.base.result import Calibration
 
 Floats = NDArray[np.float64]
 

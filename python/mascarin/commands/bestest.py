@@ -12,8 +12,8 @@ from cyclopts import Parameter
 
 from mascarin._io import identity
 from mascarin._io.locks import writing_into
-from mascarin.commands.inputs import AsJson, Flag, Step, seconds
-from mascarin.commands.output import number, print_json, print_table
+from mascarin.commands.options.inputs import AsJson, Flag, Step, seconds
+from mascarin.commands.options.output import number, print_json, print_table
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

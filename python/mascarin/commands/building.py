@@ -7,9 +7,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from mascarin.commands.inputs import AsJson, Flag, Settings, Step, read_building, seconds
-from mascarin.commands.output import print_json, print_table
-from mascarin.commands.places import lines_named
+from mascarin.commands.options.inputs import AsJson, Flag, Settings, Step, read_building, seconds
+from mascarin.commands.options.output import print_json, print_table
+from mascarin.commands.options.places import lines_named
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
     """Parameters on which nothing depends, each with the reason."""
     if weather is None:
         raise InputError("--reach: found no --weather; expected a weather file to run the building in")
-    from mascarin.commands.inputs import read_weather
+    from mascarin.commands.options.inputs import read_weather
     from mascarin.simulation.unused_parameters import inactive_parameters
 
     return inactive_parameters(building, read_weather(weather))

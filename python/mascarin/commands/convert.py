@@ -10,8 +10,8 @@ from cyclopts import Parameter
 
 from mascarin._io import atomic
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson
-from mascarin.commands.output import print_json
+from mascarin.commands.options.inputs import AsJson
+from mascarin.commands.options.output import print_json
 from mascarin.errors import InputError
 
 

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from mascarin._io import identity
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import (
+from mascarin.commands.options.inputs import (
     CheckSun,
     Columns,
     Flag,
@@ -29,8 +29,8 @@ from mascarin.commands.inputs import (
     seconds,
     set_values,
 )
-from mascarin.commands.places import lines_named
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.places import lines_named
+from mascarin.commands.options.tables import run_inputs
 from mascarin.commands.view import open_page
 from mascarin.errors import InputError
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import (
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import (
     CheckSun,
     Outside,
     Settings,
@@ -20,8 +20,8 @@ from mascarin.commands.inputs import (
     read_building,
     seconds,
 )
-from mascarin.commands.places import lines_named
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.places import lines_named
+from mascarin.commands.options.tables import run_inputs
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.options.inputs import AsJson
+from mascarin.commands.options.output import print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:

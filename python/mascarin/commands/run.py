@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import (
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import (
     AsJson,
     CheckSun,
     Columns,
@@ -28,9 +28,9 @@ from mascarin.commands.inputs import (
     read_building,
     seconds,
 )
-from mascarin.commands.output import print_json, print_table
-from mascarin.commands.places import lines_named
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.output import print_json, print_table
+from mascarin.commands.options.places import lines_named
+from mascarin.commands.options.tables import run_inputs
 from mascarin.commands.view import require_html
 from mascarin.errors import InputError
 

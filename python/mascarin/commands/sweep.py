@@ -11,8 +11,8 @@ from cyclopts import Parameter
 from mascarin._io import arrow_files
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
-from mascarin.commands.exit_code import exit_code
-from mascarin.commands.inputs import (
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import (
     AsJson,
     CheckSun,
     Columns,
@@ -27,9 +27,9 @@ from mascarin.commands.inputs import (
     read_building,
     seconds,
 )
-from mascarin.commands.output import print_json, print_table
-from mascarin.commands.places import lines_named
-from mascarin.commands.tables import run_inputs
+from mascarin.commands.options.output import print_json, print_table
+from mascarin.commands.options.places import lines_named
+from mascarin.commands.options.tables import run_inputs
 from mascarin.errors import InputError, SolverError
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
-from mascarin.commands.inputs import AsJson, Flag
-from mascarin.commands.output import number, print_json, print_table
+from mascarin.commands.options.inputs import AsJson, Flag
+from mascarin.commands.options.output import number, print_json, print_table
 
 if TYPE_CHECKING:
     from mascarin.verification.analytical import Check

@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import Flag, Settings, Step, read_building, seconds
+from mascarin.commands.options.inputs import Flag, Settings, Step, read_building, seconds
 from mascarin.errors import InputError
 
 

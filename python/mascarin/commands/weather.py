@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, CheckSun, Shift, read_weather
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.options.inputs import AsJson, CheckSun, Shift, read_weather
+from mascarin.commands.options.output import print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _list(as_json: bool) -> None:
 def _result(climate: Climate, overall: Overview) -> dict[str, Any]:
     from mascarin.comfort.outdoors import hours_in_givoni_zones
     from mascarin.weather import summary
-    from mascarin.weather.missing_infrared import sky_of_runs
+    from mascarin.weather.checks.missing_infrared import sky_of_runs
 
     zones = hours_in_givoni_zones(climate) if "dew_point" in climate.data else {}
     months = {str(month): row.to_dict() for month, row in overall.months.iterrows()}

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin._io import identity, own_files
+from mascarin._io import identity
 from mascarin._io.locks import writing_into
+from mascarin._io.sealed import own_files
 from mascarin.design.variants.inputs import DesignInputs
 from mascarin.design.variants.results import ALL, FILES, DesignResults, by_climate, rank_all, shortlist
 from mascarin.design.variants.runs import FOLDER, Runs, runs_per_design

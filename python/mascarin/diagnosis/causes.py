@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian
+from mascarin.calibration.errors.day_blocks import DayGaussian
 from mascarin.diagnosis.error_covariance import ErrorCovariance, estimate_error_covariance
 from mascarin.diagnosis.hypotheses import Candidate, DiagnosisInput
 from mascarin.diagnosis.likelihood_ratio import Scores, Simulator, p_value
@@ -223,8 +223,8 @@ def diagnose(
     --------
     A sensor that reads 1 K too high for ten days, its stated uncertainty is 0.1 K:
 
-    >>> from mascarin.calibration.day_blocks import DayGrid
-    >>> from mascarin.calibration.discrepancy import DayData, Discrepancy, hour_basis
+    >>> from mascarin.calibration.errors.day_blocks import DayGrid
+    >>> from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, hour_basis
     >>> hours = np.arange(240.0)
     >>> grid = DayGrid.of(hours, interval=1.0, sensors=1)
     >>> present = np.ones((10, 24), dtype=bool)

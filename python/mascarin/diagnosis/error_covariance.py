@@ -1,8 +1,8 @@
 """Covariance of the errors of a model over a long record, for tests of causes.
 
-The parts are those of the calibration (`mascarin.calibration.discrepancy`): an error that repeats every day,
-one that changes from day to day, one that is correlated within the day, and white noise, each with a
-covariance between sensors. Two things differ. The error of a day may last for days or weeks: a part of it
+The parts are those of the calibration (`mascarin.calibration.errors.discrepancy`): an error that repeats
+every day, one that changes from day to day, one that is correlated within the day, and white noise, each with
+a covariance between sensors. Two things differ. The error of a day may last for days or weeks: a part of it
 is a process whose correlation falls exponentially with time, so that a slow change is no step. And the sizes
 are estimated from what remains beside the signatures that a fault of a single sensor would have over the
 whole record, as in restricted maximum likelihood: an offset of one sensor does not make an error of the model
@@ -23,8 +23,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian
-from mascarin.calibration.discrepancy import (
+from mascarin.calibration.errors.day_blocks import DayGaussian
+from mascarin.calibration.errors.discrepancy import (
     DayData,
     Discrepancy,
     drift_kernel,

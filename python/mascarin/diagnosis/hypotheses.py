@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.discrepancy import DayData
+from mascarin.calibration.errors.discrepancy import DayData
 
 Floats = NDArray[np.float64]
 

@@ -27,7 +27,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian
+from mascarin.calibration.errors.day_blocks import DayGaussian
 from mascarin.diagnosis.step_changes import Hypotheses
 
 Floats = NDArray[np.float64]

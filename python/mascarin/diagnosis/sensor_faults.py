@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGrid
+from mascarin.calibration.errors.day_blocks import DayGrid
 from mascarin.diagnosis.hypotheses import Candidate, What
 
 Floats = NDArray[np.float64]

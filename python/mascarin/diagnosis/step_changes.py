@@ -23,7 +23,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian, DayGrid
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
 from mascarin.diagnosis.hypotheses import Candidate
 
 Floats = NDArray[np.float64]

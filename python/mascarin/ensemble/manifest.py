@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 from mascarin.simulation.checks.warning_kinds import with_kinds
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.building.base.part import worked_out
+from mascarin.building.base.part import cached_on
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def variant(building: Building, structure: Mapping[str, Any]) -> Building:
 
 
 def _variants(building: Building) -> dict[str, Building]:
-    return worked_out(building, "_variants", dict[str, "Building"])
+    return cached_on(building, "_variants", dict[str, "Building"])
 
 
 def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Members:

@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
 
-from mascarin._io import arrow_files, atomic, display, identity, own_files
+from mascarin._io import arrow_files, atomic, display, identity
 from mascarin._io.regular import require_text
+from mascarin._io.sealed import own_files
 from mascarin.ensemble.folder import foreign, require_parquet, table_of
 from mascarin.ensemble.manifest import read
 from mascarin.ensemble.work import CLOSURE, attributes

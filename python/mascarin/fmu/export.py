@@ -130,7 +130,7 @@ def export(
 
 def _library(version: Version) -> dict[str, bytes]:
     """The library of this system, by its place in the unit."""
-    packed, suffix, machine, system = _engine.fmu_library()
+    content, suffix, machine, system = _engine.fmu_library()
     folders = _PLATFORMS.get((machine, system), (None, None))
     folder = folders[VERSIONS.index(version)]
     if folder is None:
@@ -139,25 +139,12 @@ def _library(version: Version) -> dict[str, bytes]:
             f"--fmi: FMI {version} has no place for a library for {machine} and {system}, expected a system "
             f"that it names.{other}"
         )
-    content = _unpacked(packed)
     if not content:
         raise InputError(
             "mascarin._engine: found no library for units in this build, expected one; build with "
             "'make build' or install a wheel"
         )
     return {f"binaries/{folder}/{LIBRARY}{suffix}": content}
-
-
-def _unpacked(library: bytes) -> bytes:
-    """The library, which travels as LZMA; Pythons that were built without liblzma cannot read that."""
-    try:
-        import lzma
-    except ImportError as error:
-        raise InputError(
-            "mascarin fmu: this Python has no module lzma, which unpacks the library of the unit; use a "
-            "Python of python.org, conda or your system, or build yours again with liblzma installed"
-        ) from error
-    return lzma.decompress(library)
 
 
 def _packed(forcing: Array) -> bytes:

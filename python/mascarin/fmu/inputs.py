@@ -14,7 +14,7 @@ from mascarin.building.engine_input.series_users import courses
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
 from mascarin.simulation.preparation.prepare import limits_of_columns
-from mascarin.weather.channels import BY_NAME, CHANNELS, COEFFICIENTS, IRRADIANCES, TEMPERATURES
+from mascarin.weather.records.channels import BY_NAME, CHANNELS, COEFFICIENTS, IRRADIANCES, TEMPERATURES
 from mascarin.weather.schedules import LIMITS_OF_COURSES
 
 if TYPE_CHECKING:

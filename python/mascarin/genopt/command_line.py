@@ -9,8 +9,8 @@ from pathlib import Path
 
 from mascarin._io.regular import exists
 from mascarin.errors import did_you_mean
-from mascarin.genopt import functions
-from mascarin.genopt.project import FileEntry, Project
+from mascarin.genopt.files import functions
+from mascarin.genopt.files.project import FileEntry, Project
 
 
 def variables(project: Project, folder: Path) -> dict[str, str]:

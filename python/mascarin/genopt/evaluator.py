@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mascarin._io import identity
-from mascarin.genopt.algorithm import Built
+from mascarin.genopt.algorithms.algorithm import Built
+from mascarin.genopt.files.project import Project
 from mascarin.genopt.program import RUN_PREFIX, Result, RunFailed
-from mascarin.genopt.project import Project
 from mascarin.genopt.records import Key, Log, Record, Replay
 from mascarin.optimization import Evaluation, Point
 

@@ -11,8 +11,8 @@ from typing import TextIO
 from mascarin import __version__
 from mascarin._io.identity import require_no_input
 from mascarin.errors import SolverError
-from mascarin.genopt.numbers import double_text
-from mascarin.genopt.project import Project
+from mascarin.genopt.files.numbers import double_text
+from mascarin.genopt.files.project import Project
 from mascarin.optimization import Evaluation, Observer
 
 MAIN_NAME = "OutputListingMain.txt"

@@ -18,11 +18,11 @@ from pathlib import Path
 
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, MascarinError
-from mascarin.genopt import functions
 from mascarin.genopt.command_line import place_word, split_command, variables
 from mascarin.genopt.extraction import lines_of, word_after
-from mascarin.genopt.numbers import double_text, parse_double
-from mascarin.genopt.project import FileEntry, Objective, Project
+from mascarin.genopt.files import functions
+from mascarin.genopt.files.numbers import double_text, parse_double
+from mascarin.genopt.files.project import FileEntry, Objective, Project
 from mascarin.optimization import Point
 
 RUN_PREFIX = "tmp-genopt-run-"

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from mascarin._io import atomic, identity, own_files, own_records
+from mascarin._io import atomic, identity
+from mascarin._io.sealed import own_files, own_records
 from mascarin.errors import InputError
-from mascarin.genopt.project import Project
+from mascarin.genopt.files.project import Project
 
 FORMAT = 2
 #: Runs of a program of the user do not depend on the version of Mascarin.

@@ -16,13 +16,13 @@ from mascarin._io import atomic, identity
 from mascarin._io.locks import FolderLock, writing
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
-from mascarin.genopt.algorithm import Built, build, chosen
+from mascarin.genopt.algorithms.algorithm import Built, build, chosen
 from mascarin.genopt.evaluator import Evaluator, Policy, Runner
+from mascarin.genopt.files.loading import load
+from mascarin.genopt.files.numbers import double_text
+from mascarin.genopt.files.project import Project
 from mascarin.genopt.listing import Listings, Row
-from mascarin.genopt.loading import load
-from mascarin.genopt.numbers import double_text
 from mascarin.genopt.program import RUN_PREFIX, SEPARATORS, Program
-from mascarin.genopt.project import Project
 from mascarin.genopt.records import Log, Record, Replay, check_table, fingerprint, write_table
 from mascarin.optimization import EXHAUSTED
 from mascarin.progress import Progress

@@ -80,9 +80,9 @@ class DscMaterial:
         from mascarin.errors import did_you_mean
 
         run = self.main
-        given = {"conductivity": conductivity, "density": density}
+        stated = {"conductivity": conductivity, "density": density}
         plain: dict[str, Any] = {"kind": "pcm"}
-        plain |= {key: _listed(value) for key, value in given.items() if value is not None}
+        plain |= {key: _listed(value) for key, value in stated.items() if value is not None}
         plain["specific_heat"] = [round(heat, 1) for heat in run.specific_heat]
         if law == "table":
             temperatures, enthalpies = table(run)
@@ -94,13 +94,13 @@ class DscMaterial:
                 "melting_range": [start, end],
             }
         else:
-            found = {one.law.name: one for one in run.fits}
-            if law not in found:
-                known = ("table", *found)
-                raise InputError(f"law: found '{law}'; expected a law. {did_you_mean(law, known)}")
+            fits_by_law = {law_fit.law.name: law_fit for law_fit in run.fits}
+            if law not in fits_by_law:
+                laws = ("table", *fits_by_law)
+                raise InputError(f"law: found '{law}'; expected a law. {did_you_mean(law, laws)}")
             plain["latent_heat"] = round(run.latent_heat)
-            plain["melting_temperature"] = round(found[law].melting_temperature, 3)
-            plain["law"] = found[law].description()
+            plain["melting_temperature"] = round(fits_by_law[law].melting_temperature, 3)
+            plain["law"] = fits_by_law[law].description()
         plain["source"] = f"DSC, {run.direction}" + (f" at {run.rate:g} K/min" if run.rate else "")
         return plain
 
@@ -202,10 +202,10 @@ def from_dsc(
         if value is not None and not value > 0.0:
             raise InputError(f"{name}: found {value:g}; expected a positive number")
     scans = read(file, Settings(unit, rate, mass, tuple(map(str, segments))))
-    found = [melting_of(scan, specific_heat, melting_range, scan.place) for scan in scans]
-    runs = tuple(sorted((run for run, _ in found), key=lambda run: run.direction != "heating"))
+    evaluated = [melting_of(scan, specific_heat, melting_range, scan.location) for scan in scans]
+    runs = tuple(sorted((run for run, _ in evaluated), key=lambda run: run.direction != "heating"))
     remarks = [remark for scan in scans for remark in scan.remarks]
-    remarks += [remark for _, one in found for remark in one]
+    remarks += [remark for _, notes in evaluated for remark in notes]
     return DscMaterial(file.stem, runs, (*dict.fromkeys(remarks), *_compared(runs)))
 
 
@@ -278,9 +278,9 @@ def _lines(run: Melting) -> list[str]:
         f"  range          {low:.2f} to {high:.2f} degC",
         "  law                 rms of liquid fraction  largest  melting temperature, width",
         *(
-            f"  {one.law.name:18}  {one.residual:22.4f}  {one.largest:7.4f}  "
-            f"{one.melting_temperature:.2f} degC, {', '.join(f'{w:.2f} K' for w in one.widths)}"
-            for one in run.fits
+            f"  {law_fit.law.name:18}  {law_fit.residual:22.4f}  {law_fit.largest:7.4f}  "
+            f"{law_fit.melting_temperature:.2f} degC, {', '.join(f'{w:.2f} K' for w in law_fit.widths)}"
+            for law_fit in run.fits
         ),
     ]
 
@@ -297,13 +297,13 @@ def _summary(run: Melting) -> dict[str, Any]:
         "rate": run.rate,
         "freezing": None if run.freezing is None else {"begins": run.freezing[0], "rise": run.freezing[1]},
         "fits": {
-            one.law.name: {
-                "rms": one.residual,
-                "largest": one.largest,
-                "melting_temperature": one.melting_temperature,
-                "law": one.description(),
+            law_fit.law.name: {
+                "rms": law_fit.residual,
+                "largest": law_fit.largest,
+                "melting_temperature": law_fit.melting_temperature,
+                "law": law_fit.description(),
             }
-            for one in run.fits
+            for law_fit in run.fits
         },
     }
 

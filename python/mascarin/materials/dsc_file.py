@@ -62,7 +62,7 @@ class Scan:
     column: Column
     factor: float
     remarks: tuple[str, ...]
-    place: str
+    location: str
     freezing: tuple[float, float] | None = None
 
 
@@ -99,44 +99,45 @@ def read(path: Path, settings: Settings) -> list[Scan]:
     export = _export(path)
     names, table = export.names, export.rows
     # The line of the names of the columns.
-    place = f"{path}:{export.line}"
-    settings = _with_mass(settings, export.mass, place)
+    location = f"{path}:{export.line}"
+    settings = _with_mass(settings, export.mass, location)
     columns = [column for k, name in enumerate(names) if (column := column_of(k, name)) is not None]
     if settings.unit is not None:
         columns = [_with_unit(column, settings.unit) for column in columns]
     for column in columns:
-        check_unit(column, place)
-    temperature = _one(columns, "temperature", names, place)
+        check_unit(column, location)
+    temperature = _only_column(columns, "temperature", names, location)
     signals = [column for column in columns if column.quantity in SIGNALS]
     if not signals:
         raise InputError(
-            f"{place}: found the columns {', '.join(names)}; expected a signal such as 'cp [J/(g K)]', "
+            f"{location}: found the columns {', '.join(names)}; expected a signal such as 'cp [J/(g K)]', "
             "'DSC/(mW/mg)' or 'enthalpy [J/g]'"
         )
     signals = [column for column in signals if not _BASELINE.search(column.name)] or signals
     quantities = dict.fromkeys(column.quantity for column in signals)
     if len(quantities) > 1:
         raise InputError(
-            f"{place}: found {' and '.join(quantities)}; expected one of them. Remove the others"
+            f"{location}: found {' and '.join(quantities)}; expected one of them. Remove the others"
         )
     per_mass = [column for column in signals if column.unit not in OF_SAMPLE]
     if per_mass and len(per_mass) < len(signals):
         signals = per_mass  # the same heat flow, of the sample and of its mass
     scans = []
     for signal in signals:
-        scans += _runs(place, table, columns, temperature, signal, settings, export.exothermal_up)
+        scans += _runs(location, table, columns, temperature, signal, settings, export.exothermal_up)
     directions = [scan.direction for scan in scans]
     for direction in ("heating", "cooling"):
         if directions.count(direction) > 1:
             raise InputError(
-                f"{place}: found {directions.count(direction)} runs of {direction}; expected one. Name the "
+                f"{location}: found {directions.count(direction)} runs of {direction}; expected one. Name "
+                "the "
                 "segment that is meant, often the second heating (--segment 5; in Python segments=['5']), or "
                 "keep its rows alone"
             )
     return scans
 
 
-def _with_mass(settings: Settings, mass: float | None, place: str) -> Settings:
+def _with_mass(settings: Settings, mass: float | None, location: str) -> Settings:
     """The settings with the mass of the sample that the file states.
 
     Raises
@@ -148,8 +149,8 @@ def _with_mass(settings: Settings, mass: float | None, place: str) -> Settings:
         return settings if mass is None else replace(settings, mass=mass)
     if abs(settings.mass - mass) > 0.01 * mass:
         raise InputError(
-            f"{place}: found mass={settings.mass:g} mg, but the file states {mass:g} mg; expected the same. "
-            "Leave the mass out to use that of the file, or correct the file"
+            f"{location}: found mass={settings.mass:g} mg, but the file states {mass:g} mg; expected the "
+            "same. Leave the mass out to use that of the file, or correct the file"
         )
     return settings
 
@@ -160,8 +161,8 @@ def _with_unit(column: Column, unit: str) -> Column:
     meant = plain_unit(unit)
     quantity = next((key for key in SIGNALS if meant in UNITS[key]), None)
     if quantity is None:
-        known = ", ".join(unit for key in SIGNALS for unit in UNITS[key])
-        raise InputError(f"unit: found '{unit}'; expected one of {known}")
+        units = ", ".join(unit for key in SIGNALS for unit in UNITS[key])
+        raise InputError(f"unit: found '{unit}'; expected one of {units}")
     return Column(column.index, column.name, quantity, meant, column.direction)
 
 
@@ -174,48 +175,48 @@ def _export(path: Path) -> Export:
     return export_of(decoded(raw, str(path))[0], str(path))
 
 
-def _one(columns: list[Column], quantity: str, names: list[str], place: str) -> Column:
-    found = [column for column in columns if column.quantity == quantity]
-    if len(found) > 1:
+def _only_column(columns: list[Column], quantity: str, names: list[str], location: str) -> Column:
+    candidates = [column for column in columns if column.quantity == quantity]
+    if len(candidates) > 1:
         # PerkinElmer and Setaram give the temperature of the program or furnace, too.
-        found = [column for column in found if _SAMPLE.search(column.name)] or found
-    if len(found) != 1:
+        candidates = [column for column in candidates if _SAMPLE.search(column.name)] or candidates
+    if len(candidates) != 1:
         raise InputError(
-            f"{place}: found {len(found)} columns of {quantity} among {', '.join(names)}; expected one, "
-            f"such as '{quantity} [{'degC' if quantity == 'temperature' else '...'}]'"
+            f"{location}: found {len(candidates)} columns of {quantity} among {', '.join(names)}; expected "
+            f"one, such as '{quantity} [{'degC' if quantity == 'temperature' else '...'}]'"
         )
-    return found[0]
+    return candidates[0]
 
 
 def _runs(
-    place: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
+    location: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
     settings: Settings, exothermal_up: bool | None,
 ) -> list[Scan]:  # fmt: skip
     """The runs in one column of the signal."""
     time = next((column for column in columns if column.quantity == "time"), None)
     label = next((column for column in columns if column.quantity == "direction"), None)
-    wanted = [temperature, signal, *([time] if time else [])]
+    needed = [temperature, signal, *([time] if time else [])]
     rows, labels = [], []
     for number, row in enumerate(table, start=2):
         if signal.index >= len(row) or not row[signal.index].strip():
             continue  # columns for heating and for cooling may have different lengths
-        rows.append([_number(row, column, number, place) for column in wanted])
+        rows.append([_number(row, column, number, location) for column in needed])
         labels.append(row[label.index].strip().casefold() if label else "")
     if len(rows) < LEAST_ROWS:
         raise InputError(
-            f"{place}: column '{signal.name}': found {len(rows)} rows; expected at least {LEAST_ROWS}"
+            f"{location}: column '{signal.name}': found {len(rows)} rows; expected at least {LEAST_ROWS}"
         )
     values = np.array(rows, dtype=np.float64)
-    values[:, 0] = to_celsius(values[:, 0].tolist(), temperature, place)
-    segments, held = segments_of(values[:, 0], labels, signal, settings.segments, place)
+    values[:, 0] = to_celsius(values[:, 0].tolist(), temperature, location)
+    segments, held = segments_of(values[:, 0], labels, signal, settings.segments, location)
     remarks = [f"{held} rows at a constant temperature were left out"] if held else []
     return [
-        _scan(place, values[first:last], direction, signal, time, settings, exothermal_up, remarks)
+        _scan(location, values[first:last], direction, signal, time, settings, exothermal_up, remarks)
         for first, last, direction in segments
     ]
 
 
-def _number(row: list[str], column: Column, number: int, place: str) -> float:
+def _number(row: list[str], column: Column, number: int, location: str) -> float:
     text = row[column.index].strip() if column.index < len(row) else ""
     try:
         value = float(text.replace(",", "."))
@@ -223,14 +224,14 @@ def _number(row: list[str], column: Column, number: int, place: str) -> float:
         value = float("nan")
     if not abs(value) <= LARGEST:  # NaN, too
         raise InputError(
-            f"{place}: row {number}, column '{column.name}': found '{text}'; expected a number of at most "
+            f"{location}: row {number}, column '{column.name}': found '{text}'; expected a number of at most "
             f"{LARGEST:g}. Correct the row or remove it"
         )
     return value
 
 
 def _scan(
-    place: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings,
+    location: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings,
     exothermal_up: bool | None, said: list[str],
 ) -> Scan:  # fmt: skip
     rate = _rate(values, time) or settings.rate
@@ -239,15 +240,17 @@ def _scan(
     t, raw = values[order, 0], values[order, 1]
     t, raw = _merged(t, raw)
     if len(t) < LEAST_ROWS:
-        raise InputError(f"{place}: {direction}: found {len(t)} temperatures; expected at least {LEAST_ROWS}")
-    factor, remark = _factor(signal, raw, t, settings, rate, place)
+        raise InputError(
+            f"{location}: {direction}: found {len(t)} temperatures; expected at least {LEAST_ROWS}"
+        )
+    factor, remark = _factor(signal, raw, t, settings, rate, location)
     remarks += [remark] if remark else []
     if signal.quantity == "enthalpy":
         heat = np.gradient(raw * factor, t)
         if heat.mean() < 0.0:
             raise InputError(
-                f"{place}: column '{signal.name}': found an enthalpy that falls with temperature; expected "
-                "it to rise. Change its sign"
+                f"{location}: column '{signal.name}': found an enthalpy that falls with temperature; "
+                "expected it to rise. Change its sign"
             )
     else:
         heat = raw * factor
@@ -261,7 +264,15 @@ def _scan(
                 "but the peak points the other way: the peak was followed"
             )
     return Scan(
-        direction, t, heat, rate, signal, factor, tuple(remarks), place, recalescence(values[:, 0], direction)
+        direction,
+        t,
+        heat,
+        rate,
+        signal,
+        factor,
+        tuple(remarks),
+        location,
+        recalescence(values[:, 0], direction),
     )
 
 
@@ -286,14 +297,14 @@ def _rate(values: Array, time: Column | None) -> float | None:
 
 
 def _factor(
-    signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, place: str
+    signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, location: str
 ) -> tuple[float, str]:
     """Factor to J/(kg K) or J/kg, and what was assumed where the file has no unit."""
     unit, remark = signal.unit, ""
     if unit is None:
         if signal.quantity == "heat flow":
             raise InputError(
-                f"{place}: column '{signal.name}': found no unit; expected one in its name, such as "
+                f"{location}: column '{signal.name}': found no unit; expected one in its name, such as "
                 f"'{signal.name} [mW/mg]', or unit="
             )
         slope = np.gradient(raw, t) if signal.quantity == "enthalpy" else raw
@@ -305,14 +316,14 @@ def _factor(
         return factor, remark
     if rate is None:
         raise InputError(
-            f"{place}: column '{signal.name}': found a heat flow and no heating rate; expected a column of "
-            "time, or rate= in K/min"
+            f"{location}: column '{signal.name}': found a heat flow and no heating rate; expected a column "
+            "of time, or rate= in K/min"
         )
     if unit in OF_SAMPLE:
         if settings.mass is None:
             raise InputError(
-                f"{place}: column '{signal.name}': found a heat flow of the whole sample; expected its mass, "
-                "mass= in mg"
+                f"{location}: column '{signal.name}': found a heat flow of the whole sample; expected its "
+                "mass, mass= in mg"
             )
         factor /= settings.mass * 1e-6
     return factor * 60.0 / rate, remark

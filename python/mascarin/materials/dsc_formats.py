@@ -32,7 +32,9 @@ _EXOTHERMAL: Final = (
     (re.compile(r"^#EXO:\s*(-?1)"), {"1": True, "-1": False}),
     (re.compile(r"^Exotherm[\s,;:]+(Up|Down)", re.IGNORECASE), {"up": True, "down": False}),
 )
-_UNITS: Final = frozenset({unit for known in UNITS.values() for unit in known} | {"1", "-", "", "%", "uv/mw"})
+_UNITS: Final = frozenset(
+    {unit for factors in UNITS.values() for unit in factors} | {"1", "-", "", "%", "uv/mw"}
+)
 
 
 @dataclass(frozen=True)
@@ -88,24 +90,24 @@ def export_of(text: str, where: str) -> Export:
     facts = _facts(lines[: head + 1])
     separator = _separator(lines[head], lines[head + 1])
     names = [name.lstrip("#").strip() for name in _split(lines[head : head + 1], separator, where)[0]]
-    place = head
+    unit_row = head
     if head > 0 and _are_units(names):
         above = [name.lstrip("#").strip() for name in _split(lines[head - 1 : head], separator, where)[0]]
         if len(above) == len(names):
             names = [_with_unit(name, unit) for name, unit in zip(above, names, strict=True)]
-            place = head - 1
+            unit_row = head - 1
     body = lines[head + 1 :]
     if any(line.strip().startswith(("Curve Values", "[step]")) for line in lines[: head + 1]):
         # Results, or further curves, follow the numbers.
         count = next((k for k, line in enumerate(body) if not _NUMBER.match(line)), len(body))
         body = body[:count]
-    return Export(names, _split(body, separator, where), numbered[place][0], *facts)
+    return Export(names, _split(body, separator, where), numbered[unit_row][0], *facts)
 
 
 def _universal_analysis(lines: list[str], numbered: list[tuple[int, str]], where: str) -> Export:
     """Signals are listed in the head; rows of equal negative numbers mark ends of segments."""
     start = next(k for k, line in enumerate(lines) if line.strip() == "StartOfData")
-    names = [found[1].strip() for line in lines[:start] if (found := re.match(r"Sig\d+\s+(.*)", line))]
+    names = [match[1].strip() for line in lines[:start] if (match := re.match(r"Sig\d+\s+(.*)", line))]
     rows = _split(lines[start + 1 :], "\t" if "\t" in lines[start + 1] else " ", where)
     rows = [row for row in rows if not (len(set(row)) == 1 and row[0].startswith("-"))]
     if not names or not rows:
@@ -161,13 +163,13 @@ def _facts(lines: Sequence[str]) -> tuple[float | None, bool | None]:
     up: bool | None = None
     for line in lines:
         for pattern in _MASS:
-            found = pattern.match(line.strip())
-            if found is not None and mass is None:
+            match = pattern.match(line.strip())
+            if match is not None and mass is None:
                 with contextlib.suppress(ValueError):  # no number: as if it were not stated
-                    factor = 1000.0 if found["unit"].lower() == "g" else 1.0
-                    mass = float(found["mass"].replace(",", ".")) * factor
+                    factor = 1000.0 if match["unit"].lower() == "g" else 1.0
+                    mass = float(match["mass"].replace(",", ".")) * factor
         for exothermal, meanings in _EXOTHERMAL:
-            found = exothermal.match(line.strip())
-            if found is not None:
-                up = meanings[found[1].lower()]
+            match = exothermal.match(line.strip())
+            if match is not None:
+                up = meanings[match[1].lower()]
     return mass if mass else None, up

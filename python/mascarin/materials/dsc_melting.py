@@ -86,7 +86,7 @@ class Melting:
 
 def melting_of(
     scan: Scan,
-    given: tuple[float, float] | None,
+    stated: tuple[float, float] | None,
     span: tuple[float, float] | None,
     where: str,
 ) -> tuple[Melting, list[str]]:
@@ -96,7 +96,7 @@ def melting_of(
     ----------
     scan : Scan
         The run.
-    given : (float, float) or None
+    stated : (float, float) or None
         Specific heat of solid and liquid, where the baseline was subtracted. [J/(kg K)]
     span : (float, float) or None
         First and last temperature of melting. [degC]
@@ -113,13 +113,13 @@ def melting_of(
     solid, liquid = (float(np.median(heat[part])) for part in (t <= low, t >= high))
     height = float(heat.max()) - 0.5 * (solid + liquid)
     if max(abs(solid), abs(liquid)) < 0.02 * height and max(abs(solid), abs(liquid)) < 100.0:
-        if given is None:
+        if stated is None:
             raise InputError(
                 f"{where}: {scan.direction}: found no sensible heat beside the peak: the baseline was "
                 "subtracted; expected specific_heat=(solid, liquid) in J/(kg K)"
             )
-        heat = heat + np.interp(t, [low, high], given)
-        solid, liquid = given
+        heat = heat + np.interp(t, [low, high], stated)
+        solid, liquid = stated
     for base in (solid, liquid):
         check_heat(base, scan.column, where, scan.factor)
     if not height > 0.2 * max(solid, liquid):
@@ -137,7 +137,7 @@ def melting_of(
         )
     remarks = _remarks(scan, (solid, liquid), (low, high), span, height)
     onset, end = _tangents(t, heat, (solid, liquid))
-    fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda one: one.residual))
+    fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda law_fit: law_fit.residual))
     peak = float(t[np.argmax(heat)])
     melting = Melting(
         scan.direction,
@@ -219,9 +219,9 @@ def _latent(t: Array, excess: Array, difference: float, centre: float, guess: fl
     """Latent heat at the centre for which the fraction ends at one."""
     latent = guess
     for _ in range(50):
-        whole = float(_integral(t, excess / (latent + difference * (t - centre)))[-1])
-        latent *= whole
-        if abs(whole - 1.0) < 1e-12:
+        share = float(_integral(t, excess / (latent + difference * (t - centre)))[-1])
+        latent *= share
+        if abs(share - 1.0) < 1e-12:
             break
     return latent
 

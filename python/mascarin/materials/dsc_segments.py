@@ -27,7 +27,7 @@ _RISE: Final = 0.1
 
 
 def segments_of(
-    temperature: Array, labels: Sequence[str], signal: Column, wanted: Sequence[str], place: str
+    temperature: Array, labels: Sequence[str], signal: Column, labels_to_take: Sequence[str], location: str
 ) -> tuple[list[tuple[int, int, str]], int]:
     """First and last row of each run, and its direction; holds are left out.
 
@@ -39,9 +39,9 @@ def segments_of(
         Label of the segment of each row; empty where there is none.
     signal : Column
         Its name can contain the direction.
-    wanted : sequence of str
+    labels_to_take : sequence of str
         Labels to use; empty: all.
-    place : str
+    location : str
         File and line, for errors.
 
     Returns
@@ -59,16 +59,16 @@ def segments_of(
     if signal.direction is not None:
         return [(0, len(temperature), signal.direction)], 0
     if any(labels):
-        return _labelled(temperature, labels, wanted, place)
-    if wanted:
+        return _labelled(temperature, labels, labels_to_take, location)
+    if labels_to_take:
         raise InputError(
-            f"{place}: segment: found {', '.join(wanted)}, but the file has no column of segments; expected "
-            "none. Leave the option out"
+            f"{location}: segment: found {', '.join(labels_to_take)}, but the file has no column of "
+            "segments; expected none. Leave the option out"
         )
     first, last = _without_holds(temperature)
     held = len(temperature) - (last - first)
     inner = temperature[first:last]
-    turn = _turning_point(inner, place)
+    turn = _turning_point(inner, location)
     if turn in (0, len(inner) - 1):
         direction = "heating" if inner[-1] > inner[0] else "cooling"
         return [(first, last, direction)], held
@@ -90,13 +90,13 @@ def _moves(temperature: Array) -> npt.NDArray[np.bool_]:
 
 def _without_holds(temperature: Array) -> tuple[int, int]:
     """First row and row past the end of what lies between holds at both ends of the file."""
-    near = _NEAR_END * float(np.ptp(temperature))
+    reach = _NEAR_END * float(np.ptp(temperature))
     first = int(np.argmax(_moves(temperature)))
     last = len(temperature) - int(np.argmax(_moves(temperature[::-1])))
     # A hold is one near the first or the last temperature: a sample that melts slowly is none.
-    if np.ptp(temperature[: first + 1]) > near or first < _WINDOW:
+    if np.ptp(temperature[: first + 1]) > reach or first < _WINDOW:
         first = 0
-    if np.ptp(temperature[last - 1 :]) > near or len(temperature) - last < _WINDOW:
+    if np.ptp(temperature[last - 1 :]) > reach or len(temperature) - last < _WINDOW:
         last = len(temperature)
     # The last rows of a hold are those at its temperatures.
     if first:
@@ -112,8 +112,8 @@ def _without_holds(temperature: Array) -> tuple[int, int]:
 
 def _hold_around(temperature: Array, turn: int) -> tuple[int, int]:
     """Rows before and after a hold at the turning point; both are that point where there is none."""
-    near = 0.5 * _NEAR_END * float(np.ptp(temperature))
-    still = np.abs(temperature - temperature[turn]) < near
+    reach = 0.5 * _NEAR_END * float(np.ptp(temperature))
+    still = np.abs(temperature - temperature[turn]) < reach
     before, after = turn, turn
     while before > 0 and still[before - 1]:
         before -= 1
@@ -128,7 +128,7 @@ def _hold_around(temperature: Array, turn: int) -> tuple[int, int]:
 
 
 def _labelled(
-    temperature: Array, labels: Sequence[str], wanted: Sequence[str], place: str
+    temperature: Array, labels: Sequence[str], labels_to_take: Sequence[str], location: str
 ) -> tuple[list[tuple[int, int, str]], int]:
     blocks: list[tuple[int, int]] = []
     first = 0
@@ -136,21 +136,21 @@ def _labelled(
         if k == len(labels) or labels[k] != labels[first]:
             blocks.append((first, k))
             first = k
-    known = list(dict.fromkeys(labels[first] for first, _ in blocks))
-    for label in wanted:
-        if label.casefold() not in known:
-            raise InputError(f"{place}: segment: found '{label}'; expected one of {', '.join(known)}")
-    chosen = [label.casefold() for label in wanted]
+    folded = list(dict.fromkeys(labels[first] for first, _ in blocks))
+    for label in labels_to_take:
+        if label.casefold() not in folded:
+            raise InputError(f"{location}: segment: found '{label}'; expected one of {', '.join(folded)}")
+    chosen = [label.casefold() for label in labels_to_take]
     span = float(np.ptp(temperature))
     segments, held = [], 0
     for start, end in blocks:
         label = labels[start]
         if chosen and label not in chosen:
             continue
-        direction = next((one for one in ("heating", "cooling") if label.startswith(one[:4])), None)
+        direction = next((word for word in ("heating", "cooling") if label.startswith(word[:4])), None)
         if direction is None and not label.replace(".", "").lstrip("s").isdigit():
             raise InputError(
-                f"{place}: found the direction '{label}'; expected heating or cooling, or the number of a "
+                f"{location}: found the direction '{label}'; expected heating or cooling, or the number of a "
                 "segment"
             )
         change = float(temperature[end - 1] - temperature[start])
@@ -160,12 +160,12 @@ def _labelled(
         segments.append((start, end, direction or ("heating" if change > 0.0 else "cooling")))
     if not segments:
         raise InputError(
-            f"{place}: found only segments at a constant temperature; expected heating or cooling"
+            f"{location}: found only segments at a constant temperature; expected heating or cooling"
         )
     return segments, held
 
 
-def _turning_point(temperature: Array, place: str) -> int:
+def _turning_point(temperature: Array, location: str) -> int:
     """Row at which heating changes to cooling or cooling to heating; the first or last if it does not."""
     total = abs(temperature[-1] - temperature[0])
     top, bottom = int(np.argmax(temperature)), int(np.argmin(temperature))
@@ -181,7 +181,7 @@ def _turning_point(temperature: Array, place: str) -> int:
     if way > 1.2 * expected:
         jump = int(np.argmax(np.abs(np.diff(temperature))))
         raise InputError(
-            f"{place}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
+            f"{location}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
             f"{temperature[jump]:.2f} degC; expected temperatures in the order of the run: rising, "
             "falling, or one after the other. Restore the order, or put heating and cooling into "
             "different columns"

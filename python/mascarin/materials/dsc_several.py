@@ -78,14 +78,21 @@ def from_dsc_files(paths: Sequence[str | Path], **options: Any) -> DscMaterial:
     materials = [from_dsc(path, **options) for path in paths]
     if len(materials) == 1:
         return materials[0]
-    runs, said = [], [f"{one.name}: {text}" for one in materials for text in one.warnings]
+    runs, said = [], [f"{material.name}: {text}" for material in materials for text in material.warnings]
     for direction in ("heating", "cooling"):
-        same = [run for one in materials for run in one.runs if run.direction == direction]
-        if same:
-            slow = _slowest(same)
+        runs_of_direction = [
+            run for material in materials for run in material.runs if run.direction == direction
+        ]
+        if runs_of_direction:
+            slow = _slowest(runs_of_direction)
             runs.append(_mean(slow))
-            said += [*_spread_lines(direction, slow, len(same)), *_rate_lines(direction, same)]
-    return DscMaterial("+".join(one.name for one in materials), tuple(runs), tuple(dict.fromkeys(said)))
+            said += [
+                *_spread_lines(direction, slow, len(runs_of_direction)),
+                *_rate_lines(direction, runs_of_direction),
+            ]
+    return DscMaterial(
+        "+".join(material.name for material in materials), tuple(runs), tuple(dict.fromkeys(said))
+    )
 
 
 def spread_of(runs: Sequence[Melting]) -> dict[str, Spread]:
@@ -112,10 +119,10 @@ def spread_of(runs: Sequence[Melting]) -> dict[str, Spread]:
 def _slowest(runs: Sequence[Melting]) -> list[Melting]:
     """Runs with the lowest rate; all where a rate is not known."""
     rates = [run.rate for run in runs]
-    known = [rate for rate in rates if rate is not None]
-    if len(known) < len(rates):
+    stated = [rate for rate in rates if rate is not None]
+    if len(stated) < len(rates):
         return list(runs)
-    return [run for run, rate in zip(runs, known, strict=True) if rate <= min(known) * (1.0 + _EQUAL)]
+    return [run for run, rate in zip(runs, stated, strict=True) if rate <= min(stated) * (1.0 + _EQUAL)]
 
 
 def _mean(runs: Sequence[Melting]) -> Melting:
@@ -143,7 +150,7 @@ def _mean(runs: Sequence[Melting]) -> Melting:
         float(np.mean([value(run) for run in runs]))
         for value, _, _ in (_QUANTITIES[name] for name in ("onset", "peak", "end"))
     )
-    fits = tuple(sorted((fit(law, even, fraction) for law in LAWS), key=lambda one: one.residual))
+    fits = tuple(sorted((fit(law, even, fraction) for law in LAWS), key=lambda law_fit: law_fit.residual))
     return replace(
         runs[0], temperature=even, fraction=fraction, heat=heat, specific_heat=(solid, liquid),
         latent_heat=latent, onset=onset, peak=peak, end=end, fits=fits,
@@ -151,13 +158,13 @@ def _mean(runs: Sequence[Melting]) -> Melting:
 
 
 def _spread_lines(direction: str, runs: Sequence[Melting], of: int) -> list[str]:
-    at = "" if runs[0].rate is None else f" at {runs[0].rate:.3g} K/min"
-    head = f"{direction}: mean of {len(runs)} of {of} runs{at}"
+    rate_words = "" if runs[0].rate is None else f" at {runs[0].rate:.3g} K/min"
+    head = f"{direction}: mean of {len(runs)} of {of} runs{rate_words}"
     if len(runs) == 1:
         return [f"{head}: their spread is not known"]
     parts = [
-        f"{name} {one.mean:.4g} +- {one.deviation:.2g} {_QUANTITIES[name][1]}"
-        for name, one in spread_of(runs).items()
+        f"{name} {spread.mean:.4g} +- {spread.deviation:.2g} {_QUANTITIES[name][1]}"
+        for name, spread in spread_of(runs).items()
     ]
     return [f"{head}, +- standard deviation of a run: {', '.join(parts)}"]
 

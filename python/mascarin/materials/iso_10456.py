@@ -61,7 +61,7 @@ _KINDS: Final = (
     (r"\bglass\b(?! (wool|fib))", Kind("glass", (1.0, 1.4), (2000, 2500), (750, 750))),
 )  # fmt: skip
 #: Materials of such names have other numbers than the kind of their last word.
-_OTHERS: Final = re.compile(r"light|aerated|cellular|foam|insulat|hollow|board.?with|wool|pcm|straw|hemp")
+_SPECIAL: Final = re.compile(r"light|aerated|cellular|foam|insulat|hollow|board.?with|wool|pcm|straw|hemp")
 
 
 def kind_of(material: str) -> Kind | None:
@@ -80,7 +80,7 @@ def kind_of(material: str) -> Kind | None:
     (None, None)
     """
     words = material.lower().replace("_", " ").replace("-", " ")
-    if _OTHERS.search(words):
+    if _SPECIAL.search(words):
         return None
     return next((kind for pattern, kind in _KINDS if re.search(pattern, words)), None)
 

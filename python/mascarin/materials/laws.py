@@ -111,12 +111,12 @@ def fit(law: Law, temperature: Array, fraction: Array) -> LawFit:
     def error(p: Array) -> Array:
         return np.asarray(law.fraction(t, float(p[0]), [math.exp(q) for q in p[1:]]) - measured)
 
-    found = least_squares(error, [middle, *np.log(widths)], x_scale=[width, *[1.0] * len(widths)])
-    left, moving = error(found.x), (measured > 1e-3) & (measured < 1.0 - 1e-3)
+    solution = least_squares(error, [middle, *np.log(widths)], x_scale=[width, *[1.0] * len(widths)])
+    residuals, moving = error(solution.x), (measured > 1e-3) & (measured < 1.0 - 1e-3)
     return LawFit(
         law,
-        float(found.x[0]),
-        tuple(math.exp(q) for q in found.x[1:]),
-        float(np.sqrt(np.mean(left[moving] ** 2))),
-        float(np.abs(left).max()),
+        float(solution.x[0]),
+        tuple(math.exp(q) for q in solution.x[1:]),
+        float(np.sqrt(np.mean(residuals[moving] ** 2))),
+        float(np.abs(residuals).max()),
     )

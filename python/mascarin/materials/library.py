@@ -252,9 +252,9 @@ def product(name: str) -> Product:
     >>> product("rt 25 hc").name
     'RT25HC'
     """
-    for one in products().values():
-        if plain(one.name) == plain(name):
-            return one
+    for item in products().values():
+        if plain(item.name) == plain(name):
+            return item
     raise InputError(
         f"found the product '{name}'; expected one of the library ('mascarin materials' lists it). "
         f"{suggestion(name)}".rstrip()
@@ -263,11 +263,11 @@ def product(name: str) -> Product:
 
 def suggestion(name: str) -> str:
     """Sentence with the nearest names, for a name that is no product."""
-    by_plain = {plain(one): one for one in products()}
+    by_plain = {plain(known_name): known_name for known_name in products()}
     close = did_you_mean(plain(name), by_plain)
     if not close.startswith("Did you mean"):
         return ""
-    return re.sub(r"'([^']+)'", lambda found: f"'{by_plain[found[1]]}'", close)
+    return re.sub(r"'([^']+)'", lambda match: f"'{by_plain[match[1]]}'", close)
 
 
 def search(
@@ -303,31 +303,31 @@ def search(
         raise InputError(f"kind: found '{kind}'; expected a kind of product. {did_you_mean(kind, KINDS)}")
     if melting is not None and not melting[0] <= melting[1]:
         raise InputError(f"melting: found {melting[0]:g}..{melting[1]:g}; expected the lower end first")
-    found = [one for one in products().values() if _fits(one, query, melting, kind)]
-    return sorted(found, key=lambda one: (one.melting_temperature or 0.0, one.name))
+    items = [item for item in products().values() if _fits(item, query, melting, kind)]
+    return sorted(items, key=lambda item: (item.melting_temperature or 0.0, item.name))
 
 
-def _fits(one: Product, query: str, melting: tuple[float, float] | None, kind: str | None) -> bool:
-    words = (plain(word) for word in (one.name, one.maker, one.form or ""))
+def _fits(item: Product, query: str, melting: tuple[float, float] | None, kind: str | None) -> bool:
+    words = (plain(word) for word in (item.name, item.maker, item.form or ""))
     if query and not any(plain(query) in word for word in words):
         return False
-    if kind is not None and one.kind != kind:
+    if kind is not None and item.kind != kind:
         return False
     if melting is None:
         return True
-    centre = one.melting_temperature
+    centre = item.melting_temperature
     return centre is not None and melting[0] <= centre <= melting[1]
 
 
-def curves(one: Product) -> Iterator[tuple[str, Curve]]:
+def curves(item: Product) -> Iterator[tuple[str, Curve]]:
     """The curves that are known, each with its direction."""
     for direction in DIRECTIONS:
-        curve = getattr(one, direction)
+        curve = getattr(item, direction)
         if curve is not None:
             yield direction, curve
 
 
-def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
+def enthalpy_curves(item: Product) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
     """Enthalpy over temperature, where it is known.
 
     Yields
@@ -336,20 +336,20 @@ def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tupl
         Name of the curve (heating, cooling, or the law of a product without curves), temperatures [degC],
         enthalpies [J/kg].
     """
-    if {"specific_heat", "latent_heat"} & set(one.missing) or one.melting_temperature is None:
+    if {"specific_heat", "latent_heat"} & set(item.missing) or item.melting_temperature is None:
         return
-    known = dict(curves(one))
-    low = min((curve.temperatures[0] for curve in known.values()), default=0.0) - 2.0
-    high = max((curve.temperatures[-1] for curve in known.values()), default=0.0) + 2.0
-    for direction, curve in known.items():  # from the solid to the liquid, where the curves meet
+    by_direction = dict(curves(item))
+    low = min((curve.temperatures[0] for curve in by_direction.values()), default=0.0) - 2.0
+    high = max((curve.temperatures[-1] for curve in by_direction.values()), default=0.0) + 2.0
+    for direction, curve in by_direction.items():  # from the solid to the liquid, where the curves meet
         points = (low, *curve.temperatures, high)
-        yield direction, points, one.enthalpies(points, (0.0, *curve.liquid_fraction, 1.0))
-    if one.heating is None and one.cooling is None and "law" in one.raw:
-        width, centre = _bare(one.raw["law"]["width"]), one.melting_temperature
+        yield direction, points, item.enthalpies(points, (0.0, *curve.liquid_fraction, 1.0))
+    if item.heating is None and item.cooling is None and "law" in item.raw:
+        width, centre = _bare(item.raw["law"]["width"]), item.melting_temperature
         points = tuple(centre + 0.1 * k * width for k in range(-40, 41))
         law = MeltingCurve("tanh_width", {"melting_temperature": centre, "width": width})
         fractions = law(points).tolist()
-        yield f"tanh law, half-width {width:g} K", points, one.enthalpies(points, fractions)
+        yield f"tanh law, half-width {width:g} K", points, item.enthalpies(points, fractions)
 
 
 def capacities(temperatures: Sequence[float], enthalpies: Sequence[float]) -> list[tuple[float, float]]:

@@ -41,19 +41,19 @@ def plot(chosen: Sequence[Product], ax: Sequence[Axes] | None = None) -> Figure:
     InputError
         There are too many products for the given axes, or none of them has a curve.
     """
-    drawn = [one for one in chosen if any(enthalpy_curves(one))]
-    if len(drawn) > MOST and ax is None:
-        return melting.panels({one.name: list(_curves([one])) for one in drawn})
-    if not drawn or len(drawn) > MOST:
-        names = ", ".join(one.name for one in chosen[:MOST]) or "nothing"
-        found = f"{len(drawn)} products with curves" if drawn else f"no curve of {names}"
-        raise InputError(f"plot: found {found}; expected 1 to {MOST} products with curves; narrow the search")
-    return melting.draw(list(_curves(drawn)), ax)
+    shown = [item for item in chosen if any(enthalpy_curves(item))]
+    if len(shown) > MOST and ax is None:
+        return melting.panels({item.name: list(_curves([item])) for item in shown})
+    if not shown or len(shown) > MOST:
+        names = ", ".join(item.name for item in chosen[:MOST]) or "nothing"
+        text = f"{len(shown)} products with curves" if shown else f"no curve of {names}"
+        raise InputError(f"plot: found {text}; expected 1 to {MOST} products with curves; narrow the search")
+    return melting.draw(list(_curves(shown)), ax)
 
 
 def _curves(chosen: Sequence[Product]) -> Iterator[melting.Curve]:
-    for number, one in enumerate(chosen):
-        for what, temperatures, enthalpies in enthalpy_curves(one):
+    for number, item in enumerate(chosen):
+        for what, temperatures, enthalpies in enthalpy_curves(item):
             middles, heats = zip(*capacities(temperatures, enthalpies), strict=True)
-            label, style = f"{one.name}, {what}", _STYLES.get(what, "-")
+            label, style = f"{item.name}, {what}", _STYLES.get(what, "-")
             yield melting.Curve(label, number, style, temperatures, enthalpies, middles, heats)

@@ -80,17 +80,19 @@ def column_of(index: int, name: str) -> Column | None:
     The unit is in brackets or after a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
     """
     text = name.strip().strip('"#').strip()
-    found = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", text)
-    if found is None:
+    match = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", text)
+    if match is None:
         return None
-    words = re.sub(r"[\s._-]+", " ", found["name"]).strip().casefold()
-    direction = next((one for one in ("heating", "cooling") if one in words), None)
+    words = re.sub(r"[\s._-]+", " ", match["name"]).strip().casefold()
+    direction = next((word for word in ("heating", "cooling") if word in words), None)
     if direction is not None:
         words = re.sub(r"\s+", " ", words.replace(direction, "")).strip()
-    unit = next((plain_unit(found[key]) for key in "abc" if found[key]), None)
+    unit = next((plain_unit(match[key]) for key in "abc" if match[key]), None)
     quantity = next((key for key, names in _NAMES.items() if words in names), None)
     if quantity is None and unit is not None:
-        quantity = next((key for key, known in UNITS.items() if key != "temperature" and unit in known), None)
+        quantity = next(
+            (key for key, factors in UNITS.items() if key != "temperature" and unit in factors), None
+        )
     if quantity is None:
         return None
     return Column(index, text, quantity, unit, direction)
@@ -104,8 +106,8 @@ def check_unit(column: Column, where: str) -> None:
     InputError
         The unit does not; the text has the column, the unit and those that are known.
     """
-    known = UNITS.get(column.quantity, {})
-    if column.unit is not None and column.unit not in known:
+    factors = UNITS.get(column.quantity, {})
+    if column.unit is not None and column.unit not in factors:
         raise InputError(
             f"{where}: column '{column.name}': found the unit '{column.unit}' for a {column.quantity}; "
             f"expected one of {', '.join(SHOWN[column.quantity])}"
@@ -147,11 +149,11 @@ def check_heat(base: float, column: Column, where: str, factor: float) -> None:
     low, high = POSSIBLE_HEAT
     if low <= base <= high:
         return
-    known = UNITS[column.quantity]
+    factors = UNITS[column.quantity]
     fitting = [
         unit
         for unit in SHOWN[column.quantity]
-        if plain_unit(unit) not in OF_SAMPLE and low <= base / factor * known[plain_unit(unit)] <= high
+        if plain_unit(unit) not in OF_SAMPLE and low <= base / factor * factors[plain_unit(unit)] <= high
     ]
     unit = column.unit or "no unit"
     advice = f"With {' or '.join(fitting)} it could be" if fitting else _CHECK

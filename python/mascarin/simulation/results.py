@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin._io import display
 from mascarin._io.durations import seconds_of
-from mascarin._io.own_files import json_of, require
+from mascarin._io.sealed.own_files import json_of, require
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.checks.energy import EnergyLedger
 from mascarin.simulation.checks.judgement import Judgement

@@ -32,7 +32,7 @@ from mascarin.simulation.results import Results
 from mascarin.simulation.run_summary import Finished, StoredRun, start_note
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
-from mascarin.weather.sun_check import sun_warnings
+from mascarin.weather.checks.sun_check import sun_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt

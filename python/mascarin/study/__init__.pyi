@@ -1,5 +1,5 @@
-from .description import Sensor as Sensor
-from .results import StudyResults as StudyResults
+from .file.description import Sensor as Sensor
+from .results.results import StudyResults as StudyResults
 from .study import Study as Study
 
 __all__: list[str]

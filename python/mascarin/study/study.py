@@ -13,29 +13,30 @@ from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
 from mascarin.pages import study
 from mascarin.pages.study.data.folder import read_folder
-from mascarin.study import opening
-from mascarin.study.calibrated import calibrated
-from mascarin.study.checking import check
-from mascarin.study.days_step import days
-from mascarin.study.derived_quantities import derived_quantities
-from mascarin.study.diagnosis_step import diagnosis
-from mascarin.study.diagnosis_words import summary
-from mascarin.study.document.errors import error_words
-from mascarin.study.kept import NAME, kept
-from mascarin.study.model_runs import ModelRuns, judged, nominal
-from mascarin.study.outputs import write_all
-from mascarin.study.prediction_intervals import interval_words, slopes
-from mascarin.study.residuals_step import error_sources, examined, too_few
-from mascarin.study.results import StudyResults
-from mascarin.study.setup import Setup
-from mascarin.study.storage import Workspace
-from mascarin.study.writing import study_text, write_study
+from mascarin.study.context.context import StudyContext
+from mascarin.study.context.step_cache import NAME, kept
+from mascarin.study.context.storage import Workspace
+from mascarin.study.diagnosis.step import diagnosis
+from mascarin.study.diagnosis.words import summary
+from mascarin.study.file import opening
+from mascarin.study.file.writing import study_text, write_study
+from mascarin.study.results.document.errors import error_words
+from mascarin.study.results.files import write_all
+from mascarin.study.results.results import StudyResults
+from mascarin.study.steps.calibration_result import calibrated
+from mascarin.study.steps.checking import check
+from mascarin.study.steps.days import days
+from mascarin.study.steps.derived_quantities import derived_quantities
+from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
+from mascarin.study.steps.prediction_intervals import interval_words, slopes
+from mascarin.study.steps.residuals import error_sources, examined, too_few
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
-    from mascarin.study.description import Periods, SensitivityPlan, Sensor, Variant
+    from mascarin.study.file.description import Periods, SensitivityPlan, Sensor, StudyPlan, Variant
+    from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Criterion
     from mascarin.weather import Climate, Measurements
 
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 _OBJECTS = ("building", "climate", "measurements", "sensors", "periods")
 
 
-class Study(Setup):
+class Study:
     """A study of a building: comparison, sensitivity analysis, calibration and validation.
 
     All inputs are checked when the study is made, before anything is run.
@@ -137,7 +138,7 @@ class Study(Setup):
                     f"study: found a file and {', '.join(unused)}, expected one of the two; leave out the "
                     "file, or write these keys into it"
                 )
-            super().__init__(opening.from_file(Path(path), allow_outside=allow_outside))
+            inputs = opening.from_file(Path(path), allow_outside=allow_outside)
         else:
             plan = {"sensors": sensors, "periods": periods, "criteria": criteria, "aims": aims, **options}
             if parameters or identification:
@@ -154,8 +155,34 @@ class Study(Setup):
                     f"study: found no {', '.join(missing)}, expected {', '.join(_OBJECTS)}, or the path of a "
                     "study file; add what is missing"
                 )
-            super().__init__(opening.from_objects(building, climate, measurements, plan))
-        check(self)
+            inputs = opening.from_objects(building, climate, measurements, plan)
+        self.context: StudyContext = StudyContext(inputs)
+        check(self.context)
+
+    @property
+    def plan(self) -> StudyPlan:
+        """What the study does."""
+        return self.context.plan
+
+    @property
+    def building(self) -> Building:
+        """The building as described."""
+        return self.context.building
+
+    @property
+    def climate(self) -> Climate:
+        """The weather."""
+        return self.context.climate
+
+    @property
+    def measurements(self) -> Measurements:
+        """The measured columns to compare with, without those values that the study masks."""
+        return self.context.measurements
+
+    @property
+    def quality(self) -> list[Stretch]:
+        """Suspicious values of the measured columns."""
+        return self.context.quality
 
     @classmethod
     def from_yaml(cls, path: str | Path, *, allow_outside: bool = False) -> Self:
@@ -214,12 +241,12 @@ class Study(Setup):
         >>> study = Study.from_yaml(STUDIES["lgi"])
         >>> warmer = study.measurements.data.assign(room_air=lambda table: table["room_air"] + 1.0)
         >>> other = study.with_measurements(Measurements.from_table(warmer))
-        >>> float((other.observation.measured - study.observation.measured)[0, 0].round(6))
+        >>> float((other.measurements.data - study.measurements.data)["room_air"].iloc[0].round(6))
         1.0
         """
         other = type(self).__new__(type(self))
-        Setup.__init__(other, opening.with_measurements(self.sources, measurements))
-        check(other)
+        other.context = StudyContext(opening.with_measurements(self.context.inputs, measurements))
+        check(other.context)
         return other
 
     def to_yaml(self, path: str | Path | None = None) -> str:
@@ -242,7 +269,8 @@ class Study(Setup):
         InputError
             The weather is a year of a weather file, which a table cannot represent.
         """
-        return study_text(self.sources) if path is None else write_study(self.sources, Path(path))
+        inputs = self.context.inputs
+        return study_text(inputs) if path is None else write_study(inputs, Path(path))
 
     @one_thread()
     def run(
@@ -273,12 +301,13 @@ class Study(Setup):
         SolverError
             A run failed.
         """
-        _ = self.sought
+        context = self.context
+        _ = context.inputs.calibration_plan
         if out is None:
-            with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), self.inputs()) as workspace:
-                return self._carried_out(workspace, progress)
-        with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
-            results = self._carried_out(workspace, progress)
+            with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), context.identity()) as work:
+                return all_steps(context, work, progress)
+        with Workspace(Path(out), context.identity()) as workspace, context.keeping(workspace):
+            results = all_steps(context, workspace, progress)
             written = write_all(results, workspace, figures=figures)
             study.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.record("study", written)
@@ -287,59 +316,6 @@ class Study(Setup):
             workspace.drop(NAME)
         return results
 
-    def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
-        """All steps, one after the other."""
-        began = time.monotonic()
-        runs = ModelRuns(self, workspace, progress)
-        before = nominal(self)
-        sensitivity = None if self.plan.sensitivity is None else runs.sensitivity(self.plan.sensitivity)
-        found = calibrated(self, runs)
-        fitted, fit, intervals = found.run, found.fit, found.intervals
-        variants = runs.variants()
-        at = fit.x.tolist()
-        residuals = kept(workspace, ("residuals", at), lambda: examined(self, fitted))
-        criteria = judged(self, before, fitted)
-        aims = judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims")
-        asked = [*criteria["fitted"], *aims]
-        missed = not asked or not all(verdict.passed for verdict in asked)
-        sources = None
-        if missed:
-            sources = kept(workspace, ("sources", at), lambda: error_sources(self, fitted, fit, progress))
-        causes = kept(
-            workspace,
-            ("diagnosis", at),
-            lambda: diagnosis(self, fitted, fit, workspace, combination=found.combination, progress=progress),
-        )
-        slope = slopes(self, fitted, fit)
-        joint = None if found.combination is None else found.combination.forms[0].joint
-        return StudyResults(
-            setup=self,
-            nominal=before,
-            fitted=fitted,
-            variants=variants,
-            sensitivity=sensitivity,
-            calibration=fit,
-            criteria=criteria,
-            aims=aims,
-            residuals=residuals,
-            error_sources=sources,
-            diagnosis=causes,
-            days=kept(workspace, ("days", at), lambda: days(self, fitted, fit, slope, intervals)),
-            prediction_intervals=intervals,
-            profiles=found.profiles,
-            notes=[
-                *too_few(self),
-                *error_words(self, found.combination),
-                *interval_words(self, intervals),
-                *summary(causes),
-            ],
-            quality=self.quality,
-            seconds=time.monotonic() - began,
-            combination=found.combination,
-            contradictions=found.contradictions,
-            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, joint)),
-        )
-
     def __repr__(self) -> str:
         return display.text(f"Study '{self.plan.name}'", self._rows())
 
@@ -347,12 +323,13 @@ class Study(Setup):
         return display.page(f"Study '{self.plan.name}'", self._rows())
 
     def _rows(self) -> list[tuple[str, str]]:
-        first, last = self.identification
+        periods = self.context.periods
+        first, last = periods.identification
         rows = [
             ("building", self.building.name),
             ("sensors", ", ".join(self.plan.sensors)),
             ("identification", f"{first:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M} ({self.climate.timezone})"),
-            ("record", f"{self.start:%Y-%m-%d %H:%M} to {self.end:%Y-%m-%d %H:%M}"),
+            ("record", f"{periods.start:%Y-%m-%d %H:%M} to {periods.end:%Y-%m-%d %H:%M}"),
             ("step", self.plan.step),
         ]
         if self.plan.identification is not None:
@@ -360,3 +337,67 @@ class Study(Setup):
         if self.plan.variants:
             rows.append(("variants", ", ".join(self.plan.variants)))
         return rows
+
+
+def all_steps(context: StudyContext, workspace: Workspace, progress: ProgressOption) -> StudyResults:
+    """All steps of a study, one after the other.
+
+    Parameters
+    ----------
+    context : StudyContext
+        Of the study.
+    workspace : Workspace
+        Where results of steps are kept.
+    progress : bool, callable or None
+        See `mascarin.progress.ProgressOption`.
+    """
+    began = time.monotonic()
+    runs = ModelRuns(context, workspace, progress)
+    before = nominal(context)
+    sensitivity = None if context.plan.sensitivity is None else runs.sensitivity(context.plan.sensitivity)
+    found = calibrated(context, runs)
+    fitted, fit, intervals = found.run, found.fit, found.intervals
+    variants = runs.variants()
+    at = fit.x.tolist()
+    residuals = kept(workspace, ("residuals", at), lambda: examined(context, fitted))
+    criteria = judged(context, before, fitted)
+    aims = judge(context.plan.aims, fitted.scores, where=f"{context.places.file}: aims")
+    asked = [*criteria["fitted"], *aims]
+    missed = not asked or not all(verdict.passed for verdict in asked)
+    sources = None
+    if missed:
+        sources = kept(workspace, ("sources", at), lambda: error_sources(context, fitted, fit, progress))
+    causes = kept(
+        workspace,
+        ("diagnosis", at),
+        lambda: diagnosis(context, fitted, fit, workspace, combination=found.combination, progress=progress),
+    )
+    slope = slopes(context, fitted, fit)
+    joint = None if found.combination is None else found.combination.forms[0].joint
+    return StudyResults(
+        context=context,
+        nominal=before,
+        fitted=fitted,
+        variants=variants,
+        sensitivity=sensitivity,
+        calibration=fit,
+        criteria=criteria,
+        aims=aims,
+        residuals=residuals,
+        error_sources=sources,
+        diagnosis=causes,
+        days=kept(workspace, ("days", at), lambda: days(context, fitted, fit, slope, intervals)),
+        prediction_intervals=intervals,
+        profiles=found.profiles,
+        notes=[
+            *too_few(context),
+            *error_words(context, found.combination),
+            *interval_words(context, intervals),
+            *summary(causes),
+        ],
+        quality=context.quality,
+        seconds=time.monotonic() - began,
+        combination=found.combination,
+        contradictions=found.contradictions,
+        derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, joint)),
+    )

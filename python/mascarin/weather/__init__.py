@@ -21,15 +21,22 @@ from __future__ import annotations
 from mascarin.tables.columns import Column
 from mascarin.tables.steps import STAGES
 from mascarin.tables.timezones import parse_timezone
-from mascarin.weather.channels import CHANNELS, COEFFICIENTS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
 from mascarin.weather.climate import Climate
 from mascarin.weather.epw_writing import write_epw
-from mascarin.weather.measurements import Measurements
 from mascarin.weather.morphing import MonthlyChanges, morphed
 from mascarin.weather.overview import Overview, overview
+from mascarin.weather.reading.measurements import Measurements
+from mascarin.weather.reading.shipped import SHIPPED, ShippedClimate
+from mascarin.weather.records.channels import (
+    CHANNELS,
+    COEFFICIENTS,
+    IRRADIANCES,
+    RADIATION,
+    TEMPERATURES,
+    UNITS,
+)
+from mascarin.weather.records.site import Place
 from mascarin.weather.schedules import scheduled
-from mascarin.weather.shipped import SHIPPED, ShippedClimate
-from mascarin.weather.site import Place
 from mascarin.weather.summary import summary, summary_of_measurements
 
 __all__ = [

@@ -13,28 +13,29 @@ from typing import TYPE_CHECKING, Any
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
-from mascarin.tables.gaps import filled
 from mascarin.tables.quality import Stretch, find
+from mascarin.tables.quality.gaps import filled
 from mascarin.tables.reading.table import Stamps, read_table
+from mascarin.tables.reading.table_cache import cached_record
 from mascarin.tables.steps import Steps
-from mascarin.tables.table_cache import cached_record
-from mascarin.weather import derive, measured
-from mascarin.weather.brightness import bright_parts, with_findings, with_notes
-from mascarin.weather.channels import LIMITS
-from mascarin.weather.completion import complete
+from mascarin.weather.checks.brightness import bright_parts, with_findings, with_notes
+from mascarin.weather.checks.missing_infrared import with_whole_infrared
+from mascarin.weather.checks.place_check import require_place
+from mascarin.weather.checks.sun_check import check_clock, is_polar_night
+from mascarin.weather.derived import derive
+from mascarin.weather.derived.completion import complete
 from mascarin.weather.forcing import forcing, require_period
-from mascarin.weather.measured import Columns, record_of_table
-from mascarin.weather.measurements import Measurements
-from mascarin.weather.missing_infrared import with_whole_infrared
-from mascarin.weather.place_check import require_place
-from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
-from mascarin.weather.readers import read_epw, read_tmy3
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.shipped import PREFIX, found
-from mascarin.weather.site import Place, SiteLike
-from mascarin.weather.sun_check import check_clock, is_polar_night
-from mascarin.weather.view import RecordView
-from mascarin.weather.yearly import record_of_year, shifted
+from mascarin.weather.reading import measured
+from mascarin.weather.reading.measured import Columns, record_of_table
+from mascarin.weather.reading.measurements import Measurements
+from mascarin.weather.reading.pvlib_frames import PvlibStamps, record_of_pvlib
+from mascarin.weather.reading.readers import read_epw, read_tmy3
+from mascarin.weather.reading.shipped import PREFIX, found
+from mascarin.weather.reading.yearly import record_of_year, shifted
+from mascarin.weather.records.channels import LIMITS
+from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.site import Place, SiteLike
+from mascarin.weather.records.view import RecordView
 
 if TYPE_CHECKING:
     import pandas as pd

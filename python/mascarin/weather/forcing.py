@@ -17,11 +17,11 @@ from mascarin.tables.profile import Profile, pieces_for, steady
 from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import clock
-from mascarin.weather.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS, UNITS
-from mascarin.weather.radiation import from_instants, from_means
-from mascarin.weather.record import WeatherRecord
-from mascarin.weather.site import SiteLike
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.radiation import from_instants, from_means
+from mascarin.weather.derived.sun import SunPath
+from mascarin.weather.records.channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS, UNITS
+from mascarin.weather.records.record import WeatherRecord
+from mascarin.weather.records.site import SiteLike
 
 
 def require_period(record: WeatherRecord, steps: Steps) -> None:

@@ -27,8 +27,8 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError, did_you_mean
 from mascarin.physics import KELVIN, dew_point, humidity_of_dew_point
-from mascarin.weather.channels import RADIATION
 from mascarin.weather.climate import Climate
+from mascarin.weather.records.channels import RADIATION
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -15,10 +15,10 @@ from mascarin.tables.checks import require_range
 from mascarin.tables.record import Origin
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import local_time
-from mascarin.weather.channels import TEMPERATURES, UNITS
 from mascarin.weather.climate import Climate
 from mascarin.weather.forcing import column_means, column_values, record_of
-from mascarin.weather.measurements import Measurements
+from mascarin.weather.reading.measurements import Measurements
+from mascarin.weather.records.channels import TEMPERATURES, UNITS
 
 if TYPE_CHECKING:
     from mascarin.building.base.time_series import ColumnCourse

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mascarin.weather.climate import Climate
-from mascarin.weather.measurements import Measurements
+from mascarin.weather.reading.measurements import Measurements
 
 
 def summary(climate: Climate) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from mascarin.errors import InputError
 
-Place = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 #: Last step of the place of a text's first column, beside the line of the text.
 COLUMN: Final = "(column)"
@@ -27,7 +27,7 @@ class Line(int):
 
 
 def explained(
-    error: ValidationError, plain: Any, name: str, lines: Mapping[Place, int] | None = None
+    error: ValidationError, plain: Any, name: str, lines: Mapping[KeyPath, int] | None = None
 ) -> InputError:
     """Turn the errors that pydantic found into one error that names each by file, line and path.
 
@@ -74,7 +74,7 @@ def _sentences(fault: dict[str, Any]) -> str:
     return "\n".join(parts)
 
 
-def _path_of(location: Place, plain: Any) -> Place:
+def _path_of(location: KeyPath, plain: Any) -> KeyPath:
     """Remove from pydantic's location the steps that are not in the file, such as the kinds of a union."""
     path: list[str | int] = []
     # An error in the whole description has an empty location.
@@ -117,7 +117,7 @@ def _written(plain: Any) -> Any:
     return {name: getattr(plain, name) for name in names}
 
 
-def _where(path: Place, lines: Mapping[Place, int], name: str) -> tuple[str, int]:
+def _where(path: KeyPath, lines: Mapping[KeyPath, int], name: str) -> tuple[str, int]:
     """File and line of a place, else of the nearest part around it; 0 where there is none."""
     for length in range(len(path), -1, -1):
         line = lines.get(path[:length])
@@ -126,13 +126,13 @@ def _where(path: Place, lines: Mapping[Place, int], name: str) -> tuple[str, int
     return name, 0
 
 
-def _column(path: Place, lines: Mapping[Place, int], context: Mapping[str, Any]) -> int:
+def _column(path: KeyPath, lines: Mapping[KeyPath, int], context: Mapping[str, Any]) -> int:
     """Column of a fault inside of a text of one line in the file; 0 where it is not known."""
     first = lines.get((*path, COLUMN), 0)
     return int(first) + context["column"] - 1 if first and context.get("text_line") == 1 else 0
 
 
-def _dotted(path: Place, plain: Any) -> str:
+def _dotted(path: KeyPath, plain: Any) -> str:
     """Write a place as the path of a parameter, with the names of layers."""
     steps = []
     for step in path:

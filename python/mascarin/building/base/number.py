@@ -114,11 +114,11 @@ class Number(float):
     def to_plain(self) -> Any:
         """The number as in a file: a word, a plain number, or a mapping with range and source."""
         word = self._word()
-        notes: dict[str, Any] = {"value": word or _whole(self)}
+        notes: dict[str, Any] = {"value": word or _as_integer(self)}
         if self.quantity is not None:
             notes |= self.quantity.notes()
         if self.range is not None:
-            notes["range"] = [_whole(end) for end in self.range]
+            notes["range"] = [_as_integer(end) for end in self.range]
         if self.source is not None and not isinstance(self.source, Remark):
             notes["source"] = str(self.source)
         if self.assumed:
@@ -137,7 +137,7 @@ class Number(float):
         return f"{float(self):g}{unit}"
 
 
-def _whole(value: float) -> float:
+def _as_integer(value: float) -> float:
     """The value as an integer where it is one."""
     return int(value) if value.is_integer() and abs(value) < 1e15 else float(value)
 
@@ -296,7 +296,7 @@ class Quantity:
         Limits of the value.
     words : mapping of str to float
         Words that may replace a number.
-    whole : bool
+    integer : bool
         Whether only whole numbers have a meaning.
     """
 
@@ -305,7 +305,7 @@ class Quantity:
     spread: Spread
     limits: Limits = field(default=Limits())
     words: Mapping[str, float] = field(default_factory=dict, hash=False)
-    whole: bool = False
+    integer: bool = False
 
     def notes(self) -> dict[str, Any]:
         """What a file has of the quantity beside the value: nothing, where its key says what it is."""
@@ -332,10 +332,10 @@ class Quantity:
         return self._held(number).of(self)
 
     def _noted(self, raw: Mapping[Any, Any]) -> Number:
-        known = ("value", "range", "source", "assumed")
+        keys = ("value", "range", "source", "assumed")
         for key in raw:
-            if key not in known:
-                raise problem(f"key '{key}'", f"{', '.join(known)}", did_you_mean(str(key), known))
+            if key not in keys:
+                raise problem(f"key '{key}'", f"{', '.join(keys)}", did_you_mean(str(key), keys))
         if "value" not in raw:
             raise problem("no value", f"value: {self.expectation}", "Write {value: ..., range: [low, high]}.")
         source, assumed = raw.get("source"), raw.get("assumed", False)
@@ -383,14 +383,14 @@ class Quantity:
             raise problem(shown(float(number)), self.expectation, "Write a finite number.")
         if not self.limits.hold(number):
             raise problem(shown(float(number)), self.expectation, CHECK_SIGN)
-        if self.whole and not float(number).is_integer():
+        if self.integer and not float(number).is_integer():
             raise problem(shown(float(number)), self.expectation, "Round it.")
         return number
 
     @property
     def expectation(self) -> str:
         """What is expected here, as a phrase."""
-        kind = "a whole number" if self.whole else "a number"
+        kind = "a whole number" if self.integer else "a number"
         words = f" or one of {', '.join(self.words)}" if self.words else ""
         limits = f" {self.limits}" if str(self.limits) else ""
         return f"{kind}{limits} [{self.unit}]{words} ({self.description})"
@@ -405,7 +405,7 @@ class Quantity:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """The plain form, the form with range and source, and the facts about the quantity."""
-        plain: dict[str, Any] = {"type": "integer" if self.whole else "number", **self.limits.schema()}
+        plain: dict[str, Any] = {"type": "integer" if self.integer else "number", **self.limits.schema()}
         words = [{"enum": list(self.words)}] if self.words else []
         return {
             "description": self.description,
@@ -439,17 +439,17 @@ def noted_form(plain: dict[str, Any], words: Sequence[dict[str, Any]] = ()) -> d
 def quantity_of(field: FieldInfo) -> Quantity | None:
     """Quantity in the annotation of a numeric field; None for any other field."""
     annotations = [field, *get_args(field.annotation)]
-    metadata = [note for one in annotations for note in getattr(one, "metadata", ())]
-    metadata += [note for one in annotations for note in getattr(one, "__metadata__", ())]
+    metadata = [note for annotation in annotations for note in getattr(annotation, "metadata", ())]
+    metadata += [note for annotation in annotations for note in getattr(annotation, "__metadata__", ())]
     return next((note for note in metadata if isinstance(note, Quantity)), None)
 
 
-def problem(found: str, expected: str, help_: str) -> PydanticCustomError:
+def problem(actual: str, expected: str, help_: str) -> PydanticCustomError:
     """Make an error with what was found, what was expected and what to do."""
     return PydanticCustomError(
         "input",
         "found {found}; expected {expected}. {help}",
-        {"found": found, "expected": expected, "help": help_},
+        {"found": actual, "expected": expected, "help": help_},
     )
 
 

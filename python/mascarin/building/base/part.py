@@ -36,7 +36,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 Location = tuple[int | str, ...]
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 #: Names that completion leaves out: those of pydantic, and what only this package uses.
 _INTERNALS = frozenset([*dir(BaseModel), "has_usual_kind", "in_short", "written"])
@@ -48,8 +48,8 @@ class PartType(ModelMetaclass):
 
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""
-        own = {name for kind in self.__mro__ if isinstance(kind, PartType) for name in vars(kind)}
-        names = {*own, *getattr(self, "model_fields", ())} - _INTERNALS
+        names_of_class = {name for kind in self.__mro__ if isinstance(kind, PartType) for name in vars(kind)}
+        names = {*names_of_class, *getattr(self, "model_fields", ())} - _INTERNALS
         return sorted(name for name in names if not name.startswith("_"))
 
     @property
@@ -177,7 +177,7 @@ class Part(BaseModel, metaclass=PartType):
 
     @classmethod
     def _in_words(cls, fault: dict[str, Any]) -> PydanticCustomError:
-        context, key, found = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
+        context, key, actual = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
         match fault["type"]:
             case "input" if "text_line" in context:
                 return text_problem(context)
@@ -186,13 +186,13 @@ class Part(BaseModel, metaclass=PartType):
                 help_ = cls.advice.get(key, CHECK_SIGN) if plain else context["help"]
                 return problem(context["found"], context["expected"], help_)
             case "extra_forbidden":
-                known = [name for name in cls.model_fields if name != "kind"]
-                help_ = cls.advice.get(key) or did_you_mean(key, known)
+                names = [name for name in cls.model_fields if name != "kind"]
+                help_ = cls.advice.get(key) or did_you_mean(key, names)
                 return problem(f"the key '{key}'", "a key that exists here", help_)
             case "union_tag_not_found":
                 tags = cls._kinds(key)
                 help_ = cls.advice.get(key) or f"Add 'kind: {tags[0]}' or another one."
-                return problem(f"{found}, without a kind", f"a kind: {', '.join(tags)}", help_)
+                return problem(f"{actual}, without a kind", f"a kind: {', '.join(tags)}", help_)
             case "missing" if len(fault["loc"]) == 1:
                 return problem("nothing", cls._meaning(key), f"Add '{key}:'.")
             case "missing" | "too_short" | "too_long":
@@ -200,24 +200,24 @@ class Part(BaseModel, metaclass=PartType):
             case "union_tag_invalid":
                 return _choice(f"kind: {context.get('tag', 'not given')}", context.get("expected_tags", ""))
             case "literal_error":
-                return _choice(found, context["expected"])
+                return _choice(actual, context["expected"])
             case "model_type" | "model_attributes_type" | "dict_type":
-                return problem(found, "a mapping (key: value)", "Write keys, one per line.")
+                return problem(actual, "a mapping (key: value)", "Write keys, one per line.")
             case "tuple_type" | "list_type":
-                return problem(found, f"a list: {cls._meaning(key)}", "Write [a, b, ...].")
+                return problem(actual, f"a list: {cls._meaning(key)}", "Write [a, b, ...].")
             case _:
-                return problem(found, _lowered(fault["msg"]), "Correct the value.")
+                return problem(actual, _lowered(fault["msg"]), "Correct the value.")
 
     @classmethod
     def _kinds(cls, key: str) -> list[str]:
         """Kinds of the parts that a field may hold."""
-        found, pending = [], [getattr(cls.model_fields.get(key), "annotation", None)]
+        kinds, pending = [], [getattr(cls.model_fields.get(key), "annotation", None)]
         while pending:
-            one = pending.pop(0)
-            if isinstance(one, type) and issubclass(one, Part) and "kind" in one.model_fields:
-                found.append(str(one.model_fields["kind"].default))
-            pending += get_args(one)
-        return found or ["a kind"]
+            form = pending.pop(0)
+            if isinstance(form, type) and issubclass(form, Part) and "kind" in form.model_fields:
+                kinds.append(str(form.model_fields["kind"].default))
+            pending += get_args(form)
+        return kinds or ["a kind"]
 
     @classmethod
     def _meaning(cls, key: str) -> str:
@@ -238,12 +238,12 @@ class Part(BaseModel, metaclass=PartType):
 
     def _fill(self, **values: Any) -> None:
         """Set what the user did not give; only while the part is being made."""
-        for found in self.__dict__.keys() - type(self).model_fields.keys():
-            del self.__dict__[found]  # a cached property, worked out without these values
+        for name in self.__dict__.keys() - type(self).model_fields.keys():
+            del self.__dict__[name]  # a cached property, worked out without these values
         self.__dict__.update(values)
 
 
-def worked_out(part: Part, key: str, make: Callable[[], Made]) -> Made:
+def cached_on(part: Part, key: str, make: Callable[[], Result]) -> Result:
     """What follows from a part, kept with it as a cached property is: a part is immutable.
 
     Parameters
@@ -255,11 +255,11 @@ def worked_out(part: Part, key: str, make: Callable[[], Made]) -> Made:
     make : callable
         Works it out.
     """
-    kept = part.__dict__
-    if key not in kept:
-        kept[key] = make()
-    made: Made = kept[key]
-    return made
+    attributes = part.__dict__
+    if key not in attributes:
+        attributes[key] = make()
+    value: Result = attributes[key]
+    return value
 
 
 def _or_list(schema: dict[str, Any]) -> None:
@@ -333,8 +333,8 @@ def _in_short(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(map(str, value)) or "none"
     if isinstance(value, tuple):
-        whole = ", ".join(_in_short(piece) for piece in value)
-        return f"[{whole}]" if len(whole) <= _ONE_LINE else f"{len(value)} values"
+        joined = ", ".join(_in_short(piece) for piece in value)
+        return f"[{joined}]" if len(joined) <= _ONE_LINE else f"{len(value)} values"
     return str(value)
 
 
@@ -410,19 +410,19 @@ def merged(faults: list[InitErrorDetails]) -> ValidationError:
     return ValidationError.from_exception_data("description", faults)
 
 
-def fault(location: Location, found: str, expected: str, help_: str) -> InitErrorDetails:
+def fault(location: Location, actual: str, expected: str, help_: str) -> InitErrorDetails:
     """Describe one error below the part that is being checked."""
-    return InitErrorDetails(type=problem(found, expected, help_), loc=location, input=None)
+    return InitErrorDetails(type=problem(actual, expected, help_), loc=location, input=None)
 
 
-def text_fault(location: Location, words: Sequence[str], place: tuple[int, int] | None) -> InitErrorDetails:
-    """Describe an error inside of a text; `words`: found, expected, help; `place`: line and column in it."""
-    found, expected, help_ = words
-    context: dict[str, Any] = {"found": found, "expected": expected, "help": help_}
-    if place is not None:
-        line, column = place
+def text_fault(location: Location, words: Sequence[str], where: tuple[int, int] | None) -> InitErrorDetails:
+    """Describe an error inside of a text; `words`: found, expected, help; `where`: line and column."""
+    actual, expected, help_ = words
+    context: dict[str, Any] = {"found": actual, "expected": expected, "help": help_}
+    if where is not None:
+        line, column = where
         context |= {"text_line": line, "column": column}
-        context["found"] = f"{found} ({f'line {line}, ' if line > 1 else ''}column {column} of the text)"
+        context["found"] = f"{actual} ({f'line {line}, ' if line > 1 else ''}column {column} of the text)"
     return InitErrorDetails(type=text_problem(context), loc=location, input=None)
 
 
@@ -442,11 +442,11 @@ def insist(*faults: InitErrorDetails) -> None:
         refuse(*faults)
 
 
-def _choice(found: str, options: str) -> PydanticCustomError:
+def _choice(actual: str, options: str) -> PydanticCustomError:
     """Make the error of a word that is none of the options."""
     words = options.replace("'", "").replace(" or ", ", ").split(", ") if options else ["a kind"]
-    help_ = did_you_mean(found.removeprefix("kind: ").strip("'"), words)
-    return problem(found, f"one of {', '.join(words)}" if len(words) > 1 else words[0].lower(), help_)
+    help_ = did_you_mean(actual.removeprefix("kind: ").strip("'"), words)
+    return problem(actual, f"one of {', '.join(words)}" if len(words) > 1 else words[0].lower(), help_)
 
 
 def _lowered(message: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
-from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper, fields_of
 from mascarin.building.parts.air.measured_values import Driven
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.air.ventilation import VentilationUnit
@@ -15,9 +15,9 @@ from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 
 
-def schedule_of(part: Any, places: Places) -> Json:
+def schedule_of(part: Any, positions: Positions) -> Json:
     """Channel of the schedule of a part."""
-    return {"schedule": None if part.schedule is None else places[part.schedule]}
+    return {"schedule": None if part.schedule is None else positions[part.schedule]}
 
 
 def control_of(building: Description, part: Any) -> Json:
@@ -25,31 +25,33 @@ def control_of(building: Description, part: Any) -> Json:
     return {"control": None if part.control is None else list(building.controls).index(part.control)}
 
 
-def driven(part: Driven, key: str, places: Places, ids: Ids) -> Json:
+def driven(part: Driven, key: str, positions: Positions, ids: Ids) -> Json:
     """Describe a power or flow: a number with its schedule, or a factor with the channel of its column."""
     if part.course is None:
-        return {key: ids(key), **schedule_of(part, places)}
-    return {key: ids("factor"), "schedule": places[part.course.name]}
+        return {key: ids(key), **schedule_of(part, positions)}
+    return {key: ids("factor"), "schedule": positions[part.course.name]}
 
 
-def set_point(point: SetPoint, places: Places, ids: Ids) -> Json:
+def set_point(point: SetPoint, positions: Positions, ids: Ids) -> Json:
     """Describe a temperature that is a number, a schedule or a column."""
     if point.temperature is not None:
         return {"kind": "constant", "temperature": ids("temperature")}
-    return {"kind": "scheduled", "channel": places[str(point.course)]}
+    return {"kind": "scheduled", "channel": positions[str(point.course)]}
 
 
-def describe_air_path(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
+def describe_air_path(
+    building: Description, positions: Positions, name: str, path: AirPath, ids: Ids
+) -> Json:
     """Describe the air that two zones exchange, or that flows from one to the other."""
     first, second = _zones(building, path)
     ends = {"from": first, "to": second} if path.one_way else {"between": [first, second]}
-    return {"name": name, **ends, **driven(path, "flow", places, ids)}
+    return {"name": name, **ends, **driven(path, "flow", positions, ids)}
 
 
-def describe_door(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
+def describe_door(building: Description, positions: Positions, name: str, path: AirPath, ids: Ids) -> Json:
     """Describe a door between two zones."""
     written = {"name": name, "between": list(_zones(building, path))}
-    return {**written, **fields_of(path.door, ids, "door."), **schedule_of(path, places)}
+    return {**written, **fields_of(path.door, ids, "door."), **schedule_of(path, positions)}
 
 
 def _zones(building: Description, path: AirPath) -> tuple[int, int]:
@@ -57,44 +59,48 @@ def _zones(building: Description, path: AirPath) -> tuple[int, int]:
     return first, second
 
 
-def describe_unit(building: Description, places: Places, name: str, unit: VentilationUnit, ids: Ids) -> Json:
+def describe_unit(
+    building: Description, positions: Positions, name: str, unit: VentilationUnit, ids: Ids
+) -> Json:
     """Describe a ventilation unit."""
     zones = list(building.zones)
 
     def flows(section: str) -> list[Json]:
         return [
-            {"zone": zones.index(zone), **driven(flow, "flow", places, deeper(ids, f"{section}.{zone}"))}
+            {"zone": zones.index(zone), **driven(flow, "flow", positions, deeper(ids, f"{section}.{zone}"))}
             for zone, flow in getattr(unit, section).items()
         ]
 
-    given = unit.temperature
+    supply = unit.temperature
     return {
         "name": name,
         "supply": flows("supply"),
         "exhaust": flows("exhaust"),
-        "temperature": None if given is None else set_point(given, places, deeper(ids, "temperature")),
+        "temperature": None if supply is None else set_point(supply, positions, deeper(ids, "temperature")),
         "recovery": None if unit.recovery is None else ids("recovery"),
     }
 
 
-def describe_opening(building: Description, places: Places, name: str, opening: Opening, ids: Ids) -> Json:
+def describe_opening(
+    building: Description, positions: Positions, name: str, opening: Opening, ids: Ids
+) -> Json:
     """Describe an opening to outdoors."""
     zone = list(building.zones).index(opening.zone)
     written = {"name": name, "zone": zone, **fields_of(opening, ids)}
-    return {**written, **schedule_of(opening, places), **control_of(building, opening)}
+    return {**written, **schedule_of(opening, positions), **control_of(building, opening)}
 
 
-def describe_bridges(building: Description, places: Places, ids: Mapping[str, int]) -> list[Json]:
+def describe_bridges(building: Description, positions: Positions, ids: Mapping[str, int]) -> list[Json]:
     """Describe the thermal bridges of all zones."""
     return [
-        _bridge(building, places, (zone, name), bridge, below(ids, f"zones.{zone}.thermal_bridges.{name}"))
+        _bridge(building, positions, (zone, name), bridge, below(ids, f"zones.{zone}.thermal_bridges.{name}"))
         for zone, part in building.zones.items()
         for name, bridge in part.thermal_bridges.items()
     ]
 
 
 def _bridge(
-    building: Description, places: Places, at: tuple[str, str], bridge: ThermalBridge, ids: Ids
+    building: Description, positions: Positions, names: tuple[str, str], bridge: ThermalBridge, ids: Ids
 ) -> Json:
     zones = list(building.zones)
     to: Json = {"kind": bridge.faces}
@@ -103,11 +109,11 @@ def _bridge(
     elif bridge.ground is not None:
         to |= fields_of(bridge.ground, ids, "ground.")
     elif bridge.measured is not None:
-        to["channel"] = places[temperature_course(bridge.measured).name]
+        to["channel"] = positions[temperature_course(bridge.measured).name]
     linear = bridge.psi is not None
     return {
-        "name": ".".join(at),
-        "zone": zones.index(at[0]),
+        "name": ".".join(names),
+        "zone": zones.index(names[0]),
         "coefficient": ids("psi" if linear else "chi"),
         "size": ids("length" if linear else "number"),
         "to": to,

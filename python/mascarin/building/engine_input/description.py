@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from mascarin._io.memory import uncollected
 from mascarin.building.base.number import Interval
-from mascarin.building.base.part import worked_out
+from mascarin.building.base.part import cached_on
 from mascarin.building.engine_input.air import (
     describe_air_path,
     describe_bridges,
@@ -23,7 +23,7 @@ from mascarin.building.engine_input.air import (
 )
 from mascarin.building.engine_input.channels import channels
 from mascarin.building.engine_input.humidity import describe_humidity
-from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, each, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.mesh import Mesh, choose
 from mascarin.building.engine_input.series_users import courses
@@ -92,13 +92,18 @@ def describe(
 
     The last description is kept with the building: its check and its run need the same one.
     """
-    kept = worked_out(building, "_described", dict[Any, EngineDescription])
+    stored = cached_on(building, "_described", dict[Any, EngineDescription])
     key = (step_seconds, tuple(sorted((ranges or {}).items())))
-    if key not in kept:
-        kept.clear()
-        kept[key] = _describe(building, step_seconds, ranges or {})
-    found = kept[key]
-    return replace(found, paths=list(found.paths), values=found.values.copy(), channels=list(found.channels))
+    if key not in stored:
+        stored.clear()
+        stored[key] = _describe(building, step_seconds, ranges or {})
+    described = stored[key]
+    return replace(
+        described,
+        paths=list(described.paths),
+        values=described.values.copy(),
+        channels=list(described.channels),
+    )
 
 
 @uncollected()
@@ -110,16 +115,16 @@ def _describe(
     ids = {leaf.path: index for index, leaf in enumerate(leaves)}
     columns = channels(building)
     schedules = list(courses(building))
-    places = {name: len(columns) + k for k, name in enumerate(schedules)}
+    positions = {name: len(columns) + k for k, name in enumerate(schedules)}
     columns = [*columns, *(schedule_channel(name) for name in schedules)]
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),
-        **_constructions(building, mesh, ids, places),
-        "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
-        **_air(building, ids, places),
-        "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
-        **describe_vents(building, places, ids),
+        **_constructions(building, mesh, ids, positions),
+        "zones": each(building.zones, "zones", ids, partial(describe_zone, building, positions)),
+        **_air(building, ids, positions),
+        "openings": each(building.openings, "openings", ids, partial(describe_opening, building, positions)),
+        **describe_vents(building, positions, ids),
         "surfaces": _obstructed(
             building,
             [
@@ -127,14 +132,14 @@ def _describe(
                     building.surfaces,
                     "surfaces",
                     ids,
-                    partial(describe_surface, building, (columns, places), ids),
+                    partial(describe_surface, building, (columns, positions), ids),
                 ),
                 *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
                 *(describe_frame(building, columns, name, ids) for name in framed(building)),
             ],
         ),
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
-        "humidity": describe_humidity(building, places, ids),
+        "humidity": describe_humidity(building, positions, ids),
         "shades": [corners(shade.vertices) for shade in building.shades.values()],
         "channels": columns,
     }
@@ -149,7 +154,7 @@ def _describe(
     )
 
 
-def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int], places: Places) -> Json:
+def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int], positions: Positions) -> Json:
     """Materials and constructions, those of glazings, frames and blinds included."""
     return {
         "materials": [
@@ -171,39 +176,39 @@ def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int], pl
                 describe_frame_construction(name, len(building.materials) + index)
                 for index, name in enumerate(framed(building))
             ),
-            *(describe_blinded_glazing(building, places, ids, name) for name in shaded(building)),
+            *(describe_blinded_glazing(building, positions, ids, name) for name in shaded(building)),
         ],
     }
 
 
-def _air(building: Description, ids: Mapping[str, int], places: Places) -> Json:
+def _air(building: Description, ids: Mapping[str, int], positions: Positions) -> Json:
     """Air between zones, mechanical ventilation and thermal bridges."""
     paths = building.air_paths
 
     def listed(chosen: Callable[[AirPath], bool], write: Callable[..., Json]) -> list[Json]:
         some = {name: path for name, path in paths.items() if chosen(path)}
-        return each(some, "air_paths", ids, partial(write, building, places))
+        return each(some, "air_paths", ids, partial(write, building, positions))
 
     return {
         "air_paths": listed(lambda path: path.door is None and not path.one_way, describe_air_path),
         "directed_flows": listed(lambda path: path.one_way, describe_air_path),
         "doors": listed(lambda path: path.door is not None, describe_door),
         "ventilation_units": each(
-            building.ventilation_units, "ventilation_units", ids, partial(describe_unit, building, places)
+            building.ventilation_units, "ventilation_units", ids, partial(describe_unit, building, positions)
         ),
-        "thermal_bridges": describe_bridges(building, places, ids),
+        "thermal_bridges": describe_bridges(building, positions, ids),
     }
 
 
 def _obstructed(building: Description, written: list[Json]) -> list[Json]:
     """Surfaces, windows and frames with the surfaces in front of their sides."""
-    places = {name: place for place, name in enumerate(building.surfaces)}
+    indices = {name: index for index, name in enumerate(building.surfaces)}
     names = [*building.surfaces, *building.windows, *framed(building)]
     in_front = obstructions(building)
     for name, part in zip(names, written, strict=True):
         for side in ("outside", "inside"):
-            if others := in_front.get((name, side)):
-                part[side]["shaded_by"] = [places[other] for other in others]
+            if obstacles := in_front.get((name, side)):
+                part[side]["shaded_by"] = [indices[other] for other in obstacles]
     return written
 
 

@@ -10,7 +10,7 @@ from mascarin.building.parts.openings.window import Vertices
 
 Json = dict[str, Any]
 #: Position of the channel of each schedule.
-Places = Mapping[str, int]
+Positions = Mapping[str, int]
 #: Id of the number at a path.
 Ids = Callable[[str], int]
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
-from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Positions, corners, deeper, fields_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import Convection, Measured
@@ -16,8 +16,8 @@ from mascarin.building.parts.envelope.surface import Side, Surface
 
 def describe_surface(
     building: Description,
-    channels: tuple[list[str], Places],
-    every: Mapping[str, int],
+    channels: tuple[list[str], Positions],
+    all_ids: Mapping[str, int],
     name: str,
     surface: Surface,
     ids: Ids,
@@ -28,7 +28,7 @@ def describe_surface(
         "name": name,
         "construction": list(building.constructions).index(surface.construction),
         "area": ids("area"),
-        "openings": [every[f"windows.{window}.area"] for window in building.connections.windows_in(name)],
+        "openings": [all_ids[f"windows.{window}.area"] for window in building.connections.windows_in(name)],
         "vertices": corners(surface.vertices),
         "tilt": ids("tilt"),
         "azimuth": ids("azimuth"),
@@ -37,9 +37,9 @@ def describe_surface(
     }
 
 
-def _side(side: Side, zones: list[str], channels: tuple[list[str], Places], ids: Ids) -> Json:
-    columns, places = channels
-    written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, places, ids)}
+def _side(side: Side, zones: list[str], channels: tuple[list[str], Positions], ids: Ids) -> Json:
+    columns, positions = channels
+    written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, positions, ids)}
     if side.convection is not None:
         written["convection"] = describe_convection(side.convection, columns, ids)
     if side.longwave is not None:
@@ -52,11 +52,11 @@ def _side(side: Side, zones: list[str], channels: tuple[list[str], Places], ids:
     return written
 
 
-def _facing(side: Side, zones: list[str], columns: list[str], places: Places, ids: Ids) -> Json:
+def _facing(side: Side, zones: list[str], columns: list[str], positions: Positions, ids: Ids) -> Json:
     if side.zone is not None:
         return {"kind": "zone", "zone": zones.index(side.zone)}
     if isinstance(side.measured, tuple):
-        return {"kind": "measured", "channel": places[temperature_course(side.measured).name]}
+        return {"kind": "measured", "channel": positions[temperature_course(side.measured).name]}
     if side.measured is not None:
         return {"kind": "measured", "channel": columns.index(side.measured)}
     if side.scheduled is not None:

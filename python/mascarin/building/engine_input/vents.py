@@ -6,19 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.engine_input.air import control_of, schedule_of
-from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper, each
+from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper, each
 from mascarin.building.parts.air.vent import LowRise, PressureTable, Vent, VentControl
 from mascarin.building.parts.description import Description
 
 
-def describe_vents(building: Description, places: Places, ids: Mapping[str, int]) -> Json:
+def describe_vents(building: Description, positions: Positions, ids: Mapping[str, int]) -> Json:
     """Describe all openings of the pressure network, and all controls."""
 
-    def vent(name: str, part: Vent, own: Ids) -> Json:
-        return _vent(building, places, (name, part), own, ids)
+    def vent(name: str, part: Vent, part_ids: Ids) -> Json:
+        return _vent(building, positions, (name, part), part_ids, ids)
 
-    def control(name: str, part: VentControl, own: Ids) -> Json:
-        return _control(building, places, (name, part), own)
+    def control(name: str, part: VentControl, part_ids: Ids) -> Json:
+        return _control(building, positions, (name, part), part_ids)
 
     return {
         "vents": each(building.vents, "vents", ids, vent),
@@ -27,56 +27,62 @@ def describe_vents(building: Description, places: Places, ids: Mapping[str, int]
 
 
 def _vent(
-    building: Description, places: Places, named: tuple[str, Vent], own: Ids, every: Mapping[str, int]
+    building: Description,
+    positions: Positions,
+    named: tuple[str, Vent],
+    part_ids: Ids,
+    all_ids: Mapping[str, int],
 ) -> Json:
     name, vent = named
     zones = [list(building.zones).index(zone) for zone in vent.ends]
-    numbers = {key: own(key) for key in ("area", "elevation", "discharge", "exponent")}
+    numbers = {key: part_ids(key) for key in ("area", "elevation", "discharge", "exponent")}
     written: Json = {
         "name": name,
         "zone": zones[0],
         "to": zones[1] if vent.between else None,
         **numbers,
-        "height": None if vent.height is None else own("height"),
-        **schedule_of(vent, places),
+        "height": None if vent.height is None else part_ids("height"),
+        **schedule_of(vent, positions),
         **control_of(building, vent),
     }
     if isinstance(vent.pressure, LowRise | PressureTable):
-        written["wind"] = _wind(vent, vent.pressure, own, every)
+        written["wind"] = _wind(vent, vent.pressure, part_ids, all_ids)
     return written
 
 
-def _wind(vent: Vent, pressure: LowRise | PressureTable, own: Ids, every: Mapping[str, int]) -> Json:
-    at = deeper(own, "pressure")
+def _wind(vent: Vent, pressure: LowRise | PressureTable, part_ids: Ids, all_ids: Mapping[str, int]) -> Json:
+    inner_ids = deeper(part_ids, "pressure")
     azimuth: int | None = None
     if vent.azimuth is not None:
-        azimuth = own("azimuth")
+        azimuth = part_ids("azimuth")
     elif vent.surface is not None:
-        azimuth = below(every, f"surfaces.{vent.surface}")("azimuth")
+        azimuth = below(all_ids, f"surfaces.{vent.surface}")("azimuth")
     law: dict[str, Any] = {"kind": pressure.kind}
     if isinstance(pressure, LowRise):
-        law["side_ratio"] = at("side_ratio")
+        law["side_ratio"] = inner_ids("side_ratio")
     else:
         law["coefficients"] = [float(number) for number in pressure.coefficients]
     return {
         "azimuth": azimuth,
-        "height": own("elevation") if pressure.height is None else at("height"),
-        "shelter": at("shelter"),
+        "height": part_ids("elevation") if pressure.height is None else inner_ids("height"),
+        "shelter": inner_ids("shelter"),
         "pressure": law,
     }
 
 
-def _control(building: Description, places: Places, named: tuple[str, VentControl], own: Ids) -> Json:
+def _control(
+    building: Description, positions: Positions, named: tuple[str, VentControl], part_ids: Ids
+) -> Json:
     name, control = named
     written: Json = {"name": name, "zone": list(building.zones).index(control.zone)}
     for condition, _ in control.conditions:
-        at = deeper(own, condition)
-        band = {"open": at("open"), "close": at("close")}
+        inner_ids = deeper(part_ids, condition)
+        band = {"open": inner_ids("open"), "close": inner_ids("close")}
         if condition == "rain" and control.rain is not None:
-            written[condition] = {"channel": places[control.rain.course.name], "band": band}
+            written[condition] = {"channel": positions[control.rain.course.name], "band": band}
         else:
             written[condition] = band
     for key in ("minimum_open_time", "minimum_closed_time"):
         if getattr(control, key) is not None:
-            written[key] = own(key)
+            written[key] = part_ids(key)
     return written

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.engine_input.air import schedule_of
-from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, deeper, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, deeper, fields_of
 from mascarin.building.engine_input.surfaces import describe_convection
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.openings.glazing import (
@@ -94,23 +94,25 @@ def _angular(table: Angular, ids: Ids) -> Json:
 
 
 def describe_window(
-    building: Description, columns: list[str], every: Mapping[str, int], name: str, window: Window, ids: Ids
+    building: Description, columns: list[str], all_ids: Mapping[str, int], name: str, window: Window, ids: Ids
 ) -> Json:
     """Describe the glass of a window as a surface."""
     glass = building.glazings[window.glazing]
     path = f"glazings.{window.glazing}."
     if isinstance(glass, SimpleGlazing):
-        emissivity = [every[f"{path}emissivity"]] * 2
+        emissivity = [all_ids[f"{path}emissivity"]] * 2
     else:
         last = len(glass.panes) - 1
-        outer = both_sides(glass.panes[0].emissivity, lambda key: every[f"{path}panes.0.{key}"], "emissivity")
+        outer = both_sides(
+            glass.panes[0].emissivity, lambda key: all_ids[f"{path}panes.0.{key}"], "emissivity"
+        )
         inner = both_sides(
-            glass.panes[last].emissivity, lambda key: every[f"{path}panes.{last}.{key}"], "emissivity"
+            glass.panes[last].emissivity, lambda key: all_ids[f"{path}panes.{last}.{key}"], "emissivity"
         )
         emissivity = [outer[0], inner[1]]
     if window.blind is not None:
         emissivity[0 if window.blind.position == "outside" else 1] = ids("blind.emissivity")
-    written = _glazed(building, columns, every, window, ids, emissivity) | {
+    written = _glazed(building, columns, all_ids, window, ids, emissivity) | {
         "name": name,
         "construction": _construction_of(building, name, window),
         "cavity_height": ids("cavity_height"),
@@ -134,26 +136,26 @@ def shaded(building: Description) -> list[str]:
 
 
 def describe_blinded_glazing(
-    building: Description, places: Places, every: Mapping[str, int], name: str
+    building: Description, positions: Positions, all_ids: Mapping[str, int], name: str
 ) -> Json:
     """Describe the glazing of a window with its blind as a construction."""
-    window, ids = building.windows[name], below(every, f"windows.{name}.blind")
+    window, ids = building.windows[name], below(all_ids, f"windows.{name}.blind")
     written = describe_glazing(
-        f"{name}.glass", building.glazings[window.glazing], below(every, f"glazings.{window.glazing}")
+        f"{name}.glass", building.glazings[window.glazing], below(all_ids, f"glazings.{window.glazing}")
     )
     blind: Json = {"inside": window.blind is not None and window.blind.position == "inside"}
     blind |= {key: ids(key) for key in ("transmittance", "reflectance", "resistance", "cover")}
-    blind |= schedule_of(window.blind, places)
+    blind |= schedule_of(window.blind, positions)
     if window.blind is not None and window.blind.radiation is not None:
         blind["radiation"] = ids("radiation")
     return written | {"blind": blind}
 
 
-def describe_frame(building: Description, columns: list[str], name: str, every: Mapping[str, int]) -> Json:
+def describe_frame(building: Description, columns: list[str], name: str, all_ids: Mapping[str, int]) -> Json:
     """Describe the frame of a window as a surface."""
-    ids = below(every, f"windows.{name}")
+    ids = below(all_ids, f"windows.{name}")
     window = building.windows[name]
-    written = _glazed(building, columns, every, window, ids, [ids("frame.emissivity")] * 2)
+    written = _glazed(building, columns, all_ids, window, ids, [ids("frame.emissivity")] * 2)
     written["outside"]["absorptance"] = written["inside"]["absorptance"] = ids("frame.absorptance")
     return written | {
         "name": f"{name}.frame",
@@ -171,14 +173,14 @@ def describe_frame_construction(name: str, material: int) -> Json:
 def _glazed(
     building: Description,
     columns: list[str],
-    every: Mapping[str, int],
+    all_ids: Mapping[str, int],
     window: Window,
     ids: Ids,
     emissivity: list[int],
 ) -> Json:
     """Describe what glass and frame of a window have in common."""
     wall = building.surfaces[window.surface]
-    direction = {key: every[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
+    direction = {key: all_ids[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
     zones = list(building.zones)
     beyond: Json = {"kind": "outdoors"}
     if wall.outside.zone is not None:

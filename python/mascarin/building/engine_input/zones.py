@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mascarin.building.engine_input.air import driven, schedule_of, set_point
-from mascarin.building.engine_input.ids import Ids, Json, Places, deeper, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Positions, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
 from mascarin.building.parts.air.zone import FloorSun, GivenSun, IdealLoads, SunShares, Zone
 from mascarin.building.parts.description import Description
@@ -13,21 +13,21 @@ from mascarin.building.parts.zone_surfaces import closed, floors, surface_names
 from mascarin.errors import InputError
 
 
-def describe_zone(building: Description, places: Places, name: str, zone: Zone, ids: Ids) -> Json:
+def describe_zone(building: Description, positions: Positions, name: str, zone: Zone, ids: Ids) -> Json:
     """Describe a zone."""
     gains = [
         {
             "name": key,
-            **driven(part, "power", places, deeper(ids, f"gains.{key}")),
+            **driven(part, "power", positions, deeper(ids, f"gains.{key}")),
             "radiative": ids(f"gains.{key}.radiative"),
         }
         for key, part in zone.gains.items()
     ]
     ventilation = [
-        {"name": key, **fields_of(part, ids, f"ventilation.{key}."), **schedule_of(part, places)}
+        {"name": key, **fields_of(part, ids, f"ventilation.{key}."), **schedule_of(part, positions)}
         for key, part in zone.ventilation.items()
     ]
-    loads = {which: _ideal_loads(loads, places, ids, which) for which, loads in zone.loads.items()}
+    loads = {which: _ideal_loads(loads, positions, ids, which) for which, loads in zone.loads.items()}
     return {
         "name": name,
         "gains": gains,
@@ -51,18 +51,18 @@ def _infiltration(zone: Zone, ids: Ids) -> Json:
     return written
 
 
-def _ideal_loads(loads: IdealLoads, places: Places, ids: Ids, which: str) -> Json:
+def _ideal_loads(loads: IdealLoads, positions: Positions, ids: Ids, which: str) -> Json:
     return {
-        "setpoint": set_point(loads.setpoint, places, deeper(ids, f"{which}.setpoint")),
+        "setpoint": set_point(loads.setpoint, positions, deeper(ids, f"{which}.setpoint")),
         **fields_of(loads, ids, f"{which}."),
-        **schedule_of(loads, places),
+        **schedule_of(loads, positions),
     }
 
 
 def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
-    seen = building.connections.of(name)
+    surfaces = building.connections.of(name)
     if isinstance(zone.sun, FloorSun):
-        return {"kind": "floor", "floor": floors(seen)}
+        return {"kind": "floor", "floor": floors(surfaces)}
     if not isinstance(zone.sun, GivenSun):
         return {"kind": "area" if zone.sun is None else zone.sun.kind}
 
@@ -71,7 +71,7 @@ def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
             ids(f"{path}.shares.{item.name}")
             if item.name in part.shares and item.surface is not None
             else None
-            for item in seen
+            for item in surfaces
         ]
         return {"faces": faces, "lost": ids(f"{path}.lost")}
 
@@ -89,31 +89,32 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
     InputError
         If the vertices do not enclose a convex zone.
     """
-    seen = building.connections.of(zone)
-    given = building.zones[zone].view_factors
-    if given is not None:
-        names = surface_names(seen)
-        areas = [item.area for item in seen]
+    surfaces = building.connections.of(zone)
+    factors = building.zones[zone].view_factors
+    if factors is not None:
+        names = surface_names(surfaces)
+        areas = [item.area for item in surfaces]
         one_way = [
-            [a * given[row].get(column, 0.0) for column in names] for a, row in zip(areas, names, strict=True)
+            [a * factors[row].get(column, 0.0) for column in names]
+            for a, row in zip(areas, names, strict=True)
         ]
         both_ways = zip(one_way, zip(*one_way, strict=True), strict=True)
         # Reciprocity: A_i F_ij = A_j F_ji, as far as the rounding of the given factors allows.
-        return [[0.5 * (there + back) for there, back in zip(*pair, strict=True)] for pair in both_ways]
-    if not closed(seen):
+        return [[0.5 * (forth + back) for forth, back in zip(*pair, strict=True)] for pair in both_ways]
+    if not closed(surfaces):
         return []
     # Glass and frame of a window are in one polygon and do not exchange radiation.
-    outlines = {item.name: item.polygon for item in seen if item.polygon is not None}
+    outlines = {item.name: item.polygon for item in surfaces if item.polygon is not None}
     polygons = list(outlines.values())
 
     try:
         weights = closed_exchange_areas(polygons)
     except InputError as error:
         raise InputError(f"zones.{zone}: {error}") from None
-    place_of = {name: place for place, name in enumerate(outlines)}
-    places = [place_of[item.name] for item in seen]
-    shares = [item.share for item in seen]
+    index_of = {name: index for index, name in enumerate(outlines)}
+    indices = [index_of[item.name] for item in surfaces]
+    shares = [item.share for item in surfaces]
     return [
-        [a * b * float(weights[i, j]) for j, b in zip(places, shares, strict=True)]
-        for i, a in zip(places, shares, strict=True)
+        [a * b * float(weights[i, j]) for j, b in zip(indices, shares, strict=True)]
+        for i, a in zip(indices, shares, strict=True)
     ]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from mascarin.building.base.error_texts import Line, Place
+from mascarin.building.base.error_texts import KeyPath, Line
 from mascarin.errors import InputError
 
 EXTENDS: Final = "extends"
@@ -21,7 +21,7 @@ SET: Final = "set"
 DEEPEST: Final = 100
 """Files that may extend each other in a row."""
 
-Read = Callable[[Path], tuple[dict[str, Any], dict[Place, int]]]
+Read = Callable[[Path], tuple[dict[str, Any], dict[KeyPath, int]]]
 """Plain values of one file, and the line of each key and value."""
 
 
@@ -42,7 +42,7 @@ class Inherited:
     """
 
     plain: dict[str, Any]
-    lines: dict[Place, int]
+    lines: dict[KeyPath, int]
     files: tuple[Path, ...]
     values: dict[str, tuple[Any, int]] = field(default_factory=dict)
 
@@ -77,7 +77,7 @@ def inherited(
     """
     plain, line_of = read(file)
     named = {line: Line(line, str(file)) for line in set(line_of.values())}
-    lines: dict[Place, int] = {position: named[line] for position, line in line_of.items()}
+    lines: dict[KeyPath, int] = {position: named[line] for position, line in line_of.items()}
     base = plain.pop(EXTENDS, None)
     if base is None:
         return Inherited(plain, lines, (file,))
@@ -104,12 +104,12 @@ def inherited(
     return Inherited(merged, where, (file, *above.files), remaining | values)
 
 
-def _line_text(lines: Mapping[Place, int], path: Place) -> str:
+def _line_text(lines: Mapping[KeyPath, int], path: KeyPath) -> str:
     line = lines.get(path, 0)
     return f"{getattr(line, 'file', '')}:{line}"
 
 
-def _base(base: Any, file: Path, lines: Mapping[Place, int], chain: tuple[Path, ...]) -> Path:
+def _base(base: Any, file: Path, lines: Mapping[KeyPath, int], chain: tuple[Path, ...]) -> Path:
     """The file of a base, counted from the folder of the file that extends it."""
     where = f"{_line_text(lines, (EXTENDS,))}: {EXTENDS}"
     if not isinstance(base, str) or not base.strip():
@@ -136,9 +136,9 @@ def _base(base: Any, file: Path, lines: Mapping[Place, int], chain: tuple[Path, 
 def _merged(
     base: Mapping[str, Any],
     stated: Mapping[str, Any],
-    path: Place,
-    where: dict[Place, int],
-    lines: Mapping[Place, int],
+    path: KeyPath,
+    where: dict[KeyPath, int],
+    lines: Mapping[KeyPath, int],
     *,
     remove: bool,
 ) -> dict[str, Any]:

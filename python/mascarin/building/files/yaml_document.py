@@ -14,7 +14,7 @@ from mascarin._io.arguments import require_type
 from mascarin._io.identity import DESCRIPTION
 from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
-from mascarin.building.base.error_texts import COLUMN, Place, explained
+from mascarin.building.base.error_texts import COLUMN, KeyPath, explained
 from mascarin.building.base.part import Part
 from mascarin.building.files.inheritance import EXTENDS, Inherited, inherited
 from mascarin.building.files.yaml_nodes import compose, number_of
@@ -96,7 +96,7 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
         Keys that name files.
     """
 
-    def one(file: Path) -> tuple[dict[str, Any], dict[Place, int]]:
+    def one(file: Path) -> tuple[dict[str, Any], dict[KeyPath, int]]:
         try:
             text = require_regular(file, f"a YAML file of {what}", DESCRIPTION).read_text("utf-8")
         except (OSError, UnicodeDecodeError) as error:
@@ -135,7 +135,7 @@ def plain(text: str, name: str) -> Any:
     return _Document(name).read(text)
 
 
-def lines(path: Path) -> tuple[Mapping[Place, int], tuple[Path, ...]]:
+def lines(path: Path) -> tuple[Mapping[KeyPath, int], tuple[Path, ...]]:
     """Line of each key and value of a YAML file and the files that it extends, by place; and these files."""
     document = merged(path, "a description", blanks=True)
     return document.lines, document.files
@@ -152,7 +152,7 @@ class _Document:
 
     name: str
     blanks: bool = False
-    lines: dict[Place, int] = field(default_factory=dict)
+    lines: dict[KeyPath, int] = field(default_factory=dict)
     faults: list[tuple[int, str]] = field(default_factory=list)
     values: int = 0
     most_values: int = MOST_VALUES
@@ -206,7 +206,7 @@ class _Document:
             "a description, whose values are a few levels deep"
         )
 
-    def _value(self, node: Any, path: Place, above: frozenset[int]) -> Any:
+    def _value(self, node: Any, path: KeyPath, above: frozenset[int]) -> Any:
         self.values += 1
         if self.values > self.most_values:
             raise InputError(
@@ -234,7 +234,7 @@ class _Document:
             return [self._value(item, (*path, index), inside) for index, item in enumerate(node.value)]
         return self._scalar(node, path)
 
-    def _items(self, node: Any, path: Place, inside: frozenset[int]) -> Iterator[tuple[str, Any]]:
+    def _items(self, node: Any, path: KeyPath, inside: frozenset[int]) -> Iterator[tuple[str, Any]]:
         line_of_key: dict[str, int] = {}
         for key_node, value_node in node.value:
             line, key = key_node.start_mark.line, key_node.value
@@ -257,7 +257,7 @@ class _Document:
             self.lines[(*path, key)] = line + 1
             yield key, self._value(value_node, (*path, key), inside)
 
-    def _scalar(self, node: Any, path: Place) -> Any:
+    def _scalar(self, node: Any, path: KeyPath) -> Any:
         kind = node.tag.removeprefix("tag:yaml.org,2002:")
         match kind:
             case "null" if self.blanks:
@@ -279,7 +279,7 @@ class _Document:
                 )
                 return None
 
-    def _number(self, node: Any, path: Place, kind: str) -> Any:
+    def _number(self, node: Any, path: KeyPath, kind: str) -> Any:
         """A number or a truth value; a tag can stand on a text that is neither."""
         line = node.start_mark.line
         if kind == "int" and len(node.value) > MOST_DIGITS:
@@ -298,7 +298,7 @@ class _Document:
             self._refuse(line, _text(path), actual, "plain values", "Remove the tag.")
             return None
 
-    def _words(self, node: Any, path: Place) -> str | None:
+    def _words(self, node: Any, path: KeyPath) -> str | None:
         """A text; half of a surrogate pair, which an escape can write, is no character."""
         text: str = node.value
         if _HALVES.search(text):
@@ -314,5 +314,5 @@ def _extends(root: Any) -> bool:
     return any(isinstance(pair, tuple) and pair[0].value == EXTENDS for pair in pairs)
 
 
-def _text(path: Place) -> str:
+def _text(path: KeyPath) -> str:
     return ".".join(map(str, path))

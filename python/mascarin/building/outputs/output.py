@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from mascarin.building.base.part import worked_out
+from mascarin.building.base.part import cached_on
 from mascarin.building.outputs.kinds import KINDS, OutputKind, OutputName
 from mascarin.building.outputs.locations import Place, owners, places
 from mascarin.errors import InputError, did_you_mean
@@ -119,7 +119,7 @@ def outputs(building: Description) -> list[Output]:
 
     Those of a part stand in the order of the engine's table; those of its sides and layers side by side.
     """
-    return list(worked_out(building, "_outputs", lambda: list(_all_outputs(building))))
+    return list(cached_on(building, "_outputs", lambda: list(_all_outputs(building))))
 
 
 def _all_outputs(building: Description) -> Iterator[Output]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mascarin._io.listing import Listing
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.number import Number
-from mascarin.building.base.part import worked_out
+from mascarin.building.base.part import cached_on
 from mascarin.building.parameters.set_point_pairs import cut_ranges
 from mascarin.building.parameters.unused_parameters import without_effect
 from mascarin.errors import InputError, did_you_mean
@@ -113,7 +113,7 @@ def listed(entries: Iterable[Parameter]) -> Listing[Parameter]:
 
 def parameters(building: Description) -> list[Parameter]:
     """All numbers of a building, in the order of the description; the list must not be changed."""
-    return worked_out(building, "_numbers", lambda: _all_parameters(building))
+    return cached_on(building, "_numbers", lambda: _all_parameters(building))
 
 
 def _all_parameters(building: Description) -> list[Parameter]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mascarin.building.base.part import fault, worked_out
+from mascarin.building.base.part import cached_on, fault
 from mascarin.building.parts.defaults import outlines, shade_outlines, window_outlines
 from mascarin.building.parts.self_shading import SideName, listed, obstructions
 
@@ -43,7 +43,7 @@ def obstructed(building: Description) -> dict[SideName, list[str]]:
     >>> obstructed(box())
     {}
     """
-    return worked_out(building, "_obstructed", lambda: _obstructed(building))
+    return cached_on(building, "_obstructed", lambda: _obstructed(building))
 
 
 def _obstructed(building: Description) -> dict[SideName, list[str]]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from mascarin.building.base.part import worked_out
+from mascarin.building.base.part import cached_on
 from mascarin.building.geometry import InFront
 from mascarin.building.parts.defaults import outlines, shade_outlines, window_outlines
 
@@ -44,7 +44,7 @@ def obstructions(building: Description) -> dict[SideName, list[str]]:
     >>> obstructions(box())
     {}
     """
-    return worked_out(building, "_obstructions", lambda: _obstructions(building))
+    return cached_on(building, "_obstructions", lambda: _obstructions(building))
 
 
 def _obstructions(building: Description) -> dict[SideName, list[str]]:

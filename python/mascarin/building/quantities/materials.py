@@ -149,7 +149,7 @@ Continuity = Annotated[
         "Continuous derivatives of the liquid fraction",
         Fixed("chooses the polynomial"),
         Limits(at_least=1, at_most=2),
-        whole=True,
+        integer=True,
     ),
 ]
 CurveFraction = Annotated[
@@ -216,6 +216,6 @@ NodeCount = Annotated[
         "Number of finite volumes in the layer",
         Fixed("fixes the mesh"),
         Limits(at_least=1, at_most=1000),
-        whole=True,
+        integer=True,
     ),
 ]

@@ -57,7 +57,7 @@ def require_same_basis(basis: Sequence[object], other_basis: Sequence[object]) -
 
     Parameters
     ----------
-    some, others : sequence
+    basis, other_basis : sequence
         What an objective reads of two designs: names of outputs, and views from seats.
 
     Raises

@@ -21,11 +21,11 @@ from mascarin.design.variants.description import FILE_KEYS, DesignFile
 from mascarin.design.variants.variables import Choices, read_choices
 from mascarin.errors import InputError
 from mascarin.simulation.preparation.prepare import period
-from mascarin.study.inputs import Beside, find
-from mascarin.study.locations import Faults, Places
+from mascarin.study.file.inputs import Beside, find
+from mascarin.study.file.locations import Faults, Places
 from mascarin.tables.reading.files import file_hash
 from mascarin.weather import Climate
-from mascarin.weather.shipped import PREFIX, found
+from mascarin.weather.reading.shipped import PREFIX, found
 
 if TYPE_CHECKING:
     from mascarin.design.evaluation.objectives import AnyObjective

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 from mascarin.building.parameters.ties import spread
 from mascarin.design.evaluation.layers import LayerFacts
 from mascarin.design.evaluation.objective import column_of_part

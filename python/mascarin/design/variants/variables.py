@@ -19,7 +19,7 @@ from mascarin.materials import product, products
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.design.variants.description import DesignFile, Variable
-    from mascarin.study.locations import Faults, Places
+    from mascarin.study.file.locations import Faults, Places
 
 #: Thickest layer of a phase-change material. [m]
 MAX_PHASE_CHANGE_THICKNESS: Final = 0.2

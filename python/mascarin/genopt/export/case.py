@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from mascarin import __version__
-from mascarin._io import own_files
 from mascarin._io.regular import require_regular
-from mascarin.calibration.cost import Cost, CostName
-from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
+from mascarin._io.sealed import own_files
+from mascarin.calibration.base.cost import Cost, CostName
+from mascarin.calibration.base.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.simulation.preparation.engine_run import CompiledRun
 from mascarin.validation.observation import instants, means

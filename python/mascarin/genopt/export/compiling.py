@@ -11,11 +11,11 @@ from mascarin.building.reading import files_of
 from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
-from mascarin.study.inputs import Beside, find
+from mascarin.study.file.inputs import Beside, find
 from mascarin.tables.times import epoch_seconds
 
 if TYPE_CHECKING:
-    from mascarin.study.description import StudyFile
+    from mascarin.study.file.description import StudyFile
 
 
 def compiled(study: Path, saved: Path | None = None, *, allow_outside: bool = False) -> Case:
@@ -57,7 +57,12 @@ def compile_study(study: Study) -> Case:
     InputError
         A parameter or a sensor that cannot be used.
     """
-    problem, simulation, observation = study.problem(), study.short(), study.observation
+    context, inputs = study.context, study.context.inputs
+    problem, simulation, observation = (
+        context.problem(),
+        context.models.for_calibration(),
+        context.observation,
+    )
     for path, other in simulation.followers(problem.paths).items():
         raise InputError(
             f"{path}: found the same set point as {other}, which would follow it; expected set points that "
@@ -81,12 +86,12 @@ def compile_study(study: Study) -> Case:
         run=simulation.compiled,
         observed=observed,
         positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
-        instants=((observed_seconds - seconds[0]) / step)[np.flatnonzero(study.rows)],
+        instants=((observed_seconds - seconds[0]) / step)[np.flatnonzero(context.rows)],
         parameters=problem.parameters,
         sensors=problem.sensors,
-        cost=study.sought.cost,
+        cost=inputs.calibration_plan.cost,
         step=observation.interval,
-        inputs=inputs_of(str(study.path.resolve()), _files(study.path, study.file)),
+        inputs=inputs_of(str(inputs.source_file.resolve()), _files(inputs.source_file, inputs.file_plan)),
     )
 
 

@@ -10,7 +10,7 @@ from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import Options, Outcome, optimize
 from mascarin.genopt.export.compiling import compiled
 from mascarin.genopt.export.exchange import COMPILED, read_settings
-from mascarin.genopt.loading import load
+from mascarin.genopt.files.loading import load
 from mascarin.genopt.program import Result, RunFailed
 
 if TYPE_CHECKING:

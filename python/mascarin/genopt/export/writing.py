@@ -124,12 +124,8 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     _check_folder(out, force=o.force)
     path = locate(study)
     opened = Study(path, allow_outside=o.allow_outside)
-    plan = _plan(
-        o,
-        opened.sought.starts,
-        opened.sought.seed,
-        opened.sought.budget,
-    )
+    stated = opened.context.inputs.calibration_plan
+    plan = _plan(o, stated.starts, stated.seed, stated.budget)
     case = compile_study(opened)
     algorithm = chosen(o.algorithm, len(case.parameters))
     _check_sensors([sensor.name for sensor in case.sensors], path)
@@ -139,7 +135,7 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
         _CONFIGURATION: _configuration(_program(o.program), " --allow-outside" if o.allow_outside else ""),
         _COMMAND: _command(variables, algorithm, plan),
         _TEMPLATE: _template(variables),
-        _README: _readme(opened.file.name, case, algorithm),
+        _README: _readme(opened.plan.name, case, algorithm),
     }
     with writing_into(out):
         for name, text in texts.items():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.tables.timezones import parse_timezone, standard_offset
-from mascarin.weather.sun import SunPath
+from mascarin.weather.derived.sun import SunPath
 
 if TYPE_CHECKING:
     from mascarin.building.parts.site import Site

@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin.building.checks.air import BALANCED, REMEDY, flows_of_zones, imbalance
 from mascarin.errors import InputError
-from mascarin.weather.channels import CHANNELS
+from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
     from datetime import datetime

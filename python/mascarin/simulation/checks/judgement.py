@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
-from mascarin._io.own_files import json_of
+from mascarin._io.sealed.own_files import json_of
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
 from mascarin.simulation.checks.warning_kinds import Kind, RunWarning

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import Any, Final, Self
 
-from mascarin._io.own_files import json_of
+from mascarin._io.sealed.own_files import json_of
 
 
 class Kind(StrEnum):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.channels import CHANNELS
+from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
     import numpy.typing as npt

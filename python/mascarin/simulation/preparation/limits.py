@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.errors import InputError
-from mascarin.weather.channels import CHANNELS
+from mascarin.weather.records.channels import CHANNELS
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -30,7 +30,7 @@ def with_sky_of(building: Building, climate: Climate, used: Iterable[str] = ()) 
         With ``site.sky: measured``, if the weather has infrared radiation in every interval, or in some of
         those of a weather file of a year, and the building gives neither ``site.sky`` nor ``site.cloud``;
         else the same building. Hours of a weather file without a value have that of the default model
-        (`mascarin.weather.missing_infrared`).
+        (`mascarin.weather.checks.missing_infrared`).
 
     Examples
     --------

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from mascarin._io import arrow_files, atomic, identity, memory, own_files
+from mascarin._io import arrow_files, atomic, identity, memory
 from mascarin._io.regular import require_regular, require_text
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 from mascarin.simulation.records.blocks import InMemory
 from mascarin.tables.timezones import parse_timezone

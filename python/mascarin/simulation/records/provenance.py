@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 from mascarin import __version__
-from mascarin._io import own_files
+from mascarin._io.sealed import own_files
 
 _KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256"}
 _TYPES: Final[dict[str, type | tuple[type, ...]]] = {

@@ -10,7 +10,7 @@ import numpy as np
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
-from mascarin.tables.interval_labels import knot_lines, to_starts
+from mascarin.tables.reading.interval_labels import knot_lines, to_starts
 from mascarin.tables.reading.table import Stamps, Table
 from mascarin.tables.record import Kind, Origin, Record
 from mascarin.tables.units import ENERGIES, HEATS, StatedUnit

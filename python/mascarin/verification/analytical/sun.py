@@ -91,7 +91,7 @@ def _position(name: str) -> Iterator[Check]:
     import pandas as pd
     from pvlib import solarposition
 
-    from mascarin.weather.sun import SunPath
+    from mascarin.weather.derived.sun import SunPath
 
     locations = ((67.3, 14.4), (43.5, -1.5), (0.0, 0.0), (-21.3, 55.5), (-54.8, -68.3))
     days = pd.to_datetime(["2024-02-29", "2023-06-21", "2023-09-23", "2024-12-31"], utc=True)

@@ -23,7 +23,7 @@ LENGTH: Final = "length"
 PERIMETER: Final = "perimeter"
 
 #: Name, value, range and unit, where they are stated.
-Given = tuple[tuple[str, float, Interval | None, str | None], ...]
+StatedNumbers = tuple[tuple[str, float, Interval | None, str | None], ...]
 
 
 class FormulaLaw(Formula):
@@ -57,9 +57,11 @@ class FormulaLaw(Formula):
         return name in self.names
 
     @property
-    def given(self) -> Given:
+    def stated(self) -> StatedNumbers:
         """Names, values, ranges and units of its numbers."""
-        return tuple((name, float(one), one.range, stated_unit(one)) for name, one in self.numbers.items())
+        return tuple(
+            (name, float(number), number.range, stated_unit(number)) for name, number in self.numbers.items()
+        )
 
     def coefficient(
         self,
@@ -103,37 +105,37 @@ class FormulaLaw(Formula):
         both = np.broadcast_arrays(np.asarray(difference, float), np.asarray(wind, float))
         flat = [np.ascontiguousarray(array.ravel()) for array in both]
         try:
-            found = _engine.formula_values(self.formula, list(self.given), (tilt, area, density), *flat)
+            values = _engine.formula_values(self.formula, list(self.stated), (tilt, area, density), *flat)
         except _engine.EngineInputError as error:
             raise InputError(f"formula: {error}") from None
-        return found.reshape(both[0].shape)
+        return values.reshape(both[0].shape)
 
     def at_values(self, values: Mapping[str, float]) -> FormulaLaw:
         """The same law with other values of its numbers, without their ranges."""
         numbers = {name: float(values.get(name, number)) for name, number in self.numbers.items()}
         return FormulaLaw(formula=self.formula, valid=self.valid, numbers=numbers)
 
-    def faults(self, at: Location, side: tuple[float, float, float], *, wind: bool) -> Iterator[Any]:
+    def faults(self, location: Location, side: tuple[float, float, float], *, wind: bool) -> Iterator[Any]:
         """What is wrong with it at a side of a surface.
 
         Parameters
         ----------
-        at : tuple
+        location : tuple
             Path of the law.
         side : tuple of float
             Tilt of the normal into the air [deg], area [m2], density of the air [kg/m3].
         wind : bool
             Whether wind reaches the side.
         """
-        found = _checked(self.formula, self.valid, self.given, side, wind=wind)
-        if found is not None:
-            key, line, column, *words = found
-            known = key in ("formula", "valid")
-            yield text_fault((*at, key), words, (line, column) if known else None)
+        defect = _checked(self.formula, self.valid, self.stated, side, wind=wind)
+        if defect is not None:
+            key, line, column, *words = defect
+            in_text = key in ("formula", "valid")
+            yield text_fault((*location, key), words, (line, column) if in_text else None)
 
 
 @lru_cache(maxsize=512)
 def _checked(
-    formula: str, valid: str | None, given: Given, side: tuple[float, float, float], *, wind: bool
+    formula: str, valid: str | None, stated: StatedNumbers, side: tuple[float, float, float], *, wind: bool
 ) -> tuple[str, int, int, str, str, str] | None:
-    return _engine.check_formula(formula, valid, list(given), wind, side)
+    return _engine.check_formula(formula, valid, list(stated), wind, side)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.base.part import Part, worked_out
+from mascarin.building.base.part import Part, cached_on
 from mascarin.physics import MeltingCurve
 
 #: Fraction of the transition cut off at each end of a curve with tails, where hysteresis needs an end.
@@ -39,7 +39,7 @@ class ClosedLaw(Part):
         return self._curve()(above)
 
     def _curve(self) -> MeltingCurve:
-        return worked_out(self, "_curve_of_engine", lambda: self._as_engine(0.0))
+        return cached_on(self, "_curve_of_engine", lambda: self._as_engine(0.0))
 
     def _as_engine(self, centre: float) -> MeltingCurve:
         """The curve of the engine about a temperature [degC]."""

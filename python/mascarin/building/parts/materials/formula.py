@@ -24,10 +24,10 @@ class FormulaQuantity(Quantity):
 
     def notes(self) -> dict[str, Any]:
         """What a file has of it beside the value."""
-        found: dict[str, Any] = {} if self.unit == "-" else {"unit": self.unit}
+        plain: dict[str, Any] = {} if self.unit == "-" else {"unit": self.unit}
         if self.limits != Limits():
-            found["limits"] = [self.limits.lower, self.limits.upper]
-        return found
+            plain["limits"] = [self.limits.lower, self.limits.upper]
+        return plain
 
 
 def _quantity(name: str, unit: str, limits: Limits) -> FormulaQuantity:
@@ -37,16 +37,18 @@ def _quantity(name: str, unit: str, limits: Limits) -> FormulaQuantity:
 def _number(name: str, raw: Any) -> Number:
     """A number of a formula: plain, or with value, unit, range, limits and source."""
     if isinstance(raw, Number):
-        own = raw.quantity if isinstance(raw.quantity, FormulaQuantity) else _quantity(name, "-", Limits())
-        return own.read(raw)
+        quantity = (
+            raw.quantity if isinstance(raw.quantity, FormulaQuantity) else _quantity(name, "-", Limits())
+        )
+        return quantity.read(raw)
     if not isinstance(raw, Mapping):
         return _quantity(name, "-", Limits()).read(raw)
     unit, ends = raw.get("unit", "-"), raw.get("limits")
     if not isinstance(unit, str) or not unit.strip():
         raise problem(f"unit: {shown(unit)}", "a text", 'Write the unit in quotes, such as "W/(m2 K)".')
     limits = Limits() if ends is None else _limits(ends)
-    rest = {key: value for key, value in raw.items() if key not in ("unit", "limits")}
-    return _quantity(name, unit, limits).read(rest)
+    notes = {key: value for key, value in raw.items() if key not in ("unit", "limits")}
+    return _quantity(name, unit, limits).read(notes)
 
 
 def _limits(raw: Any) -> Limits:
@@ -102,22 +104,22 @@ class Formula(Part):
         """Read all other keys as numbers of the formula."""
         if not isinstance(raw, Mapping):
             return raw
-        own = {key: value for key, value in raw.items() if key in cls.model_fields}
-        others = {key: value for key, value in raw.items() if key not in cls.model_fields}
-        given = own.get("numbers", {})
-        return own | {"numbers": {**(given if isinstance(given, Mapping) else {}), **others}}
+        fields = {key: value for key, value in raw.items() if key in cls.model_fields}
+        numbers = {key: value for key, value in raw.items() if key not in cls.model_fields}
+        stated = fields.get("numbers", {})
+        return fields | {"numbers": {**(stated if isinstance(stated, Mapping) else {}), **numbers}}
 
     @field_validator("numbers", mode="plain")
     @classmethod
     def _read(cls, raw: Any) -> dict[str, Number]:
-        found, errors = {}, []
+        plain, errors = {}, []
         for name, value in raw.items():
             try:
-                found[str(name)] = _number(str(name), value)
+                plain[str(name)] = _number(str(name), value)
             except PydanticCustomError as error:
                 errors.append(InitErrorDetails(type=error, loc=(str(name),), input=None))
         insist(*errors)
-        return found
+        return plain
 
     @property
     def names_of_formula(self) -> frozenset[str]:

@@ -71,7 +71,7 @@ class FormulaCurve(Formula, ClosedLaw):
         distances = np.asarray(above, dtype=np.float64)
         return self._values(distances.ravel()).reshape(distances.shape)
 
-    def _given(self, changes: Mapping[str, float]) -> list[tuple[str, float, None, str | None]]:
+    def _stated(self, changes: Mapping[str, float]) -> list[tuple[str, float, None, str | None]]:
         """Names, values and units of the numbers, some of them changed."""
         return [
             (name, changes.get(name, float(number)), None, stated_unit(number))
@@ -79,25 +79,25 @@ class FormulaCurve(Formula, ClosedLaw):
         ]
 
     def _values(self, above: Floats) -> Floats:
-        given = self._given({})
-        return _engine.fraction_values(self.formula, given, _MIDDLE, self.reach, _MIDDLE + above)
+        numbers = self._stated({})
+        return _engine.fraction_values(self.formula, numbers, _MIDDLE, self.reach, _MIDDLE + above)
 
-    def faults(self, at: Location) -> Iterator[InitErrorDetails]:
+    def faults(self, location: Location) -> Iterator[InitErrorDetails]:
         """What is wrong with the curve, with its numbers and at the ends of their ranges.
 
         Parameters
         ----------
-        at : tuple
+        location : tuple
             Path of the law.
         """
         ranges = {name: number.range for name, number in self.numbers.items() if number.range is not None}
         alone = [{name: end} for name, ends in ranges.items() for end in ends]
         together = [{name: ends[k] for name, ends in ranges.items()} for k in (0, 1) if ranges]
         for changes in (dict[str, float](), *alone, *together):
-            found = _engine.check_fraction(self.formula, self._given(changes), _MIDDLE, self.reach)
-            if found is not None:
-                key, line, column, what, *others = found
+            defect = _engine.check_fraction(self.formula, self._stated(changes), _MIDDLE, self.reach)
+            if defect is not None:
+                key, line, column, what, *details = defect
                 varied = ", ".join(f"{name} = {value:g}" for name, value in changes.items())
-                words = [f"{what}, with {varied}" if varied else what, *others]
-                yield text_fault((*at, key), words, (line, column) if key == "formula" else None)
+                words = [f"{what}, with {varied}" if varied else what, *details]
+                yield text_fault((*location, key), words, (line, column) if key == "formula" else None)
                 return

@@ -64,10 +64,10 @@ class Supercooling(OneCurveLaw):
 
     @model_validator(mode="after")
     def _one_kinetics(self) -> Supercooling:
-        given = [name for name in ("time_constant", "rate") if getattr(self, name) is not None]
-        if len(given) != 1:
+        stated = [name for name in ("time_constant", "rate") if getattr(self, name) is not None]
+        if len(stated) != 1:
             raise problem(
-                " and ".join(given) or "neither time_constant nor rate",
+                " and ".join(stated) or "neither time_constant nor rate",
                 "one of both: how fast it crystallises",
                 "Write time_constant [s], or rate [1/(s K)] by the undercooling.",
             )

@@ -28,13 +28,13 @@ def rising(key: str, values: tuple[Number, ...]) -> list[InitErrorDetails]:
 
 
 def as_many(
-    one: str, first: tuple[Number, ...], other: str, second: tuple[Number, ...]
+    what: str, first: tuple[Number, ...], other: str, second: tuple[Number, ...]
 ) -> list[InitErrorDetails]:
     """Whether two columns of a table have the same length."""
     if len(first) == len(second):
         return []
-    found = f"{len(first)} {one} and {len(second)} {other}"
-    return [fault((), found, "as many of one as of the other", "Complete the table.")]
+    counts = f"{len(first)} {what} and {len(second)} {other}"
+    return [fault((), counts, "as many of one as of the other", "Complete the table.")]
 
 
 def monotone(x: tuple[Number, ...], y: tuple[Number, ...]) -> Callable[[float], float]:
@@ -47,20 +47,20 @@ def monotone(x: tuple[Number, ...], y: tuple[Number, ...]) -> Callable[[float], 
     lengths = [b - a for a, b in pairwise(x)]
     secants = [(b - a) / length for (a, b), length in zip(pairwise(y), lengths, strict=True)]
     slopes = [secants[0]]
-    for (left, right), (before, after) in zip(pairwise(lengths), pairwise(secants), strict=True):
-        near, far = 2.0 * right + left, right + 2.0 * left
-        slopes.append((near + far) / (near / before + far / after) if before > 0.0 < after else 0.0)
+    for (width, next_width), (before, after) in zip(pairwise(lengths), pairwise(secants), strict=True):
+        early, late = 2.0 * next_width + width, next_width + 2.0 * width
+        slopes.append((early + late) / (early / before + late / after) if before > 0.0 < after else 0.0)
     slopes.append(secants[-1])
 
-    def at(place: float) -> float:
-        if place <= x[0]:
+    def value_at(point: float) -> float:
+        if point <= x[0]:
             return float(y[0])
         for i, length in enumerate(lengths):
-            if place < x[i + 1]:
-                u = (place - x[i]) / length
+            if point < x[i + 1]:
+                u = (point - x[i]) / length
                 s0, s1, m = slopes[i], slopes[i + 1], secants[i]
                 cubic = (3.0 * m - 2.0 * s0 - s1) + u * (s0 + s1 - 2.0 * m)
                 return float(y[i] + length * u * (s0 + u * cubic))
         return float(y[-1])
 
-    return at
+    return value_at

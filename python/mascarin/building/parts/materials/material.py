@@ -149,12 +149,12 @@ class PhaseChangeMaterial(Melting):
             laws["hysteresis", "law"] = self.two_curves.law
         return [
             fault(
-                (*place, "curve"),
+                (*path, "curve"),
                 f"'{law.curve}'",
                 "none: there is no 'product:' beside it",
                 "Remove 'curve:'.",
             )
-            for place, law in laws.items()
+            for path, law in laws.items()
             # Derived numbers: the law of a material with a product, used in another one.
             if self.product is None
             and isinstance(law, TableLaw | FractionsLaw)

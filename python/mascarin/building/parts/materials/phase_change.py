@@ -43,10 +43,10 @@ class TanhLaw(ClosedLaw):
 
     @model_validator(mode="after")
     def _one_form(self) -> TanhLaw:
-        given = [name for name in ("width", "gamma", "delta_t") if getattr(self, name) is not None]
-        if given not in (["width"], ["gamma", "delta_t"]):
+        stated = [name for name in ("width", "gamma", "delta_t") if getattr(self, name) is not None]
+        if stated not in (["width"], ["gamma", "delta_t"]):
             raise problem(
-                ", ".join(given) or "neither",
+                ", ".join(stated) or "neither",
                 "either width or both gamma and delta_t",
                 "width = 4 delta_t/gamma; give one form.",
             )

@@ -180,21 +180,21 @@ def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
     latent = solid_density(material) * (material.latent_heat or 0.0)
     for key, (curve, low, high) in curves.items():
         small = (high - low) * 1e-5
-        at = np.linspace(low, high, _POINTS + 1)
-        slope = np.maximum(curve(at + small) - curve(at - small), 0.0) / (2.0 * small)
-        jump = latent + difference * (at - material.reference)
-        capacity = solid + difference * curve(at) + slope * jump
+        temperature = np.linspace(low, high, _POINTS + 1)
+        slope = np.maximum(curve(temperature + small) - curve(temperature - small), 0.0) / (2.0 * small)
+        jump = latent + difference * (temperature - material.reference)
+        capacity = solid + difference * curve(temperature) + slope * jump
         falls = (capacity <= 0.0) | ((jump <= 0.0) & (len(curves) > 1))
         if not falls.any():
             continue
         k = int(np.argmax(falls))
-        found = (
+        text = (
             f"dH/dT = {capacity[k]:.3g} J/(m3 K)" if capacity[k] <= 0.0 else f"{jump[k]:.3g} J/m3 to melt it"
         )
         return [
             fault(
                 key,
-                f"{found} at {at[k]:.2f} degC",
+                f"{text} at {temperature[k]:.2f} degC",
                 "an enthalpy that rises with temperature and with the liquid fraction",
                 "The difference of the heat capacities exceeds the latent heat over this width: "
                 "check specific_heat of both phases, latent_heat and the width.",
@@ -208,7 +208,7 @@ def no_heat_of_crystallisation(material: Melting) -> list[InitErrorDetails]:
     if material.one_curve is None or material.latent_heat is None:
         return []
     coldest = material.one_curve.coldest_liquid(material.reference)
-    solid, liquid = (phase(material.specific_heat, one) for one in _PHASES)
+    solid, liquid = (phase(material.specific_heat, name) for name in _PHASES)
     heat = material.latent_heat + (liquid - solid) * (coldest - material.reference)
     if heat > 0.0:
         return []
@@ -265,7 +265,9 @@ def _curves(
         low, high = law.reach
         if law.tails:  # beyond three times the reach they are negligible
             low, high = 3.0 * low, 3.0 * high
-        return {("law",): (lambda at: law.fraction(at - centre), centre + low, centre + high)}
+        return {
+            ("law",): (lambda temperature: law.fraction(temperature - centre), centre + low, centre + high)
+        }
     return {
         ("law",): _compact(material.law, material.centre),
         ("hysteresis",): _compact(*cooling),
@@ -276,8 +278,8 @@ def _compact(law: FractionLaw, centre: float) -> tuple[_Curve, float, float]:
     """A curve without its tails, the rest scaled to 0..1, as hysteresis uses it."""
     low, high = law.reach
 
-    def curve(at: Floats) -> Floats:
-        fraction = law.fraction(at - centre)
+    def curve(temperature: Floats) -> Floats:
+        fraction = law.fraction(temperature - centre)
         return np.clip((fraction - CUT) / (1.0 - 2.0 * CUT), 0.0, 1.0) if law.tails else fraction
 
     return curve, centre + low, centre + high
@@ -293,11 +295,11 @@ def crossing_curves(material: Melting) -> list[InitErrorDetails]:
     k = int(np.argmax(hot - cold))
     if hot[k] - cold[k] <= _EPSILON:
         return []
-    at, melted, left = grid[k], 100.0 * hot[k], 100.0 * cold[k]
+    temperature, melted, frozen = grid[k], 100.0 * hot[k], 100.0 * cold[k]
     return [
         fault(
             ("hysteresis",),
-            f"{melted:.3g} % liquid on heating and {left:.3g} % on cooling at {at:.2f} degC",
+            f"{melted:.3g} % liquid on heating and {frozen:.3g} % on cooling at {temperature:.2f} degC",
             "never more liquid on heating than on cooling",
             "Exchange the two curves, lower freezing_temperature, narrow the wider curve, or leave "
             "hysteresis out.",
@@ -325,8 +327,8 @@ def unordered_slopes(material: Melting) -> tuple[float, float] | None:
     (h0, h1), (c0, c1) = ((rises[:-1], rises[1:]) for rises in (melts, freezes))
     falls = h1 * c0 - h0 * c1 < -1e-6 * np.maximum(h1 * c0, h0 * c1)
     falls &= np.minimum(np.minimum(c0, c1), h0) > _EPSILON
-    at = grid[2:][falls]
-    return (float(at[0]), float(at[-1])) if len(at) else None
+    temperature = grid[2:][falls]
+    return (float(temperature[0]), float(temperature[-1])) if len(temperature) else None
 
 
 def _grid(material: Melting) -> Floats:

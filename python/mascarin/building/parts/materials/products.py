@@ -38,87 +38,93 @@ def expand(raw: Any) -> Any:
     """
     if not isinstance(raw, Mapping) or raw.get("product") is None:
         return raw
-    one = _named(raw["product"])
+    item = _named(raw["product"])
     if raw.get("kind", "pcm") != "pcm":
-        raise problem(f"kind: {raw['kind']}", "kind: pcm, or none", f"{one.name} is a phase-change material.")
-    given = {key: value for key, value in raw.items() if value is not None}
+        raise problem(
+            f"kind: {raw['kind']}", "kind: pcm, or none", f"{item.name} is a phase-change material."
+        )
+    stated = {key: value for key, value in raw.items() if value is not None}
     expanded: dict[str, Any] = {"kind": "pcm"}
-    expanded |= {key: _noted(one.raw[key], one) for key in PROPERTIES if key in one.raw}
-    expanded |= {key: _over(expanded.get(key), value) for key, value in given.items()}
-    expanded["product"] = one.name
-    _complete(expanded, one)
-    if given.get("hysteresis") is not None:
-        return _with_hysteresis(expanded, given, one)
-    law = _law(given.get("law"), one)
+    expanded |= {key: _noted(item.raw[key], item) for key in PROPERTIES if key in item.raw}
+    expanded |= {key: _over(expanded.get(key), value) for key, value in stated.items()}
+    expanded["product"] = item.name
+    _complete(expanded, item)
+    if stated.get("hysteresis") is not None:
+        return _with_hysteresis(expanded, stated, item)
+    law = _law(stated.get("law"), item)
     if law is None:
         raise problem(
-            f"no law; {one.name} has no curves",
+            f"no law; {item.name} has no curves",
             "law: how it melts",
             "Add 'law:', such as {kind: tanh, width: 1.0}.",
         )
     expanded["law"] = law
-    return _melting(one) | expanded if _by_melting_temperature(law) else expanded
+    return _melting(item) | expanded if _by_melting_temperature(law) else expanded
 
 
-def _with_hysteresis(expanded: dict[str, Any], given: Mapping[str, Any], one: Product) -> dict[str, Any]:
+def _with_hysteresis(expanded: dict[str, Any], stated: Mapping[str, Any], item: Product) -> dict[str, Any]:
     """The material with the curves of the product as liquid fractions, which hysteresis needs."""
-    law = _heating_fractions(given.get("law"), one)
-    hysteresis = _cooling_fractions(given["hysteresis"], law, one)
-    numbers = _melting(one)
+    law = _heating_fractions(stated.get("law"), item)
+    hysteresis = _cooling_fractions(stated["hysteresis"], law, item)
+    numbers = _melting(item)
     if _is_fractions(law):
-        numbers = {"latent_heat": _latent_heat(one, law)}
+        numbers = {"latent_heat": _latent_heat(item, law)}
     return numbers | expanded | {"law": law, "hysteresis": hysteresis}
 
 
-def _heating_fractions(given: Any, one: Product) -> Any:
+def _heating_fractions(stated: Any, item: Product) -> Any:
     """The heating curve: a law as given, else that of the product."""
-    named = given if isinstance(given, str) else given.get("curve") if isinstance(given, Mapping) else None
+    named = (
+        stated if isinstance(stated, str) else stated.get("curve") if isinstance(stated, Mapping) else None
+    )
     if named is not None and named != DEFAULT_CURVE:
         raise problem(
             f"law: {named} beside hysteresis",
             f"law: {DEFAULT_CURVE}, or none; the cooling curve belongs below hysteresis",
             "Remove 'law:'.",
         )
-    is_law = isinstance(given, Mapping) and "kind" in given and named is None
-    if is_law or not (given is None or isinstance(given, str | Mapping)):
-        return given
-    more = {key: value for key, value in given.items() if key != "kind"} if isinstance(given, Mapping) else {}
-    if one.heating is not None:
-        return _fractions(one, one.heating, DEFAULT_CURVE) | more
-    own = _own_law(one)
-    if own is None or named is not None:
+    is_law = isinstance(stated, Mapping) and "kind" in stated and named is None
+    if is_law or not (stated is None or isinstance(stated, str | Mapping)):
+        return stated
+    more = (
+        {key: value for key, value in stated.items() if key != "kind"} if isinstance(stated, Mapping) else {}
+    )
+    if item.heating is not None:
+        return _fractions(item, item.heating, DEFAULT_CURVE) | more
+    default = _own_law(item)
+    if default is None or named is not None:
         raise problem(
-            f"hysteresis; {one.name} has no heating curve",
+            f"hysteresis; {item.name} has no heating curve",
             "law: how it melts, by its liquid fraction",
             "Add 'law:', such as {kind: tanh, width: 1.0}, and freezing_temperature below hysteresis.",
         )
-    return own | more
+    return default | more
 
 
-def _cooling_fractions(given: Any, law: Any, one: Product) -> Any:
+def _cooling_fractions(stated: Any, law: Any, item: Product) -> Any:
     """What is given of the hysteresis, with the cooling curve of the product where no other is given."""
-    if not isinstance(given, Mapping):
+    if not isinstance(stated, Mapping):
         keys = ("model", "freezing_temperature", "law")
-        if not all(hasattr(given, key) for key in keys):
-            return given
-        given = {key: getattr(given, key) for key in keys if getattr(given, key) is not None}
-    shape = given.get("law")
+        if not all(hasattr(stated, key) for key in keys):
+            return stated
+        stated = {key: getattr(stated, key) for key in keys if getattr(stated, key) is not None}
+    shape = stated.get("law")
     named = shape if isinstance(shape, str) else shape.get("curve") if isinstance(shape, Mapping) else None
     if named is not None and named != "cooling":
         raise problem(f"hysteresis.law: {named}", "hysteresis.law: cooling, or none", "Remove this 'law:'.")
     partial = isinstance(shape, Mapping) and ("kind" not in shape or named is not None)
     if shape is not None and named is None and not partial:
-        return given
-    if shape is None and (given.get("freezing_temperature") is not None or not _is_fractions(law)):
-        return given  # the shape of the heating curve, about another temperature
-    if one.cooling is None:
+        return stated
+    if shape is None and (stated.get("freezing_temperature") is not None or not _is_fractions(law)):
+        return stated  # the shape of the heating curve, about another temperature
+    if item.cooling is None:
         raise problem(
-            f"hysteresis without a cooling curve; the source of {one.name} does not give it",
+            f"hysteresis without a cooling curve; the source of {item.name} does not give it",
             "hysteresis: {model: ..., law: {kind: fractions, ...}}, or another law with freezing_temperature",
             "Add the cooling curve, or choose a product with both curves: 'mascarin materials' shows them.",
         )
     more = {key: value for key, value in shape.items() if key != "kind"} if partial else {}
-    return {**given, "law": _fractions(one, one.cooling, "cooling") | more}
+    return {**stated, "law": _fractions(item, item.cooling, "cooling") | more}
 
 
 def _is_fractions(law: Any) -> bool:
@@ -126,22 +132,22 @@ def _is_fractions(law: Any) -> bool:
     return kind == "fractions"
 
 
-def _fractions(one: Product, curve: Curve, name: str) -> dict[str, Any]:
+def _fractions(item: Product, curve: Curve, name: str) -> dict[str, Any]:
     return {
         "kind": "fractions",
         "curve": name,
-        "temperatures": _noted(list(curve.temperatures), one),
-        "fractions": _noted(list(curve.liquid_fraction), one),
+        "temperatures": _noted(list(curve.temperatures), item),
+        "fractions": _noted(list(curve.liquid_fraction), item),
     }
 
 
-def _latent_heat(one: Product, law: Any) -> Number:
+def _latent_heat(item: Product, law: Any) -> Number:
     """Latent heat in the middle of the heating curve, to which a law of fractions refers.
 
     That of the product is at its melting temperature; between the two lies a difference of sensible heat.
     """
-    latent: Number = _noted(one.raw["latent_heat"], one)
-    heats, centre = one.pair("specific_heat"), one.melting_temperature
+    latent: Number = _noted(item.raw["latent_heat"], item)
+    heats, centre = item.pair("specific_heat"), item.melting_temperature
     points = law.get("temperatures") if isinstance(law, Mapping) else law.temperatures
     if heats is None or centre is None or heats[0] == heats[1] or not points:
         return latent
@@ -151,19 +157,19 @@ def _latent_heat(one: Product, law: Any) -> Number:
     return Number(round(moved, 1), source=note, assumed=latent.assumed, derived=True)
 
 
-def _over(own: Any, given: Any) -> Any:
+def _over(default: Any, stated: Any) -> Any:
     """A property as given; a mapping of one phase takes the other phase from the product."""
-    if own is None or not isinstance(given, Mapping) or "value" in given:
-        return given
-    solid, liquid = own if isinstance(own, list) else (own, own)
-    return {"solid": solid, "liquid": liquid} | dict(given)
+    if default is None or not isinstance(stated, Mapping) or "value" in stated:
+        return stated
+    solid, liquid = default if isinstance(default, list) else (default, default)
+    return {"solid": solid, "liquid": liquid} | dict(stated)
 
 
-def _complete(expanded: Mapping[str, Any], one: Product) -> None:
+def _complete(expanded: Mapping[str, Any], item: Product) -> None:
     gaps = [key for key in PROPERTIES if key not in expanded]
     if gaps:
         raise problem(
-            f"no {' and no '.join(gaps)}; the source of {one.name} does not give it",
+            f"no {' and no '.join(gaps)}; the source of {item.name} does not give it",
             ", ".join(f"{key}: a value from you" for key in gaps),
             f"Write {gaps[0]}: beside product:.",
         )
@@ -179,67 +185,67 @@ def _named(name: Any) -> Product:
         raise problem(f"product: {name}", "a product of the library", help_) from None
 
 
-def _noted(raw: Any, one: Product, source: str | None = None) -> Any:
+def _noted(raw: Any, item: Product, source: str | None = None) -> Any:
     """Numbers of a product with their source, marked as derived."""
     if isinstance(raw, list):
-        return [_noted(item, one, source) for item in raw]
+        return [_noted(entry, item, source) for entry in raw]
     notes = dict(raw) if isinstance(raw, Mapping) else {"value": raw}
     span = notes.get("range")
     return Number(
         float(notes["value"]),
         range=None if span is None else (float(span[0]), float(span[1])),
-        source=notes.get("source", source or one.source),
+        source=notes.get("source", source or item.source),
         assumed=bool(notes.get("assumed", False)),
         derived=True,
     )
 
 
-def _law(given: Any, one: Product) -> Any:
+def _law(stated: Any, item: Product) -> Any:
     """The law: as given, a curve of the product by its name, or the product's law; None where it has none."""
-    if isinstance(given, str):
-        return _table(one, _curve(given, one), given)
-    if isinstance(given, Mapping) and "kind" not in given:
-        curve = given.get("curve")
-        own = _own_law(one) if curve is None else _table(one, _curve(curve, one), curve)
-        return None if own is None else own | dict(given)
-    if isinstance(given, Mapping) and given.get("curve") is not None:
+    if isinstance(stated, str):
+        return _table(item, _curve(stated, item), stated)
+    if isinstance(stated, Mapping) and "kind" not in stated:
+        curve = stated.get("curve")
+        default = _own_law(item) if curve is None else _table(item, _curve(curve, item), curve)
+        return None if default is None else default | dict(stated)
+    if isinstance(stated, Mapping) and stated.get("curve") is not None:
         raise problem(
             "curve beside kind",
             "one of the two: the curve of the product, or a law",
             "Remove 'kind:' or 'curve:'.",
         )
-    return _own_law(one) if given is None else given
+    return _own_law(item) if stated is None else stated
 
 
-def _curve(name: Any, one: Product) -> Curve:
-    curve = getattr(one, name) if name in DIRECTIONS else None
+def _curve(name: Any, item: Product) -> Curve:
+    curve = getattr(item, name) if name in DIRECTIONS else None
     if curve is None:
-        known = [key for key in DIRECTIONS if getattr(one, key) is not None]
+        names = [key for key in DIRECTIONS if getattr(item, key) is not None]
         raise problem(
             f"law: {name}",
-            f"law: {' or '.join(known) or '{kind: ...}'}, the curves known of {one.name}, or {{kind: ...}}",
+            f"law: {' or '.join(names) or '{kind: ...}'}, the curves known of {item.name}, or {{kind: ...}}",
             "Choose a curve, or write a law.",
         )
-    found: Curve = curve
-    return found
+    chosen: Curve = curve
+    return chosen
 
 
-def _own_law(one: Product) -> dict[str, Any] | None:
-    if one.heating is not None:
-        return _table(one, one.heating, DEFAULT_CURVE)
-    if "law" not in one.raw:
+def _own_law(item: Product) -> dict[str, Any] | None:
+    if item.heating is not None:
+        return _table(item, item.heating, DEFAULT_CURVE)
+    if "law" not in item.raw:
         return None
-    numbers = {key: _noted(value, one) for key, value in one.raw["law"].items() if key != "kind"}
-    return {"kind": one.raw["law"]["kind"]} | numbers
+    numbers = {key: _noted(value, item) for key, value in item.raw["law"].items() if key != "kind"}
+    return {"kind": item.raw["law"]["kind"]} | numbers
 
 
-def _table(one: Product, curve: Curve, name: str) -> dict[str, Any]:
-    enthalpies = one.enthalpies(curve.temperatures, curve.liquid_fraction)
+def _table(item: Product, curve: Curve, name: str) -> dict[str, Any]:
+    enthalpies = item.enthalpies(curve.temperatures, curve.liquid_fraction)
     return {
         "kind": "table",
         "curve": name,
-        "temperatures": _noted(list(curve.temperatures), one),
-        "enthalpies": _noted(list(enthalpies), one),
+        "temperatures": _noted(list(curve.temperatures), item),
+        "enthalpies": _noted(list(enthalpies), item),
     }
 
 
@@ -249,11 +255,11 @@ def _by_melting_temperature(law: Any) -> bool:
     return kind != "table"
 
 
-def _melting(one: Product) -> dict[str, Any]:
-    known = {"latent_heat": one.number("latent_heat"), "melting_temperature": one.melting_temperature}
-    half = f"half of the heating curve; {one.source}"
+def _melting(item: Product) -> dict[str, Any]:
+    names = {"latent_heat": item.number("latent_heat"), "melting_temperature": item.melting_temperature}
+    half = f"half of the heating curve; {item.source}"
     return {
-        key: _noted(one.raw.get(key, value), one, half if key not in one.raw else None)
-        for key, value in known.items()
+        key: _noted(item.raw.get(key, value), item, half if key not in item.raw else None)
+        for key, value in names.items()
         if value is not None
     }

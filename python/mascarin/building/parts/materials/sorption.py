@@ -144,7 +144,7 @@ class TabulatedSorption(Part):
     def table(self, density: float) -> tuple[list[float], list[float]]:
         """Relative humidities [-] and contents [kg/m3]; the density does not matter."""
         del density
-        return [float(one) for one in self.humidities], [float(one) for one in self.contents]
+        return [float(number) for number in self.humidities], [float(number) for number in self.contents]
 
 
 def _kind(raw: Any) -> str:

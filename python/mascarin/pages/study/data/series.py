@@ -18,7 +18,8 @@ from typing import Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from mascarin._io import atomic, own_files
+from mascarin._io import atomic
+from mascarin._io.sealed import own_files
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]

@@ -1,0 +1,3 @@
+"""Files that Mascarin writes for itself: sealed, bounded, confined to their folder."""
+
+from __future__ import annotations

@@ -1,0 +1,360 @@
+"""A sample of the sizes of the errors of a model given the measurements: how well few days tell them.
+
+`mascarin.calibration.errors.discrepancy` finds the most probable sizes. Five days leave them doubtful by a
+factor of two, and the estimates of the parameters with them. Here the sizes are drawn from their distribution
+given the measurements (Gibbs sampling): in turn the errors given the sizes, which are normal, and the sizes
+given the errors. The prior of each covariance has standard deviations with half-t distributions, which allow
+an error to vanish and to be large, and correlations that are equally likely.
+
+The block of a day is diagonal in the common eigenvectors of its two parts, which makes a move cheap. Values
+that are not there are drawn with the errors.
+
+References
+----------
+Huang A., Wand M.P. (2013), Simple marginally noninformative prior distributions for covariance matrices,
+Bayesian Analysis 8, 439. https://doi.org/10.1214/13-BA815
+Gelman A. (2006), Prior distributions for variance parameters in hierarchical models, Bayesian Analysis 1,
+515. https://doi.org/10.1214/06-BA117A
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.errors.discrepancy import (
+    CORRELATION_HOURS,
+    DayData,
+    Discrepancy,
+    at_least,
+    drift_kernel,
+    root_of,
+)
+
+Floats = NDArray[np.float64]
+
+#: Degrees of freedom of the half-t distributions.
+_FREEDOM: Final = 2.0
+#: Part of a variance that round-off may hide in a sum of squares. [-]
+_ROUND_OFF: Final = 1e-12
+#: Moves before the sample, moves of the sample, and every which of them is kept.
+_BURN_IN: Final = 100
+_MOVES: Final = 300
+_THINNING: Final = 3
+_SEED: Final = 21
+
+
+@dataclass(frozen=True, eq=False)
+class CovarianceSample:
+    """Sizes of the errors, and the coefficients of the shared effects given each of them.
+
+    Attributes
+    ----------
+    covariances : tuple of Discrepancy, length K
+        Drawn sizes.
+    mean : ndarray, shape (K, q)
+        Mean of the coefficients given them: known effects in standard deviations of their priors [-], then
+        the errors that repeat, by function and sensor [unit of the sensor].
+    covariance : ndarray, shape (K, q, q)
+        Their covariance.
+    """
+
+    covariances: tuple[Discrepancy, ...]
+    mean: Floats
+    covariance: Floats
+
+    @classmethod
+    def of_covariances(cls, data: DayData, covariances: Discrepancy) -> CovarianceSample:
+        """Sizes that are known."""
+        from scipy import linalg
+
+        gaussian = data.gaussian(covariances)
+        parts = [
+            np.eye(data.effects.shape[2]),
+            np.kron(np.eye(data.basis.shape[2]), root_of(covariances.hour)),
+        ]
+        if covariances.alike:
+            parts.append(root_of(covariances.alike * covariances.day))
+        turn = linalg.block_diag(*parts)
+        mean = turn @ gaussian.coefficients(data.error)
+        return cls((covariances,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
+
+    @property
+    def typical(self) -> Discrepancy:
+        """Sizes with the mean of every variance."""
+        mean_of = {
+            name: np.mean([getattr(draw, name) for draw in self.covariances], axis=0) for name in _PARTS
+        }
+        hours = [draw.correlation_hours for draw in self.covariances]
+        return replace(self.covariances[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
+
+
+_PARTS: Final = ("hour", "day", "drift", "white")
+
+
+def sample_covariances(
+    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats, least: Floats | float = 0.0
+) -> CovarianceSample:
+    """Draw sizes of the errors, the same numbers in every call.
+
+    Parameters
+    ----------
+    data : DayData
+        Errors and known effects.
+    first : Discrepancy
+        Where to begin, such as the most probable sizes.
+    scale : ndarray, shape (S,)
+        Scale of the half-t prior of each standard deviation. [unit]
+    limit : ndarray, shape (S,)
+        Largest standard deviation of each part. [unit]
+    least : float or ndarray, shape (S,)
+        Smallest standard deviation of the error that is correlated within a day. [unit]
+
+    Returns
+    -------
+    CovarianceSample
+
+    Examples
+    --------
+    Errors of 0.2 of every slot of 20 days, alone:
+
+    >>> from mascarin.calibration.errors.day_blocks import DayGrid
+    >>> from mascarin.calibration.errors.discrepancy import hour_basis
+    >>> grid = DayGrid(np.zeros(0, int), np.zeros(0, int), 20, 8, 3.0)
+    >>> basis = np.broadcast_to(hour_basis(np.arange(8) * 3.0), (20, 8, 5))
+    >>> error = 0.2 * np.random.default_rng(1).normal(size=(20, 8))
+    >>> data = DayData(grid, error, np.zeros((20, 8, 0)), basis, np.ones((20, 8), dtype=bool), np.zeros(1))
+    >>> small = 1e-4 * np.eye(1)
+    >>> first = Discrepancy(small, small, small, np.array([0.04]), np.zeros(1), 4.0)
+    >>> one = np.ones(1)
+    >>> sample = sample_covariances(data, first, scale=0.1 * one, limit=one)
+    >>> bool(0.15 < np.sqrt(sample.typical.white[0]) < 0.23)
+    True
+    """
+    chain = _Chain(data, first, scale, limit, least)
+    covariances, mean, covariance = [], [], []
+    for move in range(_BURN_IN + _MOVES):
+        now = chain.covariances
+        middle, root = chain.move()
+        if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
+            covariances.append(now)
+            mean.append(middle)
+            covariance.append(root @ root.T)
+    return CovarianceSample(tuple(covariances), np.array(mean), np.array(covariance))
+
+
+class _Chain:
+    """State of the sampling: sizes, and the values that are not there.
+
+    Arrays of values have the shape (D, H, S): days, slots of a day, sensors.
+    """
+
+    def __init__(
+        self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats, least: Floats | float
+    ) -> None:
+        self.covariances, self.scale, self.limit, self.least = first, scale, limit, least
+        self.rng = np.random.default_rng(_SEED)
+        grid, self.sensors = data.grid, data.sensors
+        self.shape = (grid.days, grid.slots, self.sensors)
+        self.there = data.present.reshape(self.shape)
+        self.value = np.where(self.there, data.error.reshape(self.shape), 0.0)
+        self.effect_count = data.effects.shape[2]
+        self.functions = data.basis.shape[2]
+        eye = np.eye(self.sensors)
+        level = np.broadcast_to(
+            np.tile(eye, (grid.slots, 1)), (grid.days, grid.slots * self.sensors, self.sensors)
+        )
+        columns = [data.effects, data.repeating(eye), *([level] if first.alike else [])]
+        self.columns = np.concatenate(columns, axis=2).reshape(*self.shape, -1)
+        # Eigenvectors of the correlation within a day, and the columns in them, by correlation time.
+        self.kernels = {h: drift_kernel(grid, h) for h in CORRELATION_HOURS}
+        self.spectra = {h: np.linalg.eigh(kernel) for h, kernel in self.kernels.items()}
+        self.turned = {h: _along_slots(vector.T, self.columns) for h, (_, vector) in self.spectra.items()}
+
+    def move(self) -> tuple[Floats, Floats]:
+        """Draw the errors, then the sizes.
+
+        Returns
+        -------
+        ndarray, shape (q,)
+            Mean of the coefficients given the sizes before.
+        ndarray, shape (q, q)
+            A root of their covariance.
+        """
+        covariances = self.covariances
+        value, vector = self.spectra[covariances.correlation_hours]
+        noise = np.sqrt(covariances.white)
+        strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
+        to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
+        slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
+        weight = 1.0 / (1.0 + slow_part)
+        columns = np.einsum(
+            "js,dhsq->dhjq", to_sensor, self.turned[covariances.correlation_hours], optimize=True
+        )
+        values = _along_slots(vector.T, self.value) @ to_sensor.T
+        ones = vector.T.sum(axis=1)[:, None, None] * to_sensor[None]  # (H, S, S): a constant of a day
+        middle, root, days = self._shared(covariances, columns, values, ones, weight)
+        shared = middle + root @ self.rng.standard_normal(middle.size)
+        remaining = values - columns @ shared
+        of_day = days(remaining)
+        remaining = remaining - np.einsum("hjs,ds->dhj", ones, of_day, optimize=True)
+        noise_of_slow = self.rng.standard_normal(remaining.shape) * np.sqrt(slow_part * weight)
+        slow = slow_part * weight * remaining + noise_of_slow
+        back = turn * noise[:, None]
+        slow = _along_slots(vector, slow) @ back.T
+        remaining = _along_slots(vector, remaining) @ back.T
+        white = np.where(self.there, remaining - slow, self.rng.standard_normal(remaining.shape) * noise)
+        self.value = np.where(self.there, self.value, self.value - remaining + slow + white)
+        self._draw_sizes(shared, of_day, slow, white)
+        return middle, root
+
+    def _shared(
+        self, covariances: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
+    ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
+        """Mean and root of the covariance of the coefficients, and a function that draws errors of days.
+
+        Columns, values and the constants of a day are turned, so that values are independent with the
+        precision `weight` (H, S).
+        """
+        precision = np.zeros((columns.shape[3],) * 2)
+        end = self.effect_count + self.functions * self.sensors
+        precision[: self.effect_count, : self.effect_count] = np.eye(self.effect_count)
+        precision[self.effect_count : end, self.effect_count : end] = np.kron(
+            np.eye(self.functions), np.linalg.inv(covariances.hour)
+        )
+        if covariances.alike:
+            precision[end:, end:] = np.linalg.inv(covariances.alike * covariances.day)
+        flat = columns.reshape(-1, columns.shape[3])
+        heavy = (columns * weight[None, :, :, None]).reshape(flat.shape)
+        precision += flat.T @ heavy
+        right = heavy.T @ values.ravel()
+        # Constants of days: their own precision is the same on all days.
+        weighted_ones = (ones * weight[:, :, None]).reshape(-1, self.sensors)
+        day_covariance = np.linalg.inv(
+            np.linalg.inv(covariances.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
+        )
+        with_columns = (
+            np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ weighted_ones
+        )  # (D, q, S)
+        with_values = values.reshape(len(values), -1) @ weighted_ones
+        tall = np.swapaxes(with_columns, 1, 2).reshape(-1, columns.shape[3])  # (D * S, q)
+        lifted = (day_covariance @ np.swapaxes(with_columns, 1, 2)).reshape(tall.shape)
+        precision -= tall.T @ lifted
+        right -= lifted.T @ with_values.ravel()
+        lower = np.linalg.cholesky(0.5 * (precision + precision.T))
+        root = np.linalg.inv(lower).T
+        middle = root @ (root.T @ right)
+        spread = root_of(np.asarray(day_covariance, dtype=np.float64))
+
+        def days(residual: Floats) -> Floats:
+            day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
+            return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
+
+        return middle, root, days
+
+    def _draw_sizes(self, shared: Floats, of_day: Floats, slow: Floats, white: Floats) -> None:
+        covariances, end = self.covariances, self.effect_count + self.functions * self.sensors
+        repeating = shared[self.effect_count : end].reshape(self.functions, self.sensors)
+        of_days, days = of_day.T @ of_day, len(of_day)
+        if covariances.alike:
+            level = shared[end:]
+            of_days, days = of_days + np.outer(level, level) / covariances.alike, days + 1
+        hours = self._correlation(slow)
+        value, vector = self.spectra[hours]
+        turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]
+        squares = np.einsum("dhs,dht->st", turned, turned, optimize=True)
+        self.covariances = replace(
+            covariances,
+            hour=self._covariance(covariances.hour, repeating.T @ repeating, self.functions),
+            day=self._covariance(covariances.day, of_days, days),
+            drift=at_least(
+                self._covariance(covariances.drift, squares, slow.shape[0] * slow.shape[1]), self.least
+            ),
+            white=self._variance(white),
+            correlation_hours=hours,
+        )
+
+    def _covariance(self, now: Floats, squares: Floats, count: int) -> Floats:
+        """Draw a covariance (S, S) given the sum of squares of as many errors."""
+        rate = _FREEDOM * np.diag(np.linalg.inv(now)) + self.scale**-2
+        inverse = self.rng.gamma(0.5 * (_FREEDOM + len(now)), 1.0, len(now)) / rate
+        total = squares + 2.0 * _FREEDOM * np.diag(inverse)
+        draw = inverse_wishart(self.rng, total, _FREEDOM + len(now) - 1.0 + count)
+        shrink = np.minimum(1.0, self.limit / np.sqrt(np.diag(draw)))
+        return np.asarray(draw * np.outer(shrink, shrink))
+
+    def _variance(self, white: Floats) -> Floats:
+        """Draw the variances of independent errors."""
+        rate = _FREEDOM / self.covariances.white + self.scale**-2
+        inverse = self.rng.gamma(0.5 * (_FREEDOM + 1.0), 1.0, rate.size) / rate
+        count = white.shape[0] * white.shape[1]
+        total = 0.5 * np.sum(white**2, axis=(0, 1)) + _FREEDOM * inverse
+        draw = total / self.rng.gamma(0.5 * (_FREEDOM + count), 1.0, rate.size)
+        return np.asarray(np.minimum(draw, self.limit**2))
+
+    def _correlation(self, slow: Floats) -> float:
+        """Draw the correlation time given the slow errors."""
+        inverse = np.linalg.inv(self.covariances.drift)
+        logs = []
+        for value, vector in self.spectra.values():
+            turned = _along_slots(vector.T, slow) / np.sqrt(value)[None, :, None]
+            square = float(np.sum((turned @ inverse) * turned))
+            logs.append(-0.5 * (square + slow.shape[0] * slow.shape[2] * float(np.log(value).sum())))
+        weight = np.exp(np.array(logs) - max(logs))
+        return float(self.rng.choice(list(self.spectra), p=weight / weight.sum()))
+
+
+def inverse_wishart(rng: np.random.Generator, total: Floats, freedom: float) -> Floats:
+    """Draw a covariance from an inverse Wishart distribution (Bartlett's decomposition).
+
+    Parameters
+    ----------
+    rng : Generator
+        Source of random numbers.
+    total : ndarray, shape (S, S)
+        Scale matrix. [unit^2]
+    freedom : float
+        Degrees of freedom, more than S - 1. [-]
+
+    Returns
+    -------
+    ndarray, shape (S, S)
+        [unit^2]
+
+    Examples
+    --------
+    >>> drawn = inverse_wishart(np.random.default_rng(1), np.eye(1), 1e6)
+    >>> bool(abs(drawn[0, 0] - 1e-6) < 1e-8)
+    True
+    """
+    size = len(total)
+    lower = np.tril(rng.standard_normal((size, size)), -1)
+    lower[np.diag_indices(size)] = np.sqrt(rng.chisquare(freedom - np.arange(size)))
+    part = np.linalg.solve(lower, _cholesky(0.5 * (total + total.T)).T)
+    draw = part.T @ part
+    return np.asarray(0.5 * (draw + draw.T))
+
+
+def _cholesky(total: Floats) -> Floats:
+    """Lower factor of a sum of squares, which may be singular to round-off.
+
+    Fewer errors than sensors make a singular sum. What the prior adds to its diagonal is lost where the
+    errors are large: then that much is added in units of each sensor that round-off cannot hide it.
+    """
+    try:
+        return np.asarray(np.linalg.cholesky(total))
+    except np.linalg.LinAlgError:
+        scale = np.sqrt(np.diag(total))
+        alike = total / np.outer(scale, scale)
+        lift = len(total) * _ROUND_OFF - min(float(np.linalg.eigvalsh(alike)[0]), 0.0)
+        return np.asarray(scale[:, None] * np.linalg.cholesky(alike + lift * np.eye(len(total))))
+
+
+def _along_slots(matrix: Floats, values: Floats) -> Floats:
+    """Multiply values (D, H, ...) with a matrix (H, H) along the slots of the day."""
+    flat = values.reshape(*values.shape[:2], -1)
+    return np.asarray((matrix @ flat).reshape(values.shape))

@@ -1,0 +1,184 @@
+"""A calibration refined with the errors of the sensors and of the model.
+
+The method: `mascarin.calibration.errors.joint_posterior`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.base.cost import Cost
+from mascarin.calibration.base.evaluations import Evaluator
+from mascarin.calibration.base.problem import CalibrationProblem
+from mascarin.calibration.base.result import Calibration
+from mascarin.calibration.base.search_options import SearchOptions
+from mascarin.calibration.base.uncertainty import AT_BOUND
+from mascarin.calibration.base.warnings import on_bounds, warnings
+from mascarin.calibration.errors.joint_posterior import (
+    ErrorStatement,
+    JointPosterior,
+    Linear,
+    best_positions,
+    joint_posterior,
+    objective,
+)
+from mascarin.calibration.errors.sensor_errors import sensor_columns
+from mascarin.calibration.methods.least_squares import residuals_and_derivatives
+
+Floats = NDArray[np.float64]
+Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]
+Further = Callable[[Floats], Floats]
+"""From parameter values (P,) to the effects (T, S, K) of numbers that are not estimated."""
+
+METHOD: Final = (
+    "joint normal distribution of the parameters, the errors of the sensors and the errors of the model, "
+    "linearized at the estimates, within the ranges, over the sizes of the errors that the days allow"
+)
+"""How the intervals are computed, for reports."""
+
+_MAX_STEPS: Final = 8
+_MAX_HALVINGS: Final = 3
+#: With which an estimate is said to lie beyond the end of its range. [-]
+_CONFIDENCE: Final = 0.95
+#: The search has converged when a step would lower minus the log density by less than this. [-]
+_MIN_DECREASE: Final = 0.05
+
+
+def estimate_jointly(
+    fit: Calibration,
+    stated: ErrorStatement,
+    options: SearchOptions,
+    further: Further | None = None,
+    *,
+    keep: Keep | None = None,
+) -> tuple[Calibration, JointPosterior]:
+    """Estimate the parameters again, together with the errors of the sensors and of the model.
+
+    Parameters
+    ----------
+    fit : Calibration
+        From `solve`; where the first linearization is made.
+    stated : ErrorStatement
+        What is known of the errors.
+    options : SearchOptions
+        Kind of derivatives.
+    further : callable, optional
+        From parameter values (P,) to the effects (T, S, K) of numbers that are not estimated, for one
+        standard uncertainty of each. They are computed where all else is linearized. [unit]
+    keep : callable, optional
+        From a key and a function to what the function returns, or returned before.
+
+    Returns
+    -------
+    Calibration
+        With the estimates and intervals of the joint distribution.
+    JointPosterior
+        The joint distribution.
+
+    Raises
+    ------
+    SolverError
+        The model cannot be simulated near the estimates.
+    """
+    problem = fit.problem
+    evaluator = Evaluator(Cost(problem, fit.cost_name))
+    compute: Keep = keep or (lambda key, make: make())
+
+    def linear(z: Floats) -> Linear:
+        residuals, jacobian = compute(
+            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, options)
+        )
+        simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
+        return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
+
+    # The estimates are those of the model as it will be used, with all other numbers as described.
+    linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
+    if further is not None:
+        linearization = replace(linearization, further=further(problem.values(linearization.z[None])[0]))
+    distribution = joint_posterior(problem, linearization, stated)
+    return _reported(fit, problem, linearization, distribution, stated), distribution
+
+
+def _searched(
+    problem: CalibrationProblem, linear: Callable[[Floats], Linear], stated: ErrorStatement, first: Floats
+) -> Linear:
+    """Linearize about better and better estimates, until the density no longer rises."""
+    linearization, covariances = linear(first), None
+    for _ in range(_MAX_STEPS):
+        goal, covariances = best_positions(problem, linearization, stated, covariances)
+        before = objective(problem, linearization, stated, covariances)
+        for _ in range(_MAX_HALVINGS):
+            trial = linear(goal)
+            after = objective(problem, trial, stated, covariances)
+            if after <= before:
+                break
+            goal = 0.5 * (goal + linearization.z)
+        if after <= before:
+            linearization = trial
+        if before - after < _MIN_DECREASE:
+            break
+    return linearization
+
+
+def _reported(
+    fit: Calibration,
+    problem: CalibrationProblem,
+    linearization: Linear,
+    distribution: JointPosterior,
+    stated: ErrorStatement,
+) -> Calibration:
+    """The calibration with the estimates of the joint distribution."""
+    z = np.where(
+        linearization.z < AT_BOUND, 0.0, np.where(linearization.z > 1.0 - AT_BOUND, 1.0, linearization.z)
+    )
+    x = problem.values(z[None])[0]
+    tail = 0.5 * (1.0 - fit.confidence)
+    low, high = np.quantile(distribution.widened(), [tail, 1.0 - tail], axis=0)
+    # An estimate on the end of its range is in no interval with equal tails.
+    low, high = np.minimum(low, z), np.maximum(high, z)
+    covariance = distribution.covariance[: z.size, : z.size]
+    sd = np.sqrt(np.diag(covariance))
+    spread = np.where(sd > 0.0, sd, 1.0)  # an estimate on its bound has no variance
+    correlation = covariance / np.outer(spread, spread)
+    residuals = np.where(
+        problem.mask, linearization.simulated - np.where(problem.mask, problem.measured, 0.0), 0.0
+    )
+    uncertainty = replace(
+        fit.uncertainty, low=low, high=high, sd=sd, correlation=correlation, covariance=covariance,
+        error=tuple(distribution.error_covariances.spread.tolist()),
+    )  # fmt: skip
+    of_sensors = sensor_columns(problem, stated.sensors, linearization.simulated, stated.step)[0]
+    error_columns = np.concatenate([of_sensors, linearization.further], axis=2)
+    columns = distribution.effects(linearization.jacobian, error_columns, stated.hours)
+    expected, _ = distribution.predicted(columns, linearization.z)
+    remaining = np.where(problem.mask, residuals + expected, 0.0)
+    cost = Cost(problem, fit.cost_name)
+    each = cost.of_sensors(residuals[None])
+    return replace(
+        fit,
+        x=x,
+        low=problem.values(low[None])[0],
+        high=problem.values(high[None])[0],
+        correlation=correlation,
+        cost=float(cost.total(x[None], each)[0]),
+        of_sensors=each[0],
+        residuals=np.where(problem.mask, residuals, np.nan),
+        uncertainty=uncertainty,
+        on_bound=on_bounds(problem, z, _outward(z, distribution), uncertainty),
+        warnings=tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian)),
+        uncertainty_method=METHOD,
+        reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
+    )
+
+
+def _outward(z: Floats, distribution: JointPosterior) -> Floats:
+    """Sign of the derivative of the cost by positions (P,) on an end of their range, 0 if not significant."""
+    from scipy import stats
+
+    significant = distribution.beyond > float(stats.chi2.ppf(_CONFIDENCE, 1))
+    return np.where(significant, np.where(z < 0.5, 1.0, -1.0), 0.0)

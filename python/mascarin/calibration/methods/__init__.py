@@ -1,0 +1,3 @@
+"""Methods that look for the best parameters and for their distribution."""
+
+from __future__ import annotations

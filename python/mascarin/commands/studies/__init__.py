@@ -1,0 +1,3 @@
+"""Commands of studies, designs and GenOpt projects."""
+
+from __future__ import annotations

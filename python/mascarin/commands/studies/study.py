@@ -1,0 +1,287 @@
+"""The commands that run a study or one of its steps."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
+
+from cyclopts import Parameter
+
+from mascarin._io.numbers import beside_limit, with_interval
+from mascarin.commands.options.exit_code import exit_code
+from mascarin.commands.options.inputs import AsJson, Outside
+from mascarin.commands.options.output import number, print_json, print_table
+
+if TYPE_CHECKING:
+    from mascarin.simulation.checks.warning_kinds import RunWarning
+    from mascarin.study import Study, StudyResults
+
+
+_SHOWN: Final = 10
+_METRICS: Final = ("rmse", "sd", "bias", "max_error")
+
+
+def study(
+    file: str,
+    /,
+    *,
+    out: Annotated[Path, Parameter(alias="-o")],
+    figures: bool = True,
+    allow_outside: Outside = False,
+    as_json: AsJson = False,
+) -> int:
+    """Run a whole study: compare, calibrate, validate.
+
+    Five steps: compare the uncalibrated model with the measurements, sensitivity analysis, calibration,
+    comparison of the calibrated model, validation on days that were not used. After an interruption the same
+    command continues the work and gives the same result. Exits with 1 when the calibrated model misses a
+    criterion, or a run is not sound.
+
+    Parameters
+    ----------
+    file : str
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
+    out : Path
+        Folder for study.json, tables, figures, the report and intermediate results.
+    figures : bool
+        Write the figures as files, too; the report does not need them.
+    """
+    from mascarin.study.results.document.comparison import run_warnings
+
+    opened = _open(file, allow_outside)
+    results = opened.run(out, figures=figures, progress=True)
+    if as_json:
+        print((out / "study.json").read_text(encoding="utf-8"), end="")
+    lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
+    if results.sensitivity is not None:
+        lines += [line.after("sensitivity analysis") for line in results.sensitivity.warnings]
+    _print_warnings([*(contradiction.text for contradiction in results.contradictions), *lines])
+    _print_summary(opened, results, out)
+    verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
+    return _exit_code(verdicts, lines)
+
+
+def sensitivity(
+    file: str,
+    /,
+    *,
+    out: Annotated[Path, Parameter(alias="-o")],
+    method: Literal["spectral", "rbd-fast", "sobol", "morris"] | None = None,
+    allow_outside: Outside = False,
+    as_json: AsJson = False,
+) -> int:
+    """Run the sensitivity analysis of a study.
+
+    Varies every parameter that has a range, on the days of the calibration. After an interruption the same
+    command continues the work; the whole study uses its results. Exits with 1 when a run is not sound: a
+    balance of it does not close, or a temperature has no cause.
+
+    Parameters
+    ----------
+    file : str
+        Study file (YAML), or the name of an example study.
+    out : Path
+        Folder for sensitivity.json, a table, figures and intermediate results.
+    method : str
+        Method to use instead of the one in the study; all but spectral need the package SALib.
+    """
+    from mascarin.study import single_steps
+
+    content = single_steps.sensitivity(_open(file, allow_outside).context, out, method=method)
+    _print_warnings(content["warnings"])
+    code = exit_code(warnings=content["warnings"])
+    if as_json:
+        print_json(content)
+        return code
+    rows: list[tuple[str | float, ...]] = []
+    for output, indices in content["sensitivity"].items():
+        ranked = sorted(indices.items(), key=lambda item: -(item[1]["share"] or 0.0))
+        rows += [
+            (output, path, *(round(value[key] or 0.0, 4) for key in ("share", "low", "high")))
+            for path, value in ranked[:_SHOWN]
+        ]
+    print_table(("sensor", "parameter", "S1", "low", "high"), rows)
+    return code
+
+
+def calibrate(
+    file: str,
+    /,
+    *,
+    out: Annotated[Path, Parameter(alias="-o")],
+    allow_outside: Outside = False,
+    as_json: AsJson = False,
+) -> int:
+    """Calibrate the parameters of a study.
+
+    The calibration alone, and the errors of the calibrated model on days that were not used. After an
+    interruption the same command continues the work; the whole study uses its results. Exits with 1 when the
+    calibrated model misses a criterion, or a run is not sound.
+
+    Parameters
+    ----------
+    file : str
+        Study file (YAML), or the name of an example study.
+    out : Path
+        Folder for calibration.json, tables and intermediate results.
+    """
+    from mascarin.study import single_steps
+
+    content = single_steps.calibration(_open(file, allow_outside).context, out)
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
+    if as_json:
+        print_json(content)
+    else:
+        rows = [
+            (
+                path,
+                "" if estimate["nominal"] is None else number(estimate["nominal"]),
+                *_with_interval(estimate),
+                estimate["unit"] or "",
+            )
+            for path, estimate in content["parameters"].items()
+        ]
+        print_table(("parameter", "nominal", "fitted", "low", "high", "unit"), rows)
+        print()
+        _print_scores(content)
+        for note in content["notes"]:
+            print(f"note: {note['text']}", file=sys.stderr)
+    return _exit_code(_verdicts(content, "fitted"), content["warnings"], sound=content["sound"])
+
+
+def validate(
+    file: str,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    allow_outside: Outside = False,
+    as_json: AsJson = False,
+) -> int:
+    """Compare the uncalibrated model with measurements.
+
+    Only the first step of a study: nothing is calibrated. Exits with 1 when a criterion is missed, or the run
+    is not sound.
+
+    Parameters
+    ----------
+    file : str
+        Study file (YAML), or the name of an example study.
+    out : Path
+        Folder for validation.json, series.csv (measured, predicted, band and residual of each sensor) and
+        tables. Default: nothing is written.
+    """
+    from mascarin.study import single_steps
+
+    content = single_steps.validation(_open(file, allow_outside).context, out)
+    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
+    if as_json:
+        print_json(content)
+    else:
+        _print_scores(content)
+    return _exit_code(_verdicts(content, "nominal"), content["warnings"], sound=content["sound"])
+
+
+def _open(file: str, allow_outside: bool) -> Study:
+    """Open a study, and say on standard error what is suspicious in its tables and what is left out."""
+    from mascarin.building.engine_input import measured_columns
+    from mascarin.commands.options.tables import show_columns
+    from mascarin.examples import locate
+    from mascarin.study import Study
+
+    opened = Study.from_yaml(locate(file), allow_outside=allow_outside)
+    sensors = {name for entry in opened.plan.sensors.values() for name in entry.columns}
+    show_columns(opened.climate, opened.measurements, sensors | set(measured_columns(opened.building)))
+    said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
+    lines = [note for note in said if ": warning: " in note]
+    if opened.quality:
+        lines.append("suspicious periods in the measurements:")
+        lines += [
+            f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}"
+            f"{'; left out of all comparisons' if opened.context.inputs.leaves_out(s) else ''}"
+            for s in opened.quality
+        ]
+    if lines:
+        print("\n".join(lines), file=sys.stderr)
+    return opened
+
+
+def _with_interval(estimate: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Estimate and interval of a parameter, which may not be stated."""
+    shown = with_interval(estimate["fitted"], estimate["low"], estimate["high"])
+    return shown if estimate.get("stated", True) else (shown[0], "not stated", "")
+
+
+def _texts(contradictions: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What the model or the study contradicts, in sentences."""
+    return [str(contradiction["text"]) for contradiction in contradictions]
+
+
+def _print_warnings(lines: Sequence[str]) -> None:
+    """Warnings of the runs, on standard error."""
+    for line in lines:
+        print(f"warning: {line}", file=sys.stderr)
+
+
+def _print_scores(content: Mapping[str, Any]) -> None:
+    rows = [
+        (sensor, period, model, *(_rounded(scores[model][metric]) for metric in _METRICS))
+        for sensor, periods in content["sensors"].items()
+        for period, scores in periods.items()
+        for model in content["models"]
+    ]
+    print_table(("sensor", "period", "model", "rmse", "sd", "bias", "max"), rows)
+
+
+def _rounded(value: float | None) -> str | float:
+    return "" if value is None else round(value, 3)
+
+
+def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]:
+    return [verdict for verdict in content["criteria"] if verdict["model"] == model]
+
+
+def _exit_code(
+    verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[RunWarning], *, sound: bool = True
+) -> int:
+    """Print the criteria that are missed; return the exit code."""
+    missed = [verdict for verdict in verdicts if not verdict["passed"]]
+    for verdict in missed:
+        value, unit = verdict["value"], verdict["unit"]
+        measured = "no common values"
+        if value is not None:
+            measured = f"{beside_limit(value, verdict['limit'], least=3)[0]} {unit.replace('degC', 'K')}"
+        where = f"{verdict['sensor']}, {verdict['period']}"
+        print(f"missed: {where}: {verdict['name']}; found {measured}", file=sys.stderr)
+    if verdicts:
+        print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
+    return exit_code(warnings=warnings, sound=sound, missed=len(missed))
+
+
+def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
+    """Print a summary on standard error."""
+    count = len(opened.plan.sensors)
+    lines = [f"{opened.plan.name}: {opened.plan.observed}, {count} sensor{'s' * (count != 1)}"]
+    lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
+    for run in (results.nominal, results.fitted):
+        for sensor, periods in run.scores.items():
+            lines += [
+                f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
+                for period, m in periods.items()
+            ]
+    lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
+    if results.aims:
+        reached = sum(aim.passed for aim in results.aims)
+        lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")
+    if results.diagnosis.causes:
+        lines.append("causes of the remaining error:")
+        lines += [f"  {number}. {cause.text}" for number, cause in enumerate(results.diagnosis.causes, 1)]
+    if results.days.proposed:
+        named = ", ".join(results.days.days[d] for d in results.days.proposed)
+        far = int(results.days.extrapolated.sum())
+        lines.append(f"days outside of what the identification has excited: {far}; to use next: {named}")
+    residual = results.fitted.results.energy.closure
+    lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
+    lines.append(f"report: {out / 'report.html'}")
+    print("\n".join(lines), file=sys.stderr)

@@ -1,0 +1,3 @@
+"""The algorithms that a command file can name, and their settings."""
+
+from __future__ import annotations

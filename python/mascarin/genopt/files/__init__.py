@@ -1,0 +1,3 @@
+"""The files of a GenOpt project: syntax, numbers, functions, entries."""
+
+from __future__ import annotations

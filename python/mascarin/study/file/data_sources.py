@@ -1,0 +1,132 @@
+"""The keys of a study file that say where weather and measurements come from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from pydantic import Field, model_validator
+
+from mascarin.building.base.part import Part, fault, insist
+from mascarin.study.file.field_types import Columns, Duration, Shift, TimeZone
+
+if TYPE_CHECKING:
+    from typing import Self
+
+#: Keys of a table that hold for weather and measurements where both are in it.
+OF_THE_TABLE: Final = (
+    "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
+    "tolerance", "shift",
+)  # fmt: skip
+
+#: Keys of a study that name files.
+FILE_KEYS: Final = ("building", "epw", "tmy", "table")
+
+
+class Table(Part):
+    """A table of measured columns."""
+
+    table: str = Field(
+        description="CSV or Parquet file, its path starting at the folder of the study, or data:NAME of a "
+        "known data set"
+    )
+    timezone: TimeZone = Field(
+        description="Time zone of the stamps: IANA name (Europe/Paris) or offset (UTC+4)"
+    )
+    stamps: Literal["start", "end"] = Field(
+        "start", description="Whether a stamp marks the start or the end of its interval"
+    )
+    mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
+    separator: str | None = Field(None, description="Column separator; detected by default")
+    decimal: str | None = Field(None, description="Decimal mark; detected by default")
+    time: str | tuple[str, ...] | None = Field(
+        None, description="Time column or columns; detected by default"
+    )
+    time_format: str | None = Field(None, description="Format of the stamps, as in strptime")
+    skip_lines: int | None = Field(
+        None, ge=0, description="Lines before the names of the columns; detected by default"
+    )
+    missing: tuple[str | float, ...] = Field(
+        (), description="Entries that mark a missing value, such as -999"
+    )
+    tolerance: Duration | None = Field(
+        None,
+        description="Largest deviation of a stamp from the regular grid, to which it is moved; by default a "
+        "tenth of the step",
+    )
+    shift: Shift | None = Field(
+        None, description="Added to every stamp, such as -30min where the clock of the logger was fast"
+    )
+    fill_gaps: Duration | None = Field(
+        None,
+        description="Gaps up to this length are filled by linear interpolation in the inputs of the model, "
+        "never in "
+        "the columns of the sensors",
+    )
+    inspect: tuple[str, ...] = Field(
+        (),
+        description="Further columns to check for suspicious values; by default all columns of numbers",
+    )
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options that every table reader takes."""
+        keys = (
+            "timezone",
+            "stamps",
+            "separator",
+            "decimal",
+            "time",
+            "time_format",
+            "skip_lines",
+            "mean",
+            "missing",
+            "tolerance",
+            "shift",
+        )
+        return {key: getattr(self, key) for key in keys}
+
+
+class MeasuredWeather(Table):
+    """Weather from a measured table."""
+
+    columns: dict[str, Columns] = Field(description="Climate channel -> column")
+    absent: tuple[str, ...] = Field(
+        (), description="Channels that were not measured; they get a neutral value"
+    )
+
+
+def with_shared_table(data: Any) -> Any:
+    """Weather and measurements in one table: what one of them says of it holds for the other one too."""
+    if not isinstance(data, dict) or not isinstance(data.get("climate"), dict):
+        return data
+    weather, measured = data["climate"].get("measured"), data.get("measurements")
+    measured = {} if measured is None else measured
+    if not isinstance(weather, dict) or not isinstance(measured, dict):
+        return data
+    if "table" in weather and "table" in measured and weather["table"] != measured["table"]:
+        return data
+    said = {key: value for key, value in (weather | measured).items() if key in OF_THE_TABLE}
+    both = {**data["climate"], "measured": {**said, **weather}}
+    return {**data, "climate": both, "measurements": {**said, **measured}}
+
+
+class ClimateSource(Part):
+    """Source of the weather data; exactly one kind."""
+
+    epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
+    tmy: str | None = Field(None, description="TMY3 file")
+    measured: MeasuredWeather | None = Field(None, description="A measured table")
+    check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
+    shift: Shift | None = Field(
+        None, description="Added to all times of a weather file; that of a table is stated beside its columns"
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        given = [key for key in ("epw", "tmy", "measured") if getattr(self, key) is not None]
+        if len(given) != 1:
+            insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
+        if self.shift is not None and self.measured is not None:
+            insist(fault(("shift",), f"{self.shift} beside measured", "the shift of a table under measured",
+                         f"Write shift: {self.shift} under measured."))  # fmt: skip
+        return self

@@ -1,0 +1,271 @@
+"""The inputs of a study, read from its files or given as objects, with their names checked."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from mascarin._io.regular import requiring
+from mascarin.building import Building, load
+from mascarin.building.reading import explained, files_of
+from mascarin.errors import InputError
+from mascarin.simulation.preparation.prepare import in_climate, require_inputs
+from mascarin.study.file.description import StudyFile, StudyPlan, read_study
+from mascarin.study.file.inputs import (
+    Beside,
+    filled,
+    find,
+    open_climate,
+    open_measurements,
+    require_one_clock,
+)
+from mascarin.study.file.locations import Faults, Places
+from mascarin.study.file.names import check_names
+from mascarin.study.file.patterns import tied_building, written_out
+from mascarin.study.file.study_inputs import StudyInputs
+from mascarin.tables.quality import mask
+from mascarin.tables.quality.filled_values import filled_stretches
+from mascarin.tables.reading.files import file_hash
+from mascarin.validation.criteria import Criterion
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.tables.quality import Stretch
+    from mascarin.weather import Climate, Measurements
+
+
+def from_file(path: Path, *, allow_outside: bool = False) -> StudyInputs:
+    """Read a study file and the files that it names.
+
+    Parameters
+    ----------
+    path : Path
+        The study file.
+    allow_outside : bool
+        Whether it may name files outside its folder.
+
+    Returns
+    -------
+    StudyInputs
+        The inputs.
+
+    Raises
+    ------
+    InputError
+        A file or a name cannot be used.
+    """
+    beside = Beside(path.parent, allow_outside)
+    with requiring(beside.require_inside):  # also of what a description extends
+        return _from_file(path, beside)
+
+
+def _from_file(path: Path, beside: Beside) -> StudyInputs:
+    file = read_study(path)
+    places, faults = Places(path), Faults()
+    with places.blame("building"):
+        described = find(file.building, beside)
+    as_described = load(described)
+    with places.blame("set"):
+        building = as_described.replace(file.set)
+    building = tied_building(file, building, places)
+    file = written_out(file, building, places)
+    check_names(file, building, places, faults)
+    with faults.kept():
+        require_one_clock(file, places)
+    with faults.kept():
+        climate = open_climate(file.climate, beside, building, places)
+    with faults.kept():
+        read = open_measurements(file, beside, building, places, Places(described))
+    faults.raise_all(path)
+    building = _with_sky(building, climate, file)
+    quality = read.quality() + filled_stretches(read.data, _columns(file)) + _weather_quality(file, climate)
+    longest = file.measurements.fill_gaps
+    if longest is not None:
+        read = filled(read, building, longest)
+    compared = _masked(read, file, quality)
+    hashes = {
+        "study": _hash_of_all(path),
+        "building": _hash_of_all(described),
+        "measurements": read.sha256 or "",
+        "climate": climate.sha256 or "",
+    }
+    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path)
+
+
+def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building:
+    """Take the infrared radiation of the weather, unless the study names a parameter of a sky model."""
+    named: list[str] = list(plan.identification.parameters) if plan.identification else []
+    if plan.sensitivity:
+        named += [*plan.sensitivity.ranges, *plan.sensitivity.distributions, *plan.sensitivity.leave_out]
+        named += plan.sensitivity.only or ()
+    return in_climate(building, climate, varied=named)
+
+
+def from_objects(
+    building: Building, climate: Climate, measurements: Measurements, plan: Mapping[str, Any]
+) -> StudyInputs:
+    """Check a study that is made of objects.
+
+    Parameters
+    ----------
+    building, climate, measurements
+        The objects.
+    plan : mapping
+        The fields of `StudyPlan`, each as an object or as the plain values of a file.
+
+    Returns
+    -------
+    StudyInputs
+        The inputs.
+
+    Raises
+    ------
+    InputError
+        A value or a name cannot be used.
+    """
+    require_inputs(building, climate, measurements)
+    plain = {key: _plain(value) for key, value in plan.items()}
+    try:
+        checked = StudyPlan.model_validate(plain)
+    except ValidationError as error:
+        raise explained(error, plain, "study") from None
+    places, faults = Places(), Faults()
+    building = tied_building(checked, building, places)
+    checked = written_out(checked, building, places)
+    check_names(checked, building, places, faults)
+    faults.raise_all(places.file)
+    building = _with_sky(building, climate, checked)
+    quality = measurements.quality() + filled_stretches(measurements.data, _columns(checked))
+    compared = _masked(measurements, checked, quality)
+    hashes = {
+        "study": _digest(checked.model_dump(mode="json")),
+        "building": _digest(building.model_dump(mode="json")),
+        "measurements": compared.sha256 or _digest_of_table(compared.data),
+        "climate": climate.sha256 or _digest_of_table(climate.data),
+    }
+    return StudyInputs(checked, building, climate, compared, measurements, quality, places, hashes)
+
+
+def with_measurements(inputs: StudyInputs, measurements: Measurements) -> StudyInputs:
+    """The inputs of a study with other measurements, whose quality is checked.
+
+    Parameters
+    ----------
+    inputs : StudyInputs
+        Of a study.
+    measurements : Measurements
+        With the columns that its sensors name.
+
+    Returns
+    -------
+    StudyInputs
+    """
+    plan = inputs.plan
+    quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))
+    compared = _masked(measurements, plan, quality)
+    return replace(
+        inputs,
+        measurements=compared,
+        driving=measurements,
+        quality=quality,
+        hashes={**inputs.hashes, "measurements": compared.sha256 or _digest_of_table(compared.data)},
+    )
+
+
+def identified(parameters: Sequence[str] | Mapping[str, Any], options: Mapping[str, Any]) -> dict[str, Any]:
+    """The identification of a study from parameters as Python gives them.
+
+    Parameters
+    ----------
+    parameters : sequence of str or mapping
+        Paths, or path -> None, (low, high), a mapping with ``low``, ``high``, ``prior``, or an object with
+        these attributes.
+    options : mapping
+        Other fields of the identification, such as ``method`` and ``starts``.
+
+    Returns
+    -------
+    dict
+        Plain values, as in a file.
+
+    Raises
+    ------
+    InputError
+        One text was given where several are expected.
+    """
+    if isinstance(parameters, str):
+        raise InputError(
+            f"parameters: found '{parameters}', expected a list of paths or a mapping; write ['{parameters}']"
+        )
+    given = parameters if isinstance(parameters, Mapping) else dict.fromkeys(parameters)
+    return {**options, "parameters": {path: _free(value) for path, value in given.items()}}
+
+
+def _free(value: Any) -> Any:
+    """What is known of one parameter, as in a file."""
+    if isinstance(value, tuple | list) and len(value) == 2:
+        return {"low": value[0], "high": value[1]}
+    if hasattr(value, "lower") and hasattr(value, "upper"):
+        known = {"low": value.lower, "high": value.upper, "prior": getattr(value, "prior", None)}
+        return {key: number for key, number in known.items() if number is not None}
+    return _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    """Times as texts and criteria as mappings, in lists and mappings as well."""
+    if isinstance(value, Criterion):
+        return value.model_dump(exclude_none=True)
+    if isinstance(value, datetime):
+        return str(value)
+    if isinstance(value, Mapping):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    return value
+
+
+def _weather_quality(file: StudyFile, climate: Climate) -> list[Stretch]:
+    """Suspicious values of measured weather, unless it is in the table of the measurements."""
+    weather = file.climate.measured
+    if weather is None or weather.table == file.measurements.table:
+        return []
+    return climate.quality()
+
+
+def _columns(plan: StudyPlan) -> list[str]:
+    """Columns of the sensors."""
+    return list(dict.fromkeys(column for sensor in plan.sensors.values() for column in sensor.columns))
+
+
+def _masked(read: Measurements, plan: StudyPlan, quality: Sequence[Stretch]) -> Measurements:
+    kinds = plan.quality.mask
+    if not kinds:
+        return read
+    sensors = {column for sensor in plan.sensors.values() for column in sensor.columns}
+    chosen = [stretch for stretch in quality if stretch.channel in sensors]
+    return read.masked(mask(read.data, chosen, list(kinds)))
+
+
+def _hash_of_all(path: Path) -> str:
+    """SHA-256 of a file, and of the files that it extends."""
+    hashes = [file_hash(file) for file in files_of(path)]
+    return hashes[0] if len(hashes) == 1 else hashlib.sha256(" ".join(hashes).encode()).hexdigest()
+
+
+def _digest(content: Any) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
+
+
+def _digest_of_table(table: pd.DataFrame) -> str:
+    found = hashlib.sha256(",".join(map(str, table.columns)).encode())
+    found.update(table.index.asi8.tobytes())  # type: ignore[attr-defined]
+    found.update(table.to_numpy(dtype="float64").tobytes())
+    return found.hexdigest()

@@ -1,0 +1,147 @@
+"""A sensor of a study file."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import AliasChoices, Field
+
+from mascarin.building.base.part import Part
+from mascarin.calibration.errors.sensor_errors import SensorError
+from mascarin.calibration.errors.stated_errors import shared_errors
+from mascarin.study.file.field_types import Duration, Hours, Spans, Stretch
+from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
+
+
+class SensorPeriods(Part):
+    """Periods of one sensor, in place of those of the study; what is excluded is excluded in addition."""
+
+    identification: Spans | None = Field(
+        None, description="Start and end of its identification period, or a list of such pairs"
+    )
+    corroboration: Spans | None = Field(
+        None, description="Start and end of its validation period, or a list of such pairs"
+    )
+    exclude: tuple[Stretch, ...] = Field(
+        (), description="Days and pairs of times in which it is not compared"
+    )
+    exclude_hours: tuple[Hours, ...] = Field(
+        (), description="Pairs of hours of the day in which it is not compared"
+    )
+
+
+class Sensor(Part):
+    """A measured series and the model output that it is compared with."""
+
+    column: str | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
+        description="Column, or several columns, of which the mean is used"
+    )
+    output: str = Field(description="Output of the model")
+    expanded_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        validation_alias=AliasChoices("expanded_uncertainty", "uncertainty"),
+        description="Half-width of the 95 % interval of a measured value (GUM, coverage factor 1.96); the "
+        "older name uncertainty works as well; 0.5 for a sensor in degC when absent, required for other "
+        "units [unit of the output]",
+    )
+    standard_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        description="Standard deviation of the error of a measured value (GUM), in place of "
+        "expanded_uncertainty [unit of the output]",
+    )
+    relative: float = Field(
+        0.0,
+        ge=0,
+        lt=1,
+        description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
+    )
+    offset: float | None = Field(
+        None,
+        ge=0,
+        description="Standard uncertainty of a constant added to all readings, such as that of the "
+        "calibration of the sensor (accuracy); estimated together with the parameters; by default the "
+        "stated standard uncertainty less the scatter of the readings; 0 for none [unit of the output]",
+    )
+    common: float = Field(
+        0.0,
+        ge=0,
+        description="Standard uncertainty of a constant that all sensors with this key share, such as that "
+        "of a logger [unit of the output]",
+    )
+    gain: float = Field(
+        0.0,
+        ge=0,
+        lt=1,
+        description="Standard uncertainty of a part of the distance from `reference` that is added to it [-]",
+    )
+    reference: float = Field(0.0, description="Reading at which a gain has no effect [unit of the output]")
+    clock: Duration | None = Field(
+        None, description="Standard uncertainty of the time by which the clock of the logger is fast"
+    )
+    depth: float | None = Field(
+        None,
+        gt=0,
+        description="Standard uncertainty of the depth of a sensor in a wall (`sensors` of the building) [m]",
+    )
+    repeatability: float | None = Field(
+        None,
+        gt=0,
+        description="Standard deviation of repeated readings under the same conditions, without what they "
+        "share; by default estimated from the record [unit of the output]",
+    )
+    label: str | None = Field(None, description="Name in the report")
+    use: bool = Field(True, description="Whether it is used in the identification")
+    periods: SensorPeriods | None = Field(
+        None, description="Its own periods, where they differ from those of the study"
+    )
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns it is made of."""
+        return (self.column,) if isinstance(self.column, str) else self.column
+
+    def stated_uncertainty(self, unit: str, name: str) -> SensorUncertainty:
+        """Standard uncertainty of the measured values.
+
+        Raises
+        ------
+        InputError
+            Standard and expanded uncertainty together, or none although the unit is not degC.
+        """
+        return SensorUncertainty.stated(
+            unit,
+            standard=self._standard,
+            expanded=self.expanded_uncertainty,
+            relative_expanded=self.relative or None,
+            where=f"sensors.{name}",
+        )
+
+    @property
+    def uncertainty(self) -> float:
+        """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
+        if self.expanded_uncertainty is not None:
+            return self.expanded_uncertainty
+        if self._standard is not None:
+            return COVERAGE_FACTOR * self._standard
+        return DEFAULT_EXPANDED["degC"]
+
+    @property
+    def _standard(self) -> float | None:
+        """Standard uncertainty of a reading: as stated, else from its parts. [unit of the output]"""
+        if self.standard_uncertainty is not None or self.expanded_uncertainty is not None:
+            return self.standard_uncertainty
+        parts = math.hypot(self.offset or 0.0, self.common, self.repeatability or 0.0)
+        return parts or None
+
+    @property
+    def states_errors(self) -> bool:
+        """Whether the study says which errors the readings share."""
+        shared = (self.offset, self.common, self.gain, self.clock, self.depth)
+        return any(part is not None and part != 0.0 for part in shared)
+
+    def shared_errors(self, stated: SensorUncertainty, random: float) -> SensorError:
+        """Errors that all readings share; see `mascarin.calibration.errors.stated_errors`."""
+        return shared_errors(self, stated, random)

@@ -1,0 +1,222 @@
+"""Forms of the model and errors of sensors and model, as the report shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin._io.units import difference
+from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
+from mascarin.study.steps.error_model import stated_sizes, statement
+
+if TYPE_CHECKING:
+    from mascarin.study.context.context import StudyContext
+    from mascarin.study.steps.findings import Combination
+
+#: Weight from which a form is named beside the best one. [-]
+_NAMED: Final = 0.05
+#: Part of its limit from which the size of an error is said to reach it. [-]
+_REACHED: Final = 0.98
+
+
+def error_entries(study: StudyContext, found: Combination | None) -> dict[str, Any]:
+    """Weights of the forms, estimated errors of the sensors, and sizes of the errors of the model."""
+    if found is None:
+        return {}
+    return {
+        "alternatives": _forms(found),
+        "sensor_errors": _of_sensors(study, found),
+        "model_errors": _of_model(study, found),
+    }
+
+
+def error_tables(study: StudyContext, found: Combination | None) -> list[dict[str, Any]]:
+    """The same as tables of the report."""
+    if found is None:
+        return []
+    tables = [_table_of_sensors(study, found), _table_of_model(study, found)]
+    return [_table_of_forms(found), *tables] if len(found.forms) > 1 else tables
+
+
+def error_words(study: StudyContext, found: Combination | None) -> list[str]:
+    """What the identification can tell of the form of the model, and errors that reach their limit."""
+    if found is None:
+        return []
+    words = [] if len(found.forms) == 1 else [_words_of_forms(found)]
+    for name, entry in _of_model(study, found).items():
+        full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
+        unit = difference(_unit(study, name))
+        words += [
+            f"{_label(study, name)}: the error of the model ({_PARTS[part]}) reaches the limit of "
+            f"{entry['limit']:.2g} {unit}; the model misses more than an error of the model may absorb."
+            for part in full
+        ]
+    return words
+
+
+def _words_of_forms(found: Combination) -> str:
+    """Which form is used, and what the days left out say of the others."""
+    used, alike = found.forms[0], found.alike
+    near = {form.label for form, _ in alike}
+    behind = used.joint.by_day.sum() - found.by_day.sum(axis=1)
+    pairs = zip(found.forms[1:], found.weights[1:], behind[1:], strict=True)
+    worse = [
+        f"'{form.label}' ({100 * weight:.0f} %, log density {abs(less):.1f} "
+        f"{'lower' if less > 0 else 'higher'})"
+        for form, weight, less in pairs
+        if weight >= _NAMED and form.label not in near
+    ]
+    said = [f"Form of the model: '{used.label}' is used (weight {100 * found.weights[0]:.0f} %)."]
+    if alike:
+        same = ", ".join(f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in alike)
+        said.append(f"The identification does not tell it from {same}.")
+    if worse:
+        said.append(f"Less likely over all days left out, but not excluded: {', '.join(worse)}.")
+    if not alike and not worse:
+        said.append(f"None of the other {len(found.forms) - 1} forms comes near.")
+    if len(found.kept) > 1:
+        said.append(
+            f"The intervals of parameters and predictions are those of the mixture of {len(found.kept)} "
+            "forms."
+        )
+    return " ".join(said)
+
+
+def _forms(found: Combination) -> list[dict[str, Any]]:
+    return [
+        {
+            "label": form.label,
+            "choice": dict(form.choice),
+            "free_numbers": form.complexity[0],
+            "weight": float(f"{weight:.6g}"),
+            "left_out": [float(f"{value:.6g}") for value in form.joint.by_day],
+        }
+        for form, weight in zip(found.forms, found.weights, strict=True)
+    ]
+
+
+def _of_sensors(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
+    """Estimate and standard uncertainty of each error, with that stated."""
+    joint, count = found.forms[0].joint, found.forms[0].fit.x.size
+    stated = stated_sizes(study)
+    sd = np.sqrt(np.diag(joint.covariance))
+    entries = {}
+    for k, name in enumerate(joint.names):
+        if name in stated:
+            size = stated[name]
+            entries[name] = {
+                "estimate": float(f"{size * joint.mean[count + k]:.6g}"),
+                "standard_uncertainty": float(f"{size * sd[count + k]:.6g}"),
+                "stated": size,
+            }
+    return entries
+
+
+_PARTS: Final = {
+    "repeating": "repeats every day",
+    "day": "constant of a day",
+    "within_day": "correlated within a day",
+    "independent": "independent from value to value",
+}
+
+
+def _of_model(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
+    best = found.forms[0]
+    sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
+    columns = {
+        "repeating": np.sqrt(np.diag(sizes.hour)),
+        "day": np.sqrt(np.diag(sizes.day)),
+        "within_day": np.sqrt(np.diag(sizes.drift)),
+        "independent": np.sqrt(sizes.white + sizes.within),
+        "limit": limit,
+    }
+    names = [sensor.name for sensor in best.fit.problem.sensors]
+    return {
+        name: {what: float(f"{values[s]:.6g}") for what, values in columns.items()}
+        for s, name in enumerate(names)
+    }
+
+
+def _table_of_forms(found: Combination) -> dict[str, Any]:
+    best = float(found.forms[0].joint.by_day.sum())
+    return {
+        "title": "Forms of the model",
+        "caption": (
+            "Each form is calibrated; each day of the identification is predicted from the other days. The "
+            "density is the logarithm of the probability density of the days left out, relative to the first "
+            "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those "
+            "with which parameters and prediction intervals combine the forms. The first form is used for "
+            "curves, criteria and the calibrated building: it has the highest weight of those whose "
+            "density is "
+            f"within {LARGEST_LOSS:g} of the highest, or is a simpler one that predicts each day as well "
+            f"(within {SMALL_ON_A_DAY:g})."
+        ),
+        "columns": ["form", "free numbers", "weight [%]", "density of the days left out"],
+        "rows": [
+            [
+                form.label,
+                form.complexity[0],
+                100.0 * float(weight),
+                float(form.joint.by_day.sum()) - best,
+            ]
+            for form, weight in zip(found.forms, found.weights, strict=True)
+        ],
+        "section": "parameters",
+    }
+
+
+def _table_of_sensors(study: StudyContext, found: Combination) -> dict[str, Any]:
+    return {
+        "title": "Errors of the sensors",
+        "caption": (
+            "Estimated together with the parameters: what the readings of a sensor have in common beside the "
+            "model, with its standard uncertainty, beside the standard uncertainty that the study states. "
+            "A gain is a ratio."
+        ),
+        "columns": ["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
+        "rows": [_row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, found).items()],
+        "uncertainty": {"estimate": "standard uncertainty"},
+        "section": "parameters",
+    }
+
+
+def _row_of_sensor(study: StudyContext, name: str, entry: Mapping[str, float]) -> list[Any]:
+    """Name and unit for readers, estimate and uncertainties."""
+    sensor, _, what = name.rpartition(" ")
+    known = sensor in study.plan.sensors
+    unit = {"gain": "-", "clock": "s"}.get(what) or (_unit(study, sensor) if known else "degC")
+    label = f"{_label(study, sensor)}: {what}" if known else name
+    return [label, difference(unit), entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
+
+
+def _label(study: StudyContext, name: str) -> str:
+    return study.plan.sensors[name].label or name.replace("_", " ")
+
+
+def _unit(study: StudyContext, name: str) -> str:
+    return study.building.output(study.plan.sensors[name].output).unit
+
+
+def _table_of_model(study: StudyContext, found: Combination) -> dict[str, Any]:
+    return {
+        "title": "Errors of the model",
+        "caption": (
+            "Standard deviation of what no values of the parameters explain, estimated by marginal "
+            "likelihood in the identification period, with a correlation time of "
+            f"{found.forms[0].joint.error_covariances.correlation_hours:g} h within a day. The limit is what "
+            "each part may absorb at most."
+        ),
+        "columns": ["sensor", "unit", *_PARTS.values(), "limit"],
+        "rows": [
+            [
+                _label(study, name),
+                difference(_unit(study, name)),
+                *(entry[part] for part in _PARTS),
+                entry["limit"],
+            ]
+            for name, entry in _of_model(study, found).items()
+        ],
+        "section": "comparison",
+    }

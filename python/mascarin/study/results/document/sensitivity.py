@@ -1,0 +1,95 @@
+"""The sensitivity analysis of a study, as the report shows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.sensitivity.spectral import SpectralSensitivity
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.sensitivity import Sensitivity
+    from mascarin.study.context.context import StudyContext
+
+
+#: Parameters named in the spectra and indices over the day.
+_SHOWN: Final = 8
+
+
+def importance(study: StudyContext, found: Sensitivity) -> dict[str, Any]:
+    """Sensitivity indices; for the spectral method also the spectra and the indices over the day."""
+    rows = [
+        ["method", found.method],
+        ["index", found.measure],
+        ["parameters", str(len(found.names))],
+        ["runs", str(found.runs)],
+        ["seed", str(found.seed)],
+    ]
+    content: dict[str, Any] = {"sensitivity": found.to_dict()}
+    if isinstance(found, SpectralSensitivity):
+        hours = _hours(study, found.index_t.shape[1])
+        rows += [
+            ["replicates", str(found.design.replicates)],
+            ["harmonics counted", str(found.design.order)],
+        ]
+        content["frequencies"] = _frequencies(found)
+        content["spectra"] = {output: _spectrum(found, output) for output in found.outputs}
+        content["day_shares"] = {output: _day_shares(found, output, hours) for output in found.outputs}
+    return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in found.warnings)]}
+
+
+def _frequencies(found: SpectralSensitivity) -> dict[str, int]:
+    """Frequency of each parameter or group in the first replicate, which the spectra show."""
+    return {
+        name: int(line) for name, line in zip(found.design.groups, found.design.frequencies[0], strict=True)
+    }
+
+
+def analyzed_hours(study: StudyContext, found: Sensitivity) -> npt.NDArray[np.float64] | None:
+    """Hour of the day of each analyzed time, local; None for methods that keep no times. [h]"""
+    times = getattr(found, "variance_t", None)
+    return None if times is None or len(times) < 2 else _hours(study, len(times))
+
+
+def _hours(study: StudyContext, count: int) -> npt.NDArray[np.float64]:
+    """Hour of the day of each analyzed time, local."""
+    import pandas as pd
+
+    step = pd.Timedelta(
+        seconds=(study.periods.identification[1] - study.periods.identification[0]).total_seconds()
+        / max(count - 1, 1)
+    )
+    times = pd.date_range(study.periods.identification[0], periods=count, freq=step).tz_localize(None)
+    return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
+
+
+def _spectrum(found: SpectralSensitivity, output: str) -> dict[str, Any]:
+    spectrum = found.spectrum(output)
+    return {
+        "frequencies": list(range(1, len(spectrum.power) + 1)),
+        "power": [float(p) for p in spectrum.power],
+        "threshold": float(spectrum.threshold),
+        "peaks": [
+            {"frequency": peak.line, "power": peak.power, "path": peak.label or "unnamed", "harmonic": 1}
+            # The strongest first, because a report may show only some of them.
+            for peak in sorted(spectrum.peaks, key=lambda peak: -peak.power)
+        ],
+    }
+
+
+def _day_shares(found: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
+    """First-order indices of the most influential parameters by hour of the day, summed over the days."""
+    s = found.output_index(output)
+    names = found.ranking(output, _SHOWN)
+    rows = [list(found.names).index(name) for name in names]
+    unique = np.unique(hours)
+    variance = np.nan_to_num(found.variance_t[:, s])
+    power = np.nan_to_num(found.index_t[rows, :, s]) * variance
+    share = [
+        [float(p[hours == hour].sum() / max(variance[hours == hour].sum(), 1e-300)) for hour in unique]
+        for p in power
+    ]
+    return {"hours": unique.tolist(), "paths": names, "share": share}

@@ -1,0 +1,167 @@
+"""All results of a study, ready for JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from mascarin.diagnosis.error_sources import explain_missed_aims
+from mascarin.diagnosis.hypotheses import WORDS
+from mascarin.study.results.document.coefficients import coefficients
+from mascarin.study.results.document.comparison import comparison
+from mascarin.study.results.document.errors import error_entries, error_tables
+from mascarin.study.results.document.estimates import (
+    estimates,
+    parameters,
+    prediction_entries,
+    profile_entries,
+)
+from mascarin.study.results.document.header import header
+from mascarin.study.results.document.phase_change import phase_change
+from mascarin.study.results.document.sensitivity import importance
+from mascarin.study.steps.days import day_words, days_table
+from mascarin.study.steps.derived_quantities import derived_table
+from mascarin.study.steps.prediction_intervals import interval_table
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.diagnosis.hypotheses import Diagnosis
+    from mascarin.study.steps.findings import Findings
+
+
+#: Title of the notes on the calibration.
+ESTIMATES = "Calibrated parameters"
+#: Title of the notes on the causes of the remaining error.
+CAUSES = "Causes of the remaining error"
+
+
+def document(findings: Findings) -> dict[str, Any]:
+    """Everything but the series.
+
+    Parameters
+    ----------
+    findings : Findings
+        The results.
+
+    Returns
+    -------
+    dict
+        Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model;
+        those of every model stand beside them under its name.
+    """
+    study, fit = findings.context, findings.calibration
+    reference = study.plan.reference
+    published = [] if reference is None else [entry.parameter for entry in reference.parameters]
+    content = {
+        "contradictions": [one.to_dict() for one in findings.contradictions],
+        **header(study, "study"),
+        **comparison(findings.models, findings.criteria),
+        **estimates(study, fit, stated=findings.prediction_intervals.stated),
+        **coefficients(
+            study,
+            {"nominal": findings.nominal, "fitted": findings.fitted},
+            (*fit.problem.paths, *published),
+        ),
+        "reference_values": _values(study.building, published),
+        **profile_entries(findings.profiles),
+        **prediction_entries(study, findings.prediction_intervals),
+        **error_entries(study, findings.combination),
+        "tables": [
+            interval_table(study, findings.prediction_intervals),
+            *error_tables(study, findings.combination),
+            *([derived_table(findings.derived)] if findings.derived else []),
+        ],
+        "derived": [one.to_dict() for one in findings.derived],
+        "residuals": {
+            name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
+        },
+        "notes": _notes(findings),
+        "aims": [{**verdict.to_dict(), "model": "fitted"} for verdict in findings.aims],
+        "diagnosis": findings.diagnosis.to_dict(),
+        "days": findings.days.to_dict(),
+        "phase_change": phase_change(study, findings.fitted),
+        "variant_parameters": {
+            name: parameters(
+                study, run.fit, study.variants.plan_of(name if name in study.plan.variants else None)
+            )
+            for name, run in findings.variants.items()
+            if run.fit is not None
+        },
+    }
+    content["days"]["table"] = days_table(findings.days)
+    if findings.diagnosis.causes:
+        content["diagnosis"]["table"] = causes_table(findings.diagnosis)
+    if findings.error_sources is not None:
+        content["shortfall"] = {**findings.error_sources.to_dict(), "period": "blind"}
+    if findings.sensitivity is not None:
+        content |= importance(study, findings.sensitivity)
+    return content
+
+
+def _values(building: Building, paths: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Values as described of parameters that a publication identified."""
+    parameters = {path: building.parameter(path) for path in paths}
+    return {path: {"value": p.value, "unit": p.unit} for path, p in parameters.items()}
+
+
+def causes_table(found: Diagnosis) -> dict[str, Any]:
+    """Causes with their evidence, as a table of the report."""
+    rows = [
+        [
+            number,
+            WORDS[cause.what],
+            ", ".join(cause.subject),
+            cause.value if math.isfinite(cause.value) else None,
+            cause.error if math.isfinite(cause.error) else None,
+            cause.unit or "-",
+            None if math.isnan(cause.p) else "yes" if cause.told else "no",
+            100.0 * cause.certainty if math.isfinite(cause.certainty) else None,
+            cause.p if math.isfinite(cause.p) else None,
+        ]
+        for number, cause in enumerate(found.causes, start=1)
+    ]
+    return {
+        "title": CAUSES,
+        "caption": (
+            "Faults of sensors and of measured inputs, values outside of their ranges, laws and missing heat "
+            "flows compete on equal terms, given the errors of the model. p: part of simulated records "
+            "without any cause in which some candidate explains as much. Certainty: probability that it is "
+            "this one, if it is one of the candidates. Where it is not told, the remarks list what else it "
+            "may be."
+        ),
+        "columns": [
+            "no.",
+            "kind",
+            "where",
+            "estimate",
+            "standard error",
+            "unit",
+            "told",
+            "certainty [%]",
+            "p",
+        ],
+        "rows": rows,
+        "uncertainty": {"estimate": "standard error"},
+        "significant": ["p"],
+        "section": "error_sources",
+    }
+
+
+def _notes(findings: Findings) -> list[dict[str, str]]:
+    """Notes with the titles under which the report shows them."""
+    sources = findings.error_sources
+    missed = (
+        []
+        if sources is None
+        else explain_missed_aims(findings.aims, sources, "blind", findings.diagnosis.noise)
+    )
+    titled = (
+        (ESTIMATES, findings.calibration.warnings),
+        (ESTIMATES, [profile.words for profile in findings.profiles if profile.words]),
+        (CAUSES, [cause.text for cause in findings.diagnosis.causes]),
+        ("Residuals", findings.notes),
+        ("Choice of days", day_words(findings.days)),
+        ("Aims that are not met", missed),
+    )
+    return [{"title": title, "text": text} for title, texts in titled for text in texts]

@@ -1,0 +1,149 @@
+"""Writes the results of a study: study.json, tables and figures."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mascarin._io import atomic
+from mascarin.calibration import plot_profiles
+from mascarin.figures import days as day_figures
+from mascarin.figures.files import save
+from mascarin.pages.study.data.folder import read_folder
+from mascarin.pages.study.figures.figure_files import Once, write_figures
+from mascarin.sensitivity.files import save_all
+from mascarin.study.context.step_cache import written_once
+from mascarin.study.context.storage import RUN, WRITTEN
+from mascarin.study.results.document.sensitivity import analyzed_hours
+from mascarin.study.results.document.whole import document
+from mascarin.study.results.tables import tables_of, write_tables
+from mascarin.study.steps.comfort import comfort_figures, comfort_table, rated
+from mascarin.validation.days import EXTRAPOLATION_RATIO
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.base.result import PlotKind
+    from mascarin.study.context.storage import Workspace
+    from mascarin.study.steps.findings import Findings
+
+
+def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> list[Path]:
+    """Write everything but the report into the folder of the study.
+
+    Parameters
+    ----------
+    findings : Findings
+        The results.
+    workspace : Workspace
+        The folder.
+    figures : bool
+        Whether figures are written.
+
+    Returns
+    -------
+    list of Path
+        All results, the report among them: `Workspace.record` takes them when it is there.
+    """
+    out = workspace.out
+    comfort = rated(findings)
+    of_comfort = {"comfort": comfort_table(comfort)} if comfort else {}
+    tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
+    atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
+    atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
+    return [
+        *(_all_figures(findings, workspace) if figures else []),
+        *(comfort_figures(comfort, out / "figures") if figures else []),
+        *tables,
+        *(out / name for name in WRITTEN),
+    ]
+
+
+def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:
+    """Write every figure, once for the same results."""
+    folder = workspace.out / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
+        return written_once(workspace, (str(workspace.out), name, findings.calibration.x.tolist()), write)
+
+    return [
+        *write_figures(folder, *read_folder(workspace.out), once),
+        *_sensitivity_figures(findings, folder, once),
+        *once("days", lambda: [save(_days(findings), folder / "days.svg")]),
+        *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, folder)),
+    ]
+
+
+def run_facts(findings: Findings) -> dict[str, Any]:
+    """Date and run time, which differ between two runs of the same study; all results are the same."""
+    return {
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "run_time": round(findings.seconds, 1),
+        "processors": os.cpu_count(),
+    }
+
+
+def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> list[Path]:
+    """Write the figures of a calibration: cost of the evaluations, minima and profiles.
+
+    Parameters
+    ----------
+    fit : Calibration
+        The calibration.
+    profiles : sequence of Profile
+        May be empty.
+    folder : Path
+        Where to write.
+    """
+
+    def drawn(kind: PlotKind) -> Figure:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        fit.plot(kind, ax=figure.subplots())
+        return figure
+
+    figures = {"identification-course": drawn("convergence")}
+    if len(fit.minima) > 1:
+        figures["identification-minima"] = drawn("minima")
+    if profiles:
+        figures["identification-profiles"] = plot_profiles(profiles)
+    return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
+
+
+def _sensitivity_figures(findings: Findings, folder: Path, once: Once) -> list[Path]:
+    """Figures of the sensitivity analysis of each sensor, if there is one."""
+    found = findings.sensitivity
+    if found is None:
+        return []
+    hours = analyzed_hours(findings.context, found)
+    written = []
+    for name in findings.context.observation.names:
+
+        def draw(name: str = name) -> list[Path]:
+            return list(save_all(found, name, folder, name, hours))
+
+        written += once(f"sensitivity {name}", draw)
+    return written
+
+
+def _days(findings: Findings) -> Figure:
+    """Leverage of each day, and the information that it would add."""
+    from matplotlib.figure import Figure
+    from pandas import to_datetime
+
+    found = findings.days
+    dates = to_datetime(list(found.days))
+    figure = Figure(figsize=(9.0, 4.5), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, EXTRAPOLATION_RATIO)
+    day_figures.information(lower, dates, found.information, found.used, found.proposed)
+    upper.legend(fontsize="small", ncols=4, frameon=False)
+    lower.set_xlabel(f"local time ({findings.context.climate.timezone})")
+    return figure

@@ -1,0 +1,202 @@
+"""Single steps of a study: sensitivity analysis, calibration, comparison of the uncalibrated model.
+
+Intermediate results are stored as by the whole study, which uses what a single step has computed.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mascarin._io import atomic
+from mascarin.sensitivity.files import save_all
+from mascarin.study.context.storage import Workspace
+from mascarin.study.file.description import SensitivityPlan
+from mascarin.study.results.document.comparison import comparison
+from mascarin.study.results.document.errors import error_entries, error_tables, error_words
+from mascarin.study.results.document.estimates import estimates, prediction_entries, profile_entries
+from mascarin.study.results.document.header import header
+from mascarin.study.results.document.sensitivity import analyzed_hours, importance
+from mascarin.study.results.document.whole import ESTIMATES
+from mascarin.study.results.files import fit_figures
+from mascarin.study.results.tables import (
+    criteria_table,
+    estimates_table,
+    metrics_table,
+    quality_table,
+    validation_series,
+    write_tables,
+)
+from mascarin.study.steps.calibration_result import calibrated
+from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
+from mascarin.study.steps.prediction_intervals import interval_table, interval_words
+from mascarin.study.steps.predictive_checks import statements
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.progress import ProgressOption
+    from mascarin.sensitivity import MethodName
+    from mascarin.study.context.context import StudyContext
+    from mascarin.study.steps.findings import ModelRun
+
+
+def sensitivity(
+    study: StudyContext, out: Path, *, method: MethodName | None = None, progress: ProgressOption = True
+) -> dict[str, Any]:
+    """Sensitivity analysis.
+
+    Parameters
+    ----------
+    study : StudyContext
+        If it has no ``sensitivity``, the defaults are used.
+    out : Path
+        Folder for sensitivity.json, tables/sensitivity.csv and the figures.
+    method : str, optional
+        Replaces that of the study, with the default number of samples.
+    progress : bool, callable or None
+        Where progress is shown; see `mascarin.progress.ProgressOption`.
+
+    Returns
+    -------
+    dict
+        What sensitivity.json holds.
+
+    Raises
+    ------
+    InputError
+        The method does not support the plan of the study.
+    """
+    with Workspace(out, study.identity()) as workspace:
+        # An empty plan takes the default of every key.
+        plan = study.plan.sensitivity or SensitivityPlan.model_validate({})
+        if method is not None and method != plan.method:
+            plan = plan.model_copy(update={"method": method, "samples": None, "order": None})
+        found = ModelRuns(study, workspace, progress).sensitivity(plan)
+        hours = analyzed_hours(study, found)
+        drawn = [
+            path for name in found.outputs for path in save_all(found, name, out / "figures", name, hours)
+        ]
+        content = {
+            **header(study, "sensitivity"),
+            **importance(study, found),
+            "warnings": list(found.warnings),
+        }
+        _write(workspace, "sensitivity", content, {"sensitivity": found.table()}, drawn)
+    return content
+
+
+def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = True) -> dict[str, Any]:
+    """Calibration, and the comparison before and after it.
+
+    Parameters
+    ----------
+    study : StudyContext
+        Has an identification.
+    out : Path
+        Folder for calibration.json, its tables and figures.
+    progress : bool, callable or None
+        Where progress is shown; see `mascarin.progress.ProgressOption`.
+
+    Returns
+    -------
+    dict
+        What calibration.json holds.
+    """
+    _ = study.inputs.calibration_plan
+    with Workspace(out, study.identity()) as workspace:
+        runs = ModelRuns(study, workspace, progress)
+        before = nominal(study)
+        with study.keeping(workspace):
+            found = calibrated(study, runs)
+        fitted, fit, intervals, profiles = found.run, found.fit, found.intervals, found.profiles
+        models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
+        content = {
+            "contradictions": [one.to_dict() for one in found.contradictions],
+            **header(study, "calibrate"),
+            **comparison(models, verdicts),
+            **estimates(study, fit, stated=intervals.stated),
+            **profile_entries(profiles),
+            **prediction_entries(study, intervals),
+            **error_entries(study, found.combination),
+            "tables": [interval_table(study, intervals), *error_tables(study, found.combination)],
+            "notes": [
+                {"title": ESTIMATES, "text": text}
+                for text in (
+                    *fit.warnings,
+                    *(p.words for p in profiles if p.words),
+                    *error_words(study, found.combination),
+                    *interval_words(study, intervals),
+                )
+            ],
+        }
+        tables = {
+            "parameters": estimates_table(fit),
+            "evaluations": fit.evaluations(),
+            "calibration_metrics": metrics_table([before, fitted]),
+            "calibration_criteria": criteria_table(verdicts),
+            "quality": quality_table(study.quality),
+        }
+        _write(workspace, "calibration", content, tables, fit_figures(fit, profiles, out / "figures"))
+    return content
+
+
+def validation(study: StudyContext, out: Path | None) -> dict[str, Any]:
+    """Comparison of the uncalibrated model with the measurements.
+
+    Parameters
+    ----------
+    study : StudyContext
+        Its calibration is not carried out.
+    out : Path, optional
+        Folder for validation.json, series.csv and the tables; without it nothing is written.
+
+    Returns
+    -------
+    dict
+        What validation.json holds.
+    """
+    if out is None:
+        return _validated(study)[0]
+    with Workspace(out, study.identity()) as workspace:  # raises before the run if the folder cannot be used
+        content, tables, run = _validated(study)
+        series = out / "series.csv"
+        atomic.write(series, validation_series(study, run).to_csv(index=False, lineterminator="\n"))
+        _write(workspace, "validation", content, tables, [series])
+    return content
+
+
+def _validated(study: StudyContext) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
+    run = nominal(study)
+    verdicts = judged(study, run)
+    tables = {
+        "validation_metrics": metrics_table([run]),
+        "validation_criteria": criteria_table(verdicts),
+        "quality": quality_table(study.quality),
+    }
+    content = {
+        "contradictions": [one.to_dict() for one in statements(study)],
+        **header(study, "validate"),
+        **comparison({"nominal": run}, verdicts),
+    }
+    return content, tables, run
+
+
+def _write(
+    workspace: Workspace,
+    name: str,
+    content: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    further: Iterable[Path] = (),
+) -> None:
+    result = workspace.out / f"{name}.json"
+    written = [*write_tables(workspace.out / "tables", tables), *further, result]
+    atomic.write(result, as_json(content))
+    workspace.record(name, written)
+
+
+def as_json(content: Mapping[str, Any]) -> str:
+    """The text of a result file."""
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"

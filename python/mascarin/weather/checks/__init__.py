@@ -1,0 +1,3 @@
+"""Whether a record can be right: sun and clock, brightness, place, missing infrared radiation."""
+
+from __future__ import annotations
