@@ -84,7 +84,7 @@ class Line:
 
     @property
     def rank(self) -> tuple[int, int] | None:
-        """Place among all programs by the distance from the reference, and their number; None without peers."""
+        """Place among all programs by the distance from the reference, and their number; None without."""
         distances = [abs(peer - self.reference) for peer in self.peers.values() if math.isfinite(peer)]
         if not distances:
             return None

@@ -128,7 +128,7 @@ def room(
 
 
 def epw(data: CaseData, name: str) -> Array:
-    """Hourly air temperature [degC], global, direct and diffuse irradiance [W/m2] of a weather file, (n, 4)."""
+    """Hourly air temperature [degC], global, direct and diffuse irradiance [W/m2] of an EPW file, (n, 4)."""
     rows = data.text(f"{name}.epw").splitlines()[8:]
     columns = (_AIR, _GLOBAL, _DIRECT, _DIFFUSE)
     return np.loadtxt(io.StringIO("\n".join(rows)), delimiter=",", usecols=columns, ndmin=2)
