@@ -59,7 +59,7 @@ def render(results: Sequence[Result], facts: Mapping[str, str]) -> str:
             inside=sum(line.verdict == Verdict.INSIDE for line in lines),
             count=sum(line.limits is not None for line in lines),
             misses=sum(line.verdict == Verdict.MISS for line in lines),
-            first=sum(place == 1 for place, _ in ranks),
+            first=sum(rank[0] == 1 for rank in ranks),
             ranked=len(ranks),
         )
     )
@@ -85,13 +85,13 @@ def _content(result: Result) -> dict[str, Any]:
 
 def _row(line: Line, programs: Sequence[str]) -> dict[str, Any]:
     low, high = line.limits if line.limits is not None else (math.nan, math.nan)
-    place = "" if line.rank is None else f"{line.rank[0]} of {line.rank[1]}"
+    rank = "" if line.rank is None else f"{line.rank[0]} of {line.rank[1]}"
     return {
         "case": line.case,
         "quantity": line.quantity,
         "unit": line.unit,
         "numbers": [_number(value) for value in (line.value, line.reference, low, high)],
-        "rank": place,
+        "rank": rank,
         "peers": [_number(line.peers.get(program, math.nan)) for program in programs],
         "verdict": line.verdict.value,
         "class": _CLASSES.get(line.verdict, ""),

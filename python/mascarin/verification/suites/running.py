@@ -48,10 +48,10 @@ class Result:
             return self.missing
         counts = self.counts
         judged = sum(number for verdict, number in counts.items() if verdict in _JUDGED)
-        rest = [
+        others = [
             f"{number} {verdict.value}" for verdict, number in counts.items() if verdict != Verdict.INSIDE
         ]
-        return ", ".join([f"{counts.get(Verdict.INSIDE, 0)} of {judged} inside", *rest])
+        return ", ".join([f"{counts.get(Verdict.INSIDE, 0)} of {judged} inside", *others])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""

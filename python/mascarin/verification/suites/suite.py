@@ -158,11 +158,11 @@ def chosen(names: tuple[str, ...]) -> list[Suite]:
     InputError
         No suite has a name.
     """
-    known = suites()
+    catalogue = suites()
     for name in names:
-        if name not in known:
+        if name not in catalogue:
             raise InputError(
-                f"suites: found '{name}', expected one of {', '.join(known)}. "
-                f"{did_you_mean(name, known)}".rstrip()
+                f"suites: found '{name}', expected one of {', '.join(catalogue)}. "
+                f"{did_you_mean(name, catalogue)}".rstrip()
             )
-    return [known[name] for name in dict.fromkeys(names)] if names else list(known.values())
+    return [catalogue[name] for name in dict.fromkeys(names)] if names else list(catalogue.values())

@@ -91,17 +91,17 @@ def lines(data: CaseData) -> Iterator[Line]:
         climate = Place().climate({"air_temperature": outdoor})
         building = data.building(slab.tree())
         hours, table = simulated(building, climate, ["slab.inside_temperature"], _STEP, slab.initial)
-        at = np.arange(1, len(slab.inside) + 1)
-        values = np.interp(at, hours, table["slab.inside_temperature"].to_numpy())
+        hour = np.arange(1, len(slab.inside) + 1)
+        values = np.interp(hour, hours, table["slab.inside_temperature"].to_numpy())
         worst = int(np.abs(values - slab.inside).argmax())
         yield Line(
             "-".join(map(str, _number(path.name))),
-            f"inside surface, worst of {len(at)} h",
+            f"inside surface, worst of {len(hour)} h",
             "degC",
             float(values[worst]),
             float(slab.inside[worst]),
             around(float(slab.inside[worst]), _TOLERANCE),
-            note=f"at hour {at[worst]}; {slab.thickness:g} m, conductivity {slab.conductivity:g} W/(m K)",
+            note=f"at hour {hour[worst]}; {slab.thickness:g} m, conductivity {slab.conductivity:g} W/(m K)",
         )
 
 

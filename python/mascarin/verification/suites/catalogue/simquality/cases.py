@@ -244,10 +244,10 @@ def _windows(data: CaseData, judge: Judge) -> Iterator[Line]:
     inside, outside, sun = (
         f"window.{name}" for name in ("inside_temperature", "outside_temperature", "transmitted_solar")
     )
-    for number, (at, transmittance) in angles.items():
+    for number, (incidence, transmittance) in angles.items():
         weather = epw(data, f"SIMQ_TF07_Klima{'ABC'[number - 1]}")
         climate = air_alone(weather[:, 0], 4400) if number == 1 else with_sun(weather, 4400)
-        building = data.building(_with_window(at, transmittance))
+        building = data.building(_with_window(incidence, transmittance))
         hours, table = simulated(building, climate, [_AIR, inside, outside, sun], _STEP, 20.0)
         line = partial(judge.line, str(number))
         yield line(f"Variante 7.{number} Raumlufttemperatur", hours, table[_AIR].to_numpy())
@@ -301,12 +301,12 @@ def _gains(data: CaseData, judge: Judge) -> Iterator[Line]:
 #: A wall in the place of a window, and what shades it: corners. [m]
 _WALL: Final = ((1, 0, 0.5), (3, 0, 0.5), (3, 0, 2.5), (1, 0, 2.5))
 _OVERHANG: Final = ((0, -1, 3), (0, 0, 3), (4, 0, 3), (4, -1, 3))
-_LEFT: Final = ((0, -1, 3), (0, 0, 3), (0, 0, 0), (0, -1, 0))
-_RIGHT: Final = ((4, 0, 3), (4, -1, 3), (4, -1, 0), (4, 0, 0))
+_WEST_FIN: Final = ((0, -1, 3), (0, 0, 3), (0, 0, 0), (0, -1, 0))
+_EAST_FIN: Final = ((4, 0, 3), (4, -1, 3), (4, -1, 0), (4, 0, 0))
 _SHADED: Final[dict[int, tuple[Any, tuple[Any, ...]]]] = {
     1: (_WALL, (_OVERHANG,)),
-    2: (_WALL, (_LEFT, _RIGHT)),
-    3: (_WALL, (_LEFT, _OVERHANG, _RIGHT)),
+    2: (_WALL, (_WEST_FIN, _EAST_FIN)),
+    3: (_WALL, (_WEST_FIN, _OVERHANG, _EAST_FIN)),
     4: (
         ((2, -7, 0), (7, -7, 0), (7, -7, 5), (2, -7, 5)),
         (((12, -12, 10), (-3, -12, 10), (-3, -12, 0), (12, -12, 0)),),
@@ -331,9 +331,9 @@ def _shading(data: CaseData, judge: Judge) -> Iterator[Line]:
     count = days * 24 * 6
     radiation = {"direct_normal": 1000.0, "diffuse_horizontal": 0.0, "global_horizontal": 0.0}
     start = np.datetime64("2001-01-01T00") + np.timedelta64(first, "h")
-    place = Place(50.0, 14.27, start=str(start), step="10min")
+    site_of_case = Place(50.0, 14.27, start=str(start), step="10min")
     columns = {name: np.full(count, value) for name, value in {"air_temperature": 20.0, **radiation}.items()}
-    climate = place.climate(columns, instant=tuple(radiation))
+    climate = site_of_case.climate(columns, instant=tuple(radiation))
     output = "wall.incident_solar"
     for number, (wall, shades) in _SHADED.items():
         tree = _shaded(wall, shades)
@@ -376,8 +376,8 @@ def _corners(polygon: Any) -> list[list[float]]:
 def _hourly_of_steps(hours: Array, values: Array) -> tuple[Array, Array]:
     """Means of the hour that ends at each stamp, of means of steps."""
     count = round(1.0 / (hours[1] - hours[0]))
-    whole = (len(values) - 1) // count * count
-    means = values[1 : whole + 1].reshape(-1, count).mean(axis=1)
+    complete = (len(values) - 1) // count * count
+    means = values[1 : complete + 1].reshape(-1, count).mean(axis=1)
     return np.arange(1.0, len(means) + 1.0), means
 
 

@@ -71,8 +71,8 @@ class Reference:
         reference, scores = self.series[variable], []
         for first, last in self.windows[variable]:
             rows = (self.hours >= first - 1e-9) & (self.hours <= last + 1e-9)
-            at = self.hours[rows]
-            scores.append(score(self.weights, reference[rows], np.interp(at, hours, values), at))
+            hour = self.hours[rows]
+            scores.append(score(self.weights, reference[rows], np.interp(hour, hours, values), hour))
         return float(np.mean(scores))
 
 
