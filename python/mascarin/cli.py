@@ -123,6 +123,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.bestest:bestest",
             "Compare the cases of ASHRAE Standard 140 with six programs.",
         ),
+        Command("suites", "mascarin.commands.suites:suites", "Run public test suites beside other programs."),
     ),
     "Optimize": (
         Command(

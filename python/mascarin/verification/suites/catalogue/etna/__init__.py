@@ -1,0 +1,1 @@
+"""Measured energy of the heater of the test cells ETNA."""

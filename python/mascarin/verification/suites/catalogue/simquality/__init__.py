@@ -1,0 +1,1 @@
+"""SimQuality, test functions 3 to 9."""

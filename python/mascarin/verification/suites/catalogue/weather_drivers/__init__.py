@@ -1,0 +1,1 @@
+"""Irradiance of ten planes in six climates, of Standard 140."""
