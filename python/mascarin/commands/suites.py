@@ -11,8 +11,8 @@ from cyclopts import Parameter
 
 from mascarin._io import atomic, identity
 from mascarin._io.locks import writing_into
-from mascarin.commands.inputs import AsJson, Flag
-from mascarin.commands.output import json_text, number, print_json, print_table
+from mascarin.commands.options.inputs import AsJson, Flag
+from mascarin.commands.options.output import json_text, number, print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
