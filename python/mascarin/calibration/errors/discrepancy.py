@@ -225,7 +225,7 @@ def estimate_discrepancy(
     limit: Floats,
     least: Floats | float = 0.0,
     persistence: float = 0.0,
-    near: Discrepancy | None = None,
+    first: Discrepancy | None = None,
 ) -> Discrepancy:
     """Estimate the sizes of the errors by marginal likelihood.
 
@@ -241,7 +241,7 @@ def estimate_discrepancy(
         Smallest standard deviation of the error that is correlated within a day. [unit]
     persistence : float
         Correlation time of the errors of days, see `alike_days`. [d]
-    near : Discrepancy, optional
+    first : Discrepancy, optional
         An estimate from nearly the same errors: where to begin, with its correlation time.
 
     Returns
@@ -249,8 +249,8 @@ def estimate_discrepancy(
     Discrepancy
         That with the largest density over the correlation times `CORRELATION_HOURS`.
     """
-    if near is not None:
-        return _maximized(data, near, scale, limit, least, _MAX_ITERATIONS)
+    if first is not None:
+        return _maximized(data, first, scale, limit, least, _MAX_ITERATIONS)
     prior, alike = np.diag(scale**2), alike_days(data.grid.days, persistence)
     best, density = None, -np.inf
     for hours in CORRELATION_HOURS:

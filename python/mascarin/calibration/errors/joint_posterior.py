@@ -331,7 +331,7 @@ def best_positions(
     problem: CalibrationProblem,
     linear: Linear,
     stated: ErrorStatement,
-    near: Discrepancy | None = None,
+    first: Discrepancy | None = None,
 ) -> tuple[Floats, Discrepancy]:
     """Find the most probable positions alone, with the covariances of the errors.
 
@@ -339,7 +339,7 @@ def best_positions(
     ----------
     problem, linear, stated
         As for `joint_posterior`.
-    near : Discrepancy, optional
+    first : Discrepancy, optional
         Covariances of a linearization near by, to begin with.
 
     Returns
@@ -349,7 +349,7 @@ def best_positions(
     Discrepancy
         Sizes of the errors of the model.
     """
-    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, None, near)
+    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, None, first)
     count = len(problem.parameters)
     low, high = ends_of(count, data.effects.shape[2] - linear.further.shape[2] - count, mean.size)
     precision = gaussian.precision / np.outer(scale, scale)
@@ -361,7 +361,7 @@ def _estimated(
     linear: Linear,
     stated: ErrorStatement,
     covariances: Discrepancy | None,
-    near: Discrepancy | None = None,
+    first: Discrepancy | None = None,
 ) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
     """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
     center, spread = _priors(problem)
@@ -373,7 +373,7 @@ def _estimated(
             limit=stated.limit,
             least=_least(problem, stated),
             persistence=stated.persistence,
-            near=near,
+            first=first,
         )
     gaussian = data.gaussian(covariances)
     unit = gaussian.coefficients(data.error)

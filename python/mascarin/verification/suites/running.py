@@ -48,10 +48,10 @@ class Result:
             return self.missing
         counts = self.counts
         judged = sum(number for verdict, number in counts.items() if verdict in _JUDGED)
-        others = [
+        uncommon = [
             f"{number} {verdict.value}" for verdict, number in counts.items() if verdict != Verdict.INSIDE
         ]
-        return ", ".join([f"{counts.get(Verdict.INSIDE, 0)} of {judged} inside", *others])
+        return ", ".join([f"{counts.get(Verdict.INSIDE, 0)} of {judged} inside", *uncommon])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
