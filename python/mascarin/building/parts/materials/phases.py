@@ -74,4 +74,4 @@ def phase(value: Number | Phases, name: str) -> float:
     >>> phase(PhaseDensities(solid=880, liquid=770), "liquid")
     770.0
     """
-    return float(value) if isinstance(value, Number) else float(getattr(value, name))
+    return float(getattr(value, name)) if isinstance(value, Phases) else float(value)
