@@ -129,7 +129,8 @@ def test_in_a_zone_the_air_is_that_at_the_start_of_the_step() -> None:
     run = run_of(building, ["facade.inside_convection", "room.air_temperature", "room.air_changes"]).run()
     coefficient, air, changes = run.records.T
     assert np.abs(np.diff(air)).max() > 0.05
-    assert np.abs(coefficient[1:] - (2.0 + 0.05 * air[:-1] + 0.5 * changes[1:])).max() < 1e-9
+    # The first step is made in parts: its last part starts later.
+    assert np.abs(coefficient[2:] - (2.0 + 0.05 * air[1:-1] + 0.5 * changes[2:])).max() < 1e-9
 
 
 def test_the_sun_and_the_surface_in_a_coefficient() -> None:
@@ -193,7 +194,7 @@ def test_a_unit_has_the_laws_and_the_derived_output(tmp_path: Path) -> None:
 
 def test_a_constant_conductivity_as_text_runs_as_the_number() -> None:
     name = material()
-    value = float(box().materials[name].conductivity)  # type: ignore[union-attr]
+    value = float(box().parameter(f"materials.{name}.conductivity").value)
     numbers, text = (
         run_of(box_with({f"materials.{name}.conductivity": law}), OUTPUTS[:2], step="10min").run().records
         for law in (value, {"formula": "k + 0*T", "k": value})
@@ -210,7 +211,7 @@ materials:
 constructions: {wall: {layers: [{material: brick, thickness: 0.2, nodes: 40}]}}
 surfaces: {wall: {construction: wall, area: 1, tilt: 90, outside: {measured: T_1}, inside: {measured: T_2}}}
 """
-    columns = {"T_1": np.full(481, 10.0), "T_2": 30.0}
+    columns: dict[str, Any] = {"T_1": np.full(481, 10.0), "T_2": 30.0}
     run = setup.run(text, 3600.0, columns, step=3600.0, outputs=["wall.inside_flux", "wall.outside_flux"])
     expected = -0.8 * 20.0 * (1.0 + 0.01 * 20.0) / 0.2
     assert np.abs(run.records[-1] / expected - 1.0).max() < 2e-4

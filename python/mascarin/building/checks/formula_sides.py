@@ -37,7 +37,10 @@ def formula_sides(building: Description) -> Iterator[FormulaSide]:
         law = item.side.convection
         if isinstance(law, FormulaLaw):
             side = item.side
-            exposed, indoors = side.exposed, isinstance(side, WindowInside) or side.zone is not None
+            exposed, indoors = (
+                side.exposed,
+                isinstance(side, WindowInside) or getattr(side, "zone", None) is not None,
+            )
             height = float(side.height) if has_height(side) else None  # type: ignore[union-attr, arg-type]
             values = ((exposed.wind, exposed.sun, indoors), (item.tilt, item.area, density, height))
             yield FormulaSide(f"{item.path}.convection", law, values)

@@ -169,7 +169,7 @@ def _output(location: Place, kind: str, row: OutputKind, name: OutputName) -> Ou
         return _WORD.sub(lambda word: location.words[word[0]], pattern)
 
     aliases = (written(name.alias),) if name.alias else ()
-    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **location.positions)
+    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **location.positions)  # type: ignore[arg-type]
 
 
 def named(building: Description, names: Iterable[str]) -> list[Output]:

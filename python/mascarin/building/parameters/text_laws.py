@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mascarin.building.parts.materials.text_law import ConductivityLaw, InfiltrationLaw, TextLaw, TextSky
+from mascarin.building.parts.air.zone import TextInfiltration
+from mascarin.building.parts.materials.text_law import ConductivityLaw, TextLaw, TextSky
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description
@@ -17,7 +18,7 @@ def text_laws(building: Description) -> Iterator[tuple[str, TextLaw]]:
         if isinstance(law := getattr(material, "conductivity", None), ConductivityLaw):
             yield f"materials.{name}.conductivity", law
     for name, zone in building.zones.items():
-        if isinstance(zone.infiltration, InfiltrationLaw):
+        if isinstance(zone.infiltration, TextInfiltration):
             yield f"zones.{name}.infiltration", zone.infiltration
     if isinstance(building.site.sky, TextSky):
         yield "site.sky", building.site.sky
