@@ -252,7 +252,7 @@ sensors:
 SKIES = [
     {"kind": "martin_berdahl"},
     {"kind": "clark_allen"},
-    {"formula": "0.6 + a*pw^0.5", "a": 0.002},
+    {"formula": "0.6 + a*pw^0.5", "a": 0.002, "source": "a paper of 2020"},
     {"kind": "brunt"},
     {"kind": "offset", "depression": 9},
     {"kind": "measured"},

@@ -73,6 +73,7 @@ const ABSENT: [(&str, &str); 5] = [
 
 /// Which names a side gives beside those that all sides have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each says whether some names exist")]
 pub(crate) struct SideNames {
     /// The wind reaches it.
     pub(crate) wind: bool,
