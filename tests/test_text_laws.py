@@ -20,6 +20,7 @@ from mascarin.simulation.simulation import Simulation
 from mascarin.validation.sensors import Sensor
 from mascarin.verification.analytical import setup
 
+BUILDINGS = Path(mc.__file__).parent / "verification" / "bestest" / "buildings"
 OUTSIDE = "surfaces.facade.outside.convection"
 INSIDE = "surfaces.facade.inside.convection"
 AROUND = {
@@ -278,6 +279,24 @@ def test_two_numbers_are_calibrated_by_a_derived_output() -> None:
     )  # fmt: skip
     for path, value in truth.items():
         assert found.values[path] == pytest.approx(value, rel=1e-2)  # noqa: PD011
+
+
+def test_a_sensitivity_of_a_derived_output_names_the_numbers() -> None:
+    chosen = ["derived_outputs.gain.A", f"{OUTSIDE}.c"]
+    found = mc.sensitivity_analysis(
+        all_laws(), box_climate(), outputs=["gain"], method="morris", step="1h", vary=chosen
+    )
+    assert set(found.ranking("gain", 2)) == set(chosen)
+
+
+def test_windows_have_laws_of_what_is_around_them() -> None:
+    building = mc.load(BUILDINGS / "600.yaml")
+    name = next(iter(building.windows))
+    law = {"formula": "8 + wind_angle/100 + 0.02*(Ts + 40) + sun/500", "valid": "Ts > -39"}
+    changed = building.replace({f"windows.{name}.outside.convection": law})
+    assert changed.windows[name].outside.convection.kind == "text"  # type: ignore[union-attr]
+    with pytest.raises(InputError, match="No wind reaches this side"):
+        building.replace({f"windows.{name}.inside.convection": law})
 
 
 def material_as(law: str) -> tuple[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -34,13 +35,22 @@ def derived_faults(building: Description) -> Iterator[Any]:
                 path, f"the name '{name}'", "a name that no other output has", "Give it another name."
             )
         if name in looped:
-            loop = " -> ".join(_loop(building.derived_outputs, name))
-            text_position = (1, output.formula.splitlines()[0].find(loop.split(" -> ")[1]) + 1)
-            words = [f"a loop of derived outputs: {loop}", "outputs that need no others of the loop",
-                     "Write one of them by outputs of the building."]  # fmt: skip
-            yield text_fault((*path, "formula"), words, text_position)
+            loop = _loop(building.derived_outputs, name)
+            words = [
+                f"a loop of derived outputs: {' -> '.join(loop)}",
+                "outputs that need no others of the loop",
+                "Write one of them by outputs of the building.",
+            ]
+            yield text_fault((*path, "formula"), words, _position(output.formula, loop[1]))
         else:
             yield from _text_faults(path, output, building.derived_outputs, units, aliases)
+
+
+def _position(formula: str, name: str) -> tuple[int, int]:
+    """Line and column of a name in a formula."""
+    match = re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.])", formula)
+    before = formula[: match.start()] if match else ""
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
 def _text_faults(
