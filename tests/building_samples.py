@@ -252,6 +252,7 @@ sensors:
 SKIES = [
     {"kind": "martin_berdahl"},
     {"kind": "clark_allen"},
+    {"formula": "0.6 + a*pw^0.5", "a": 0.002, "source": "a paper of 2020"},
     {"kind": "brunt"},
     {"kind": "offset", "depression": 9},
     {"kind": "measured"},
@@ -315,6 +316,11 @@ OPTIONAL = {
     "glazings.listed.angular.back": {"transmittance": 0.7, "reflectance": 0.15, "absorptance": [0.15]},
     "surfaces.north.outside.convection": {"kind": "measured", "column": "h_north"},
     "surfaces.west.inside.convection": {"formula": "c*abs(dT)^n", "c": 1.31, "n": 0.33},
+    "zones.attic.infiltration": {"formula": "c*(1 + V)", "c": 0.05},
+    "materials.concrete": {
+        "conductivity": {"formula": "1.7 + a*T", "a": 0.002}, "density": 2300, "specific_heat": 900,
+    },
+    "derived_outputs": {"swing": {"formula": "k*room.air_temperature", "k": 2}},
     "zones.attic.sun": {
         "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
         "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},

@@ -73,7 +73,7 @@ FAULTS = {
         "concrete: {conductivity: 1.75,",
         "concrete: {kind: pmc, conductivity: 1.75, # here\n   ",
         "materials.concrete",
-        ["kind: pmc", "solid, resistance, pcm", "Did you mean 'pcm'?"],
+        ["kind: pmc", "solid, variable, resistance, pcm", "Did you mean 'pcm'?"],
     ),
     "unknown zone": (
         "inside: {zone: room, convection: 3, emissivity: 0.9}\n  rest",

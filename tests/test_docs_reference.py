@@ -113,7 +113,8 @@ def test_every_kind_of_output_is_described_as_buildings_have_it() -> None:
     damp = mc.load(files[-1]).replace({"humidity": {"zones": {"back": plants}}})
     vents = {"flap": {"zone": "back", "area": 0.1, "elevation": 1, "pressure": "none"}}
     controls = {"night": {"zone": "back", "indoor": {"open": 24, "close": 22}}}
-    aired = damp.replace({"vents": vents, "controls": controls})
+    derived = {"doubled": "2*back.air_temperature"}
+    aired = damp.replace({"vents": vents, "controls": controls, "derived_outputs": derived})
     for building in [*map(mc.load, files), aired]:
         for output in building.outputs():
             one = KINDS[output.kind]

@@ -222,7 +222,7 @@ def test_values_outside_of_the_ranges_are_checked() -> None:
         ('{formula: "c", c: {value: 2, limits: [3, 4]}}', "at least 3 and at most 4"),
         ('{formula: "c", c: two}', "convection.c"),
         ('{formula: "c", c: {value: 2, rnge: [1, 3]}}', "range"),
-        ('{formula: "Ts*2"}', "write dT"),
+        ('{formula: "T*2"}', "Write Ts for the surface"),
         ('{formula: "3*dT", if: 2}', "'if' for a number"),
         ('{formula: "c + k*V", c: {value: 2, unit: "W/(m2 K)"}, k: {value: 3, unit: "m/s"}}', "beside"),
         ('{formula: "c", c: {value: 2, unit: "kW/(m2 K)"}}', "found: 'kW'"),

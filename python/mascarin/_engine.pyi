@@ -23,13 +23,16 @@ __all__ = [
     "Plan",
     "Trajectory",
     "_panic",
+    "check_derived",
     "check_formula",
     "check_fraction",
+    "check_function",
     "condensing_pressure",
     "dew_point",
     "fmu_library",
     "formula_values",
     "fraction_values",
+    "function_values",
     "globe_temperature",
     "humidity_ratio",
     "interrupt",
@@ -130,8 +133,7 @@ def check_formula(
     formula: str,
     valid: str | None,
     given: list[tuple[str, float, tuple[float, float] | None, str | None]],
-    wind: bool,
-    side: tuple[float, float, float],
+    side: tuple[tuple[bool, bool, bool], tuple[float, float, float, float | None]],
 ) -> tuple[str, int, int, str, str, str] | None:
     """Key, line, column, found, expected, remedy of the first fault of a coefficient as text; None: a law."""
 
@@ -152,14 +154,41 @@ def fraction_values(
 ) -> _Array:
     """Liquid fractions of a curve as text at temperatures [degC]: [-]."""
 
+def check_function(
+    kind: str,
+    formula: str,
+    valid: str | None,
+    given: list[tuple[str, float, tuple[float, float] | None, str | None]],
+) -> tuple[str, int, int, str, str, str] | None:
+    """First fault of a conductivity, infiltration or sky as text, as `check_formula` has it; None: a law."""
+
+def check_derived(
+    formula: str,
+    outputs: list[tuple[str, str]],
+    given: list[tuple[str, float, tuple[float, float] | None, str | None]],
+    unit: str | None,
+    absent: list[tuple[str, str]],
+) -> tuple[str, int, int, str, str, str] | None:
+    """First fault of a derived output, as `check_formula` has it; None: there is none."""
+
+def function_values(
+    kind: str,
+    formula: str,
+    given: list[tuple[str, float, tuple[float, float] | None, str | None]],
+    points: list[_Array],
+) -> _Array:
+    """Values of such a law, as written; points: the values of each name that changes."""
+
 def formula_values(
     formula: str,
     given: list[tuple[str, float, tuple[float, float] | None, str | None]],
-    side: tuple[float, float, float],
-    differences: _Array,
-    winds: _Array,
+    side: tuple[float, float, float, float | None],
+    points: list[_Array],
 ) -> _Array:
-    """Coefficients of a law as text at differences [K] and winds [m/s], as written: [W/(m2 K)]."""
+    """Coefficients of a law as text, as written [W/(m2 K)].
+
+    Points: differences [K], winds [m/s], airs [degC], angles [deg], irradiances [W/m2] and air changes [1/h].
+    """
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""

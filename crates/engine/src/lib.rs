@@ -43,7 +43,10 @@ pub mod laws {
 
 /// Laws that are written as text.
 pub mod formula {
-    pub use crate::physics::convection::LawText;
+    pub use crate::physics::convection::formula_check::LawPoint;
+    pub use crate::physics::convection::{LawSide, LawText, Surroundings};
+    pub use crate::physics::formula::expression::DerivedText;
+    pub use crate::physics::formula::function_check::FunctionLaw;
     pub use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
     pub use crate::physics::pcm::text::CurveText;
 }

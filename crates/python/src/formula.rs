@@ -1,6 +1,8 @@
 //! Laws that are written as text: their faults and their values.
 
-use mascarin_engine::formula::{CurveText, FormulaFault, LawNumber, LawText};
+use mascarin_engine::formula::{
+    CurveText, DerivedText, FormulaFault, FunctionLaw, LawNumber, LawPoint, LawSide, LawText, Surroundings,
+};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -25,45 +27,110 @@ fn found(FormulaFault { key, fault }: FormulaFault) -> Found {
     (key, fault.at.line, fault.at.column, fault.found, fault.expected, fault.remedy)
 }
 
-/// The first fault of a coefficient that is written as text, at a side of a surface: `wind` reaches it or not, `side`: the
-/// tilt [deg] of its normal into the air, its area [m2] and the density of the air [kg/m3]; none: it is a law.
+/// Whether wind reaches a side, whether its irradiance is known and whether it faces a zone; tilt of its normal into the air [deg],
+/// area [m2], density of the air [kg/m3], height above ground [m].
+type Side = ((bool, bool, bool), (f64, f64, f64, Option<f64>));
+
+fn law_side(((wind, sun, zone), (tilt, area, density, height)): Side) -> LawSide {
+    LawSide { wind, sun, zone, tilt, area, density, height }
+}
+
+/// The first fault of a coefficient that is written as text, at a side of a surface; none: it is a law.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
 pub fn check_formula(
     formula: &str,
     valid: Option<&str>,
     given: Vec<Number>,
-    wind: bool,
-    side: (f64, f64, f64),
+    side: Side,
 ) -> PyResult<Option<Found>> {
     caught(|| {
-        let (numbers, (tilt, area, density)) = (numbers(given), side);
-        let law = LawText { formula, valid, numbers: &numbers, wind, tilt, area, density };
+        let law = LawText { formula, valid, numbers: &numbers(given), side: law_side(side) };
         Ok(law.check().err().map(found))
     })
 }
 
-/// Coefficients of such a law at differences [K] and winds [m/s], windward, as written: [W/(m2 K)].
+/// Coefficients of such a law, windward, as written [W/(m2 K)]. `points`: differences [K], winds [m/s], temperatures of the air [degC],
+/// angles of the wind [deg], irradiances [W/m2] and air changes [1/h].
 #[pyfunction]
-#[allow(
-    clippy::needless_pass_by_value,
-    clippy::too_many_arguments,
-    reason = "the binding hands lists over by value"
-)]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
 pub fn formula_values<'py>(
     py: Python<'py>,
     formula: &str,
     given: Vec<Number>,
-    side: (f64, f64, f64),
-    differences: PyReadonlyArray1<'py, f64>,
-    winds: PyReadonlyArray1<'py, f64>,
+    side: (f64, f64, f64, Option<f64>),
+    points: [PyReadonlyArray1<'py, f64>; 6],
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     caught(|| {
-        let (numbers, (tilt, area, density)) = (numbers(given), side);
-        let law = LawText { formula, valid: None, numbers: &numbers, wind: true, tilt, area, density };
-        let points: Vec<[f64; 2]> =
-            differences.as_slice()?.iter().zip(winds.as_slice()?).map(|(&d, &wind)| [d, wind]).collect();
-        let values = law.values(&points);
+        let side = law_side(((true, true, true), side));
+        let law = LawText { formula, valid: None, numbers: &numbers(given), side };
+        let columns = points.iter().map(|column| column.as_slice()).collect::<Result<Vec<_>, _>>()?;
+        let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+        let point = |k: usize| LawPoint {
+            difference: columns[0][k],
+            wind: columns[1][k],
+            around: Surroundings {
+                air: columns[2][k],
+                angle: columns[3][k],
+                sun: columns[4][k],
+                air_change: columns[5][k],
+            },
+        };
+        let values = law.values(&(0..count).map(point).collect::<Vec<_>>());
+        let values = values.map_err(|fault| EngineInputError::new_err(fault.fault.to_string()))?;
+        Ok(PyArray1::from_vec(py, values))
+    })
+}
+
+/// The first fault of a law of another kind that is written as text; none: it is a law.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+pub fn check_function(
+    kind: &str,
+    formula: &str,
+    valid: Option<&str>,
+    given: Vec<Number>,
+) -> PyResult<Option<Found>> {
+    caught(|| {
+        let law = FunctionLaw { kind, formula, valid, numbers: &numbers(given) };
+        Ok(law.check().err().map(found))
+    })
+}
+
+/// The first fault of a derived output; none: it is one. `outputs`: names and units that it may use; `absent`: names that are no outputs, and
+/// what to do.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+pub fn check_derived(
+    formula: &str,
+    outputs: Vec<(String, String)>,
+    given: Vec<Number>,
+    unit: Option<&str>,
+    absent: Vec<(String, String)>,
+) -> PyResult<Option<Found>> {
+    caught(|| {
+        let text =
+            DerivedText { formula, outputs: &outputs, numbers: &numbers(given), unit, absent: &absent };
+        Ok(text.check().err().map(found))
+    })
+}
+
+/// Values of such a law, as written; `points`: the values of each name that changes.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+pub fn function_values<'py>(
+    py: Python<'py>,
+    kind: &str,
+    formula: &str,
+    given: Vec<Number>,
+    points: Vec<PyReadonlyArray1<'py, f64>>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    caught(|| {
+        let law = FunctionLaw { kind, formula, valid: None, numbers: &numbers(given) };
+        let columns = points.iter().map(|column| column.as_slice()).collect::<Result<Vec<_>, _>>()?;
+        let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+        let point = |k: usize| columns.iter().map(|column| column[k]).collect::<Vec<f64>>();
+        let values = law.values(&(0..count).map(point).collect::<Vec<_>>());
         let values = values.map_err(|fault| EngineInputError::new_err(fault.fault.to_string()))?;
         Ok(PyArray1::from_vec(py, values))
     })

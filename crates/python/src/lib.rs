@@ -50,6 +50,9 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
     module.add_function(wrap_pyfunction!(formula::check_formula, module)?)?;
     module.add_function(wrap_pyfunction!(formula::formula_values, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_function, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::check_derived, module)?)?;
+    module.add_function(wrap_pyfunction!(formula::function_values, module)?)?;
     module.add_function(wrap_pyfunction!(formula::check_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(formula::fraction_values, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;

@@ -61,6 +61,7 @@ from mascarin.building.parts.air.zone import (
     Infiltration,
     Opening,
     SunShares,
+    TextInfiltration,
     TracedSun,
     Ventilation,
     Zone,
@@ -79,7 +80,7 @@ from mascarin.building.parts.envelope.surface import (
 )
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
 from mascarin.building.parts.materials.history_laws import Supercooling
-from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance, Solid
+from mascarin.building.parts.materials.material import PhaseChangeMaterial, Resistance, Solid, VariableSolid
 from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
     FractionsLaw,
@@ -93,6 +94,7 @@ from mascarin.building.parts.materials.phase_change import (
     TriangleLaw,
 )
 from mascarin.building.parts.materials.sorption import LinearSorption, Published, TabulatedSorption
+from mascarin.building.parts.materials.text_law import ConductivityLaw, TextSky
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import (
     Angular,
@@ -144,6 +146,7 @@ __all__ = [
     "ClarkAllenSky",
     "CloudFactor",
     "CloudLayer",
+    "ConductivityLaw",
     "Constant",
     "Construction",
     "CoolingCoil",
@@ -225,11 +228,14 @@ __all__ = [
     "TemperatureDays",
     "TemperaturePoint",
     "TemperatureSchedule",
+    "TextInfiltration",
+    "TextSky",
     "ThermalBridge",
     "TracedSun",
     "TriangleLaw",
     "UnitFlow",
     "VapourGain",
+    "VariableSolid",
     "Vent",
     "VentControl",
     "Ventilation",

@@ -17,6 +17,7 @@ from mascarin.building.checks.u_values import (
     described_window_u_value,
     layer_resistance,
 )
+from mascarin.building.parts.air.zone import TextInfiltration
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.materials.phases import phase
 from mascarin.physics import AIR_SPECIFIC_HEAT, standard_density
@@ -107,6 +108,8 @@ def heat_loss(building: Description) -> HeatLoss:
     for zone in building.zones.values():
         leak = zone.infiltration
         rate = float(leak.constant) + float(leak.wind) * WIND + float(leak.temperature) * DIFFERENCE
+        if isinstance(leak, TextInfiltration):
+            rate += float(leak.value(DIFFERENCE, WIND))
         volume = float(zone.volume or 0.0)
         destinations["infiltration"] += air * volume * rate / 3600.0
         capacity += air * volume * float(zone.capacity_factor) / 3600.0

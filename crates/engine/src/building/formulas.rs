@@ -4,16 +4,20 @@ use std::sync::Arc;
 
 use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
-use crate::input::description::{Convection, Description, Facing, Material, MeltingCurve, PcmLaw, Side};
-use crate::physics::convection::formula_text::FormulaText;
+use crate::input::description::{
+    Convection, DerivedOutput, Description, Facing, Material, MeltingCurve, PcmLaw, Side, Sky, TextLaw,
+};
+use crate::physics::convection::formula_text::{FormulaText, SideNames};
 use crate::physics::convection::law::row;
+use crate::physics::formula::expression::ExpressionText;
+use crate::physics::formula::function::{FunctionText, Kind};
 use crate::physics::law_row::Sides;
 use crate::physics::pcm::history;
 use crate::physics::pcm::text::FractionText;
 
 /// The law of each surface that is written as text.
 pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<FormulaText>>>, EngineError> {
-    let mut known: Vec<(&Convection, bool, Arc<FormulaText>)> = Vec::new();
+    let mut known: Vec<(&Convection, SideNames, Arc<FormulaText>)> = Vec::new();
     let mut texts = Vec::with_capacity(2 * description.surfaces.len());
     for (index, wall) in description.surfaces.iter().enumerate() {
         for id in SurfaceId::pair(index) {
@@ -60,6 +64,58 @@ pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError>
     Ok(())
 }
 
+/// Refuses other laws as text that cannot be read.
+pub(crate) fn check_texts(description: &Description) -> Result<(), EngineError> {
+    let mut laws: Vec<(String, &str, &TextLaw)> = Vec::new();
+    for (index, material) in description.materials.iter().enumerate() {
+        if let Material::Variable { conductivity, .. } = material {
+            laws.push((format!("material {index}, conductivity"), "conductivity", conductivity));
+        }
+    }
+    for zone in &description.zones {
+        if let Some(law) = &zone.infiltration.law {
+            laws.push((format!("zone {}, infiltration", zone.name), "infiltration", law));
+        }
+    }
+    if let Sky::Text { temperature, law } = &description.site.sky {
+        let kind = if *temperature { "sky_temperature" } else { "sky_emissivity" };
+        laws.push(("sky".to_owned(), kind, law));
+    }
+    for (place, kind, law) in laws {
+        let names: Vec<&str> = law.numbers.iter().map(|number| number.name.as_str()).collect();
+        FunctionText::new(Kind::named(kind), &law.formula, None, &names)
+            .map_err(|found| EngineError::Description(format!("{place}: {}: {}", found.key, found.fault)))?;
+    }
+    check_derived(&description.outputs)
+}
+
+/// Refuses derived outputs whose text cannot be read, and loops of them.
+fn check_derived(outputs: &[DerivedOutput]) -> Result<(), EngineError> {
+    let mut sound = vec![false; outputs.len()];
+    for output in outputs {
+        let of: Vec<&str> = output.of.iter().map(|used| used.name.as_str()).collect();
+        let names: Vec<&str> = output.law.numbers.iter().map(|number| number.name.as_str()).collect();
+        ExpressionText::new(&output.law.formula, &of, &names, &[]).map_err(|found| {
+            EngineError::Description(format!("output {}: {}: {}", output.name, found.key, found.fault))
+        })?;
+    }
+    // Each round finds those that need only sound ones.
+    for _ in outputs {
+        for (index, output) in outputs.iter().enumerate() {
+            let derived = output.of.iter().filter(|used| used.kind == "derived");
+            let mut places = derived.map(|used| used.place.derived);
+            sound[index] |= places.all(|place| sound.get(place).copied().unwrap_or(false));
+        }
+    }
+    match outputs.iter().zip(sound).find(|(_, sound)| !sound) {
+        Some((output, _)) => Err(EngineError::Description(format!(
+            "output {}: found a loop of derived outputs, expected none",
+            output.name
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// A published law has its numbers, and stands where it may.
 fn check_law(side: &Side) -> Result<(), String> {
     let Some(Convection::Law(law)) = &side.convection else { return Ok(()) };
@@ -88,25 +144,31 @@ fn check_law(side: &Side) -> Result<(), String> {
 /// The law of a side; sides with the same text share it.
 fn of_side<'a>(
     side: &'a Side,
-    known: &mut Vec<(&'a Convection, bool, Arc<FormulaText>)>,
+    known: &mut Vec<(&'a Convection, SideNames, Arc<FormulaText>)>,
 ) -> Result<Option<Arc<FormulaText>>, String> {
     let Some(law @ Convection::Formula { formula, valid, numbers }) = &side.convection else {
         return Ok(None);
     };
-    let wind = matches!(side.facing, Facing::Outdoors) && side.exposure.wind;
+    let outdoors = matches!(side.facing, Facing::Outdoors);
+    let given = SideNames {
+        wind: outdoors && side.exposure.wind,
+        sun: outdoors && side.exposure.sun,
+        zone: matches!(side.facing, Facing::Zone { .. }),
+        height: side.height.is_some(),
+    };
     let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
-    let same = known.iter().find(|(other, windy, _)| {
-        *windy == wind
+    let same = known.iter().find(|(other, others, _)| {
+        *others == given
             && matches!(other, Convection::Formula { formula: f, valid: v, numbers: n }
                 if f == formula && v == valid && n.iter().map(|number| number.name.as_str()).eq(names.iter().copied()))
     });
     if let Some((_, _, text)) = same {
         return Ok(Some(Arc::clone(text)));
     }
-    let text = FormulaText::new(formula, valid.as_deref(), &names, wind)
+    let text = FormulaText::new(formula, valid.as_deref(), &names, given)
         .map_err(|found| format!("{}: {}", found.key, found.fault))?;
     let text = Arc::new(text);
-    known.push((law, wind, Arc::clone(&text)));
+    known.push((law, given, Arc::clone(&text)));
     Ok(Some(text))
 }
 

@@ -83,8 +83,8 @@ impl WallPlan {
                         link.push(index);
                     }
                 }
-                Material::Solid { .. } | Material::Pcm { .. } => {
-                    nonlinear |= matches!(description.materials[layer.material], Material::Pcm { .. });
+                Material::Solid { .. } | Material::Variable { .. } | Material::Pcm { .. } => {
+                    nonlinear |= !matches!(description.materials[layer.material], Material::Solid { .. });
                     for _ in 0..layer.nodes {
                         cell_layers.push(index);
                         link_layers.push(Vec::new());

@@ -73,6 +73,7 @@ impl Plan {
     fn compile(description: Description, least_depth: f64, always: bool) -> Result<Self, EngineError> {
         check(&description)?;
         formulas::check_curves(&description)?;
+        formulas::check_texts(&description)?;
         let formulas = formulas::read(&description)?;
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());

@@ -6,12 +6,13 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth, Description,
-    DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap, Glazing, Humidity,
-    HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve,
-    Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, Sensor, SetPoint, Side, Site, Sky, Sorption,
-    SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation, VentilationUnit,
-    WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
+    AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth,
+    DerivedOutput, Description, DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap,
+    Glazing, Humidity, HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material,
+    MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, Sensor, SetPoint, Side, Site,
+    Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl,
+    Ventilation, VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave,
+    ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -104,7 +105,7 @@ macro_rules! walk {
 }
 
 walk!(Description { site, materials, constructions, zones, air_paths, directed_flows, doors, ventilation_units,
-    thermal_bridges, openings, vents, controls, surfaces, sensors, humidity }
+    thermal_bridges, openings, vents, controls, surfaces, sensors, humidity, outputs }
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse, horizon });
@@ -126,10 +127,12 @@ walk!(Sky by variant {
     MartinBerdahl { a, b, c } plain {},
     Brunt { a, b } plain {},
     Offset { depression } plain {},
+    Text { law } plain { temperature },
 });
 
 walk!(Material by variant {
     Solid { conductivity, density, specific_heat } plain {},
+    Variable { conductivity, density, specific_heat } plain {},
     Resistance { resistance } plain {},
     Rated { u_value } plain {},
     Pcm { conductivity, density, specific_heat, law } plain {},
@@ -170,7 +173,9 @@ walk!(Angular { transmittance_scale, absorptance_scale }
 
 walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, heating, cooling }
     plain { name, view_weights });
-walk!(Infiltration { constant, temperature, wind, leakage } plain {});
+walk!(Infiltration { constant, temperature, wind, leakage, law } plain {});
+walk!(DerivedOutput { law } plain { name, of });
+walk!(TextLaw { numbers } plain { formula });
 walk!(Leakage by variant {
     Factor { n50, factor } plain {},
     StackWind { n50, exponent, stack, wind } plain {},

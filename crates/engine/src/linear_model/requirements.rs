@@ -17,6 +17,11 @@ pub(super) fn require_linear(
     coefficients: &Coefficients<f64>,
 ) -> Result<(), EngineError> {
     for material in &plan.description.materials {
+        if let Material::Variable { density, .. } = material {
+            let path = &plan.description.parameters[density.0 as usize].path;
+            let name = path.split('.').nth(1).unwrap_or(path);
+            return refuse(&format!("materials.{name} (conductivity by temperature)"), "give it a number");
+        }
         if let Material::Pcm { law: _, conductivity, .. } = material {
             let path = &plan.description.parameters[conductivity[0].0 as usize].path;
             let name = path.split('.').nth(1).unwrap_or(path);
@@ -92,7 +97,7 @@ fn require_linear_zones(
         }
         let Infiltration { temperature, wind, .. } = &definition.infiltration;
         let varies = [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0);
-        if varies || zone.leakage.is_some() {
+        if varies || zone.leakage.is_some() || zone.infiltration_law.is_some() {
             return refuse(
                 &format!("infiltration of zone {}", definition.name),
                 "keep only its constant part",

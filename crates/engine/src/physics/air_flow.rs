@@ -13,6 +13,7 @@ use crate::input::values::Values;
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::physics::constants::{GRAVITY, KELVIN};
+use crate::physics::formula::function::Function;
 
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
 const ROUND_OFF: f64 = 0.01;
@@ -171,6 +172,26 @@ pub(crate) fn infiltration<S: Real>(rates: &[S; 3], air_capacity: S, wind: S, ou
     let rate = per_second * leakage(rates, wind, magnitude);
     let slope = rate + per_second * temperature * d * d / magnitude;
     Line::tangent(rate * d, slope, d)
+}
+
+/// Heat that infiltration as text brings into a zone, as its tangent in `d = T_outdoor - T_air`; a law has the opposite difference.
+#[inline(always)]
+pub(crate) fn heat_of_law<S: Real>(
+    law: &Function<S>,
+    air_capacity: S,
+    wind: S,
+    outdoor: S,
+    air: S,
+) -> Line<S> {
+    let d = outdoor - air;
+    let per_second = air_capacity.scale(1.0 / 3600.0);
+    let [rate, slope] = law.at(-d, &[wind, outdoor]);
+    Line::tangent(per_second * rate * d, per_second * (rate - slope * d), d)
+}
+
+/// Air changes of infiltration as text [1/h].
+pub(crate) fn air_changes_of_law<S: Real>(law: &Function<S>, wind: S, outdoor: S, air: S) -> S {
+    law.at(air - outdoor, &[wind, outdoor])[0]
 }
 
 /// Air changes of infiltration [1/h].

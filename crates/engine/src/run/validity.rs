@@ -5,7 +5,7 @@
 use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
-use crate::number::real::{Mask, Real};
+use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -63,7 +63,7 @@ impl Validity {
             };
             let difference = state.surfaces[surface] - air;
             let Some(law) = model.convection(surface) else { continue };
-            let holds = law.valid(difference, conditions.wind, S::Mask::splat(true));
+            let holds = law.valid(difference, conditions.wind, air);
             if holds.lane(0) > 0.5 {
                 continue;
             }

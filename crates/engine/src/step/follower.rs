@@ -142,7 +142,8 @@ impl<'a, S: Real> Follower<'a, S> {
         let row = vec![0.0; self.model.plan.n_channels()];
         if let Ok(forcing) = Forcing::new(&row, 1, row.len()) {
             let weather = Weather::for_single_run(self.model.plan, &forcing, 0);
-            self.conditions_now(&weather.at(0, 0));
+            let airs = self.iterate.air.clone();
+            self.conditions_now(&weather.at(0, 0), &airs);
         }
         let Self { model, weather, linearisation, iterate, .. } = self;
         linearisation.linearise_surfaces(model, &weather.conditions, iterate, true);
@@ -190,14 +191,15 @@ impl<'a, S: Real> Follower<'a, S> {
         part: Part,
         stage: usize,
     ) {
-        self.weather.set_stage(&self.model, weather, self.scheme.tableau(), part, stage);
+        let tableau = self.scheme.tableau();
+        self.weather.set_stage(&self.model, weather, tableau, (part, stage), &state.air);
         self.drive_vents(state);
     }
 
     /// The weather of an instant.
     #[inline(always)]
-    fn conditions_now(&mut self, now: &Instant<'_>) {
-        self.weather.set_instant(&self.model, now);
+    fn conditions_now(&mut self, now: &Instant<'_>, airs: &[S]) {
+        self.weather.set_instant(&self.model, now, airs);
     }
 
     /// Begins to bring the surfaces of a state into balance with the weather of an instant.
@@ -205,7 +207,7 @@ impl<'a, S: Real> Follower<'a, S> {
     pub(crate) fn begin_balance(&mut self, state: &mut State<S>, now: &Instant<'_>) {
         self.begin_part(state);
         self.begin_first_stage(state, 0.0);
-        self.conditions_now(now);
+        self.conditions_now(now, &state.air);
         control_vents(&self.model, state, now.row, 0.0);
         self.drive_vents(state);
     }

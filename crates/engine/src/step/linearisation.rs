@@ -133,6 +133,10 @@ impl<S: Real> Linearisation<S> {
                 let heat = law.heat(numbers.air_capacity, wind, outdoor, air);
                 self.laws.infiltration[zone] = self.laws.infiltration[zone].plus(&heat);
             }
+            if let Some(law) = &numbers.infiltration_law {
+                let heat = air_flow::heat_of_law(law, numbers.air_capacity, wind, outdoor, air);
+                self.laws.infiltration[zone] = self.laws.infiltration[zone].plus(&heat);
+            }
         }
         for (line, fans) in self.laws.ventilation.iter_mut().zip(&conditions.mechanical_air.zones) {
             *line = line.plus(&fans.heat());

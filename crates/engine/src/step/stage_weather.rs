@@ -47,9 +47,15 @@ impl<'a, S: Real> StageWeather<'a, S> {
         conditions.update(model.plan, &model.coefficients, &self.index, self.parameters, now);
     }
 
-    /// The weather of one moment, no step.
+    /// The weather of one moment, no step; `airs` of the zones [degC].
     #[inline(always)]
-    pub(crate) fn set_instant(&mut self, model: &Model<'_, S>, now: &Instant<'_>) {
+    pub(crate) fn set_instant(&mut self, model: &Model<'_, S>, now: &Instant<'_>, airs: &[S]) {
+        self.evaluate_now(model, now);
+        self.conditions.surround(&model.coefficients, &self.index, airs);
+    }
+
+    #[inline(always)]
+    fn evaluate_now(&mut self, model: &Model<'_, S>, now: &Instant<'_>) {
         let Self { index, parameters, conditions, .. } = self;
         conditions.update(model.plan, &model.coefficients, index, parameters, now);
     }
@@ -61,7 +67,7 @@ impl<'a, S: Real> StageWeather<'a, S> {
         self.add_to_means(model, 1.0);
     }
 
-    /// The weather at a stage of a step, or of a part of it.
+    /// The weather at a stage of a step, or of a part of it that starts with some airs of the zones [degC].
     ///
     /// Within a step of two stages the weather is the straight line through both: SDIRK2 sums a straight line exactly,
     /// so that the parts of a step add up to the heat of the whole one. With one stage it is constant. The line of the sun is less steep where
@@ -72,11 +78,11 @@ impl<'a, S: Real> StageWeather<'a, S> {
         model: &Model<'_, S>,
         weather: &Weather<'_>,
         tableau: &Tableau,
-        part: Part,
-        stage: usize,
+        (part, stage): (Part, usize),
+        airs: &[S],
     ) {
         let Tableau { weights, nodes, .. } = *tableau;
-        self.set_instant(model, &weather.at(part.step, stage));
+        self.evaluate_now(model, &weather.at(part.step, stage));
         if stage == 0 {
             self.restart_means();
         }
@@ -98,6 +104,7 @@ impl<'a, S: Real> StageWeather<'a, S> {
             let of_sun = Conditions::fraction_of_sun(&first, &second, fraction, [at(0.0), at(0.5)]);
             self.conditions.interpolate(&first, &second, (fraction, of_sun));
         }
+        self.conditions.surround(&model.coefficients, &self.index, airs);
     }
 
     /// Averages the sun absorbed by surfaces from now on.

@@ -121,7 +121,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                self.weather.set_instant(&self.model, now);
+                self.weather.set_instant(&self.model, now, &state.air);
                 self.control_vents(state, now.row, 0.0);
                 self.drive_vents(state);
                 self.begin_step(state, 0.0, 0.0);
@@ -278,7 +278,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             if stage > 0 {
                 self.begin_second_stage(state);
             }
-            self.weather.set_stage(&self.model, weather, tableau, part, stage);
+            self.weather.set_stage(&self.model, weather, tableau, (part, stage), &state.air);
             self.drive_vents(state);
             let all = Search::Whole(S::Mask::splat(true));
             self.solve_stage(state, tableau.diagonal * length, (part.step, stage + 1), all)?;

@@ -6,8 +6,8 @@ use crate::building::ids::BySurface;
 use crate::building::plan::Plan;
 use crate::input::forcing::channel;
 use crate::input::values::Values;
-use crate::number::real::Real;
-use crate::physics::convection::SurfaceConvection;
+use crate::number::real::{Mask, Real};
+use crate::physics::convection::{SurfaceConvection, Surroundings, Wind, WindTerms};
 use crate::physics::longwave::sky_emission;
 use crate::weather::humidity::HumidityConditions;
 use crate::weather::index::WeatherIndex;
@@ -15,7 +15,7 @@ pub use crate::weather::instant::{Instant, Weather};
 use crate::weather::mechanical_air::MechanicalConditions;
 pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
-use crate::weather::surface::{forced, imposed_temperature};
+use crate::weather::surface::{driven_outside, forced, imposed_temperature};
 use crate::weather::vents::VentConditions;
 use crate::weather::zone_conditions::ZoneConditions;
 
@@ -56,7 +56,7 @@ impl<S: Real> Conditions<S> {
     pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>, weather_index: &WeatherIndex<S>) -> Self {
         let zero = S::zero();
         let surfaces = coefficients.surfaces.iter().map(|surface| {
-            let forced = surface.convection.as_ref().map_or([zero; 2], SurfaceConvection::calm);
+            let forced = surface.convection.as_ref().map_or([zero; 4], SurfaceConvection::calm);
             SurfaceConditions { solar: zero, longwave: zero, temperature: zero, forced }
         });
         Self {
@@ -98,7 +98,7 @@ impl<S: Real> Conditions<S> {
             at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
-            at.forced = [part(a.forced[0], b.forced[0]), part(a.forced[1], b.forced[1])];
+            at.forced = core::array::from_fn(|k| part(a.forced[k], b.forced[k]));
         }
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
             at.interpolate(a, b, fraction);
@@ -186,7 +186,8 @@ impl<S: Real> Conditions<S> {
     ) {
         let site = &plan.description.site;
         let air = S::constant(now.row[channel::AIR_TEMPERATURE]);
-        let sky = sky_emission(&Values::new(numbers), &site.sky, &coefficients.clouds, &now.sky);
+        let laws = (&coefficients.clouds, coefficients.sky.as_ref());
+        let sky = sky_emission(&Values::new(numbers), &site.sky, laws, &now.sky);
         (self.sky, self.outdoor_air) = (sky, air);
         self.wind = S::constant(now.wind.speed);
         self.sun.irradiate(plan, coefficients, weather_index, now);
@@ -265,11 +266,54 @@ impl<S: Real> Conditions<S> {
             self.surfaces[index].solar = absorptance * irradiances[source];
         }
         for &(index, channel, factor) in &weather_index.measured {
-            self.surfaces[index].forced = [factor.scale(now.row[channel]); 2];
+            self.surfaces[index].forced = [factor.scale(now.row[channel]); 4];
         }
         for &index in &weather_index.imposed {
             if let Boundary::Imposed(imposed) = &coefficients.surfaces[index].boundary {
                 self.surfaces[index].temperature = imposed_temperature(imposed, now);
+            }
+        }
+        for &(index, source) in &weather_index.surrounded {
+            let sun = source.map_or_else(S::zero, |source| self.sun.irradiances[source]);
+            let around = (self.surfaces[index].temperature, sun);
+            self.surfaces[index].forced = driven_outside(coefficients, index, now, around);
+        }
+    }
+
+    /// Laws of convection in zones that depend on their air, by the airs at the start of a step [degC].
+    ///
+    /// Within a step they do not change with it: the coefficient is that of a slowly changing air, and the balances stay those of a
+    /// coefficient that depends on a temperature difference.
+    #[inline(always)]
+    pub(crate) fn surround(
+        &mut self,
+        coefficients: &Coefficients<S>,
+        weather_index: &WeatherIndex<S>,
+        airs: &[S],
+    ) {
+        if !weather_index.surrounded_in_zones.is_empty() {
+            self.surround_in_zones(coefficients, weather_index, airs);
+        }
+    }
+
+    // One copy only: few buildings have such laws.
+    #[inline(never)]
+    fn surround_in_zones(
+        &mut self,
+        coefficients: &Coefficients<S>,
+        weather_index: &WeatherIndex<S>,
+        airs: &[S],
+    ) {
+        let calm = Wind::new(0.0, WindTerms::default());
+        for &(surface, zone, needs_air_change) in &weather_index.surrounded_in_zones {
+            let mut around = Surroundings { air: airs[zone], ..Surroundings::calm() };
+            if needs_air_change {
+                let numbers = &coefficients.zones[zone];
+                around.air_change =
+                    self.zones[zone].air_changes(numbers, self.wind, self.outdoor_air, airs[zone]);
+            }
+            if let Some(law) = &coefficients.surfaces[surface].convection {
+                self.surfaces[surface].forced = law.driven(&calm, S::Mask::splat(true), &around);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::SurfaceId;
-use crate::building::plan::Plan;
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::number::real::{Real, same};
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
@@ -47,6 +47,10 @@ pub(crate) struct WeatherIndex<S> {
     pub(crate) outdoors: Vec<OutdoorSurface<S>>,
     /// Surfaces outdoors whose heat transfer coefficients depend on the wind.
     pub(crate) windy: Vec<SurfaceId>,
+    /// Surfaces in no zone with a law as text that depends on what is around them, and the sources of their irradiance.
+    pub(crate) surrounded: Vec<(SurfaceId, Option<usize>)>,
+    /// Surfaces in zones with such a law, their zone, and whether the law depends on its air change.
+    pub(crate) surrounded_in_zones: Vec<(SurfaceId, usize, bool)>,
     /// Surfaces at imposed temperatures.
     pub(crate) imposed: Vec<SurfaceId>,
     /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
@@ -63,6 +67,8 @@ impl<S: Real> WeatherIndex<S> {
             emissions: Vec::new(),
             outdoors: Vec::new(),
             windy: Vec::new(),
+            surrounded: Vec::new(),
+            surrounded_in_zones: Vec::new(),
             imposed: Vec::new(),
             irradiated: Vec::new(),
             measured: Vec::new(),
@@ -71,6 +77,14 @@ impl<S: Real> WeatherIndex<S> {
             let source = all.add_source(plan, coefficients, index);
             let measured = surface.convection.as_ref().and_then(SurfaceConvection::measured);
             all.measured.extend(measured.map(|(channel, factor)| (index, channel, factor)));
+            let text = surface.convection.as_ref().filter(|law| law.surrounded());
+            match (text, plan.surfaces[index].role) {
+                (Some(law), SurfaceRole::Zone { zone, .. }) => {
+                    all.surrounded_in_zones.push((index, zone, law.needs_air_change()));
+                }
+                (Some(_), SurfaceRole::Exterior) => all.surrounded.push((index, source)),
+                (None, _) => {}
+            }
             match (&surface.boundary, source) {
                 (Boundary::Outdoors(outdoors), _) => {
                     let emission = outdoors.emission.as_ref().map(|law| all.add_emission(law));
@@ -84,6 +98,7 @@ impl<S: Real> WeatherIndex<S> {
                         of_sky,
                     });
                     if surface.exposure.wind
+                        && text.is_none()
                         && surface.convection.as_ref().is_some_and(SurfaceConvection::windy)
                     {
                         all.windy.push(index);

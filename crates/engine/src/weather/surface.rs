@@ -1,9 +1,10 @@
 //! What acts on a single surface: absorbed radiation, the temperature beside it and the wind on it.
 
-use crate::building::coefficients::{Boundary, Coefficients, Imposed};
+use crate::building::coefficients::{Boundary, Coefficients, Imposed, Outdoors};
 use crate::building::ids::SurfaceId;
-use crate::number::real::{ByPrecision, Real};
-use crate::physics::convection::Forced;
+use crate::number::real::{ByPrecision, Mask, Real};
+use crate::physics::convection::wind::angle_of_cosine;
+use crate::physics::convection::{Driven, Surroundings};
 use crate::weather::instant::Instant;
 
 /// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
@@ -22,8 +23,18 @@ pub struct SurfaceConditions<S: Real> {
     pub longwave: S,
     /// Temperature of the air, or the imposed temperature [degC].
     pub temperature: S,
-    /// The part of the surface heat transfer coefficient that depends on the wind.
-    pub forced: Forced<S>,
+    /// The parts of the surface heat transfer coefficient that depend on the wind and on what is around the surface.
+    pub forced: Driven<S>,
+}
+
+/// The cosine of the angle between the azimuth of a surface outdoors and the wind, and where the wind blows onto it.
+#[inline(always)]
+fn facing<S: Real>(outdoors: &Outdoors<S>, upward: S, now: &Instant<'_>) -> (S, S::Mask) {
+    let [north, east] = now.wind_from;
+    let facing = outdoors.heading[0].scale(north) + outdoors.heading[1].scale(east);
+    let onto = S::constant(LEEWARD_COSINE.of::<S>()).lt(facing);
+    let flat = S::constant(FLAT).lt(upward.abs());
+    (facing, onto | flat)
 }
 
 #[inline(always)]
@@ -31,16 +42,34 @@ pub(crate) fn forced<S: Real>(
     coefficients: &Coefficients<S>,
     index: SurfaceId,
     now: &Instant<'_>,
-) -> Forced<S> {
+) -> Driven<S> {
     let surface = &coefficients.surfaces[index];
     let (Some(convection), Boundary::Outdoors(outdoors)) = (&surface.convection, &surface.boundary) else {
-        return [S::zero(); 2];
+        return [S::zero(); 4];
     };
-    let [north, east] = now.wind_from;
-    let facing = outdoors.heading[0].scale(north) + outdoors.heading[1].scale(east);
-    let onto = S::constant(LEEWARD_COSINE.of::<S>()).lt(facing);
-    let flat = S::constant(FLAT).lt(surface.upward.abs());
-    convection.forced(&now.wind, onto | flat)
+    let (_, windward) = facing(outdoors, surface.upward, now);
+    convection.forced(&now.wind, windward)
+}
+
+/// What drives a law as text at a surface in no zone: `air` is the temperature beside it [degC], `sun` the irradiance of its plane [W/m2].
+// One copy only: few buildings have such laws.
+#[inline(never)]
+pub(crate) fn driven_outside<S: Real>(
+    coefficients: &Coefficients<S>,
+    index: SurfaceId,
+    now: &Instant<'_>,
+    (air, sun): (S, S),
+) -> Driven<S> {
+    let surface = &coefficients.surfaces[index];
+    let Some(convection) = &surface.convection else { return [S::zero(); 4] };
+    let mut around = Surroundings { air, sun, ..Surroundings::calm() };
+    let mut windward = S::Mask::splat(true);
+    if let Boundary::Outdoors(outdoors) = &surface.boundary {
+        let (cosine, onto) = facing(outdoors, surface.upward, now);
+        windward = onto;
+        around.angle = angle_of_cosine(cosine * outdoors.plane.sin_tilt);
+    }
+    convection.driven(&now.wind, windward, &around)
 }
 
 /// The imposed temperature of a surface at an instant [degC].

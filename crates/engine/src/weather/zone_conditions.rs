@@ -81,7 +81,9 @@ impl<S: Real> ZoneConditions<S> {
     pub(crate) fn air_changes(&self, zone: &ZoneCoefficients<S>, wind: S, outdoor: S, air: S) -> S {
         let intake = self.intake(zone);
         let rate = air_flow::air_changes(&zone.infiltration, zone.air_capacity, &intake, wind, outdoor, air);
-        zone.leakage.as_ref().map_or(rate, |law| rate + law.air_changes(wind, outdoor - air))
+        let rate = zone.leakage.as_ref().map_or(rate, |law| rate + law.air_changes(wind, outdoor - air));
+        let law = zone.infiltration_law.as_ref();
+        law.map_or(rate, |law| rate + air_flow::air_changes_of_law(law, wind, outdoor, air))
     }
 }
 

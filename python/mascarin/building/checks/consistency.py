@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from mascarin._io.memory import amount
 from mascarin.building.base.part import Location, fault
 from mascarin.building.checks.air import air_faults
+from mascarin.building.checks.derived_outputs import derived_faults
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.checks.humidity import humidity_faults
 from mascarin.building.checks.windows import windows_lie_in_walls
@@ -73,6 +74,7 @@ def faults_of_values(building: Description) -> Faults:
         yield from tie_faults(building, parameters(building))
     for side in formula_sides(building):
         yield from side.faults()
+    yield from derived_faults(building)
 
 
 def _there_are_surfaces(building: Description) -> Faults:

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mascarin.building.parameters.unused_parameters import sides
-from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parameters.unused_parameters import has_height, sides
+from mascarin.building.parts.envelope.formula_law import FormulaLaw, LawSide
+from mascarin.building.parts.openings.window import WindowInside
 
 if TYPE_CHECKING:
     from mascarin.building.parts.description import Description
@@ -18,16 +19,15 @@ _AIR_DENSITY = 1.2
 
 @dataclass(frozen=True)
 class FormulaSide:
-    """A side with a law as text: the path of the law, the side's geometry, and whether wind reaches it."""
+    """A side with a law as text: the path of the law, and what the side gives to it."""
 
     path: str
     law: FormulaLaw
-    geometry: tuple[float, float, float]
-    wind: bool
+    values: LawSide
 
     def faults(self) -> Iterator[Any]:
         """What is wrong with the law here."""
-        return self.law.faults(tuple(self.path.split(".")), self.geometry, wind=self.wind)
+        return self.law.faults(tuple(self.path.split(".")), self.values)
 
 
 def formula_sides(building: Description) -> Iterator[FormulaSide]:
@@ -36,5 +36,11 @@ def formula_sides(building: Description) -> Iterator[FormulaSide]:
     for item in sides(building):
         law = item.side.convection
         if isinstance(law, FormulaLaw):
-            wind = bool(item.side.outdoors) and item.side.exposed.wind
-            yield FormulaSide(f"{item.path}.convection", law, (item.tilt, item.area, density), wind)
+            side = item.side
+            exposed, indoors = (
+                side.exposed,
+                isinstance(side, WindowInside) or getattr(side, "zone", None) is not None,
+            )
+            height = float(side.height) if has_height(side) else None  # type: ignore[union-attr, arg-type]
+            values = ((exposed.wind, exposed.sun, indoors), (item.tilt, item.area, density, height))
+            yield FormulaSide(f"{item.path}.convection", law, values)

@@ -22,7 +22,7 @@ from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parameters.unused_parameters import sides as every_side
 from mascarin.building.parts.air.measured_values import Driven
 from mascarin.building.parts.air.ventilation import VentilationUnit
-from mascarin.building.parts.air.zone import AirPath, Zone
+from mascarin.building.parts.air.zone import AirPath, TextInfiltration, Zone
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.materials.closed_law import CUT, ClosedLaw
@@ -110,12 +110,19 @@ def _zones(building: Description) -> Iterator[str]:
         meant = sum(net_area * described_u_value(building, surface) for net_area, surface in shell)
         meant += sum(_described_ua(building, window) for window in glazed)
         heavy = density(building.site)
-        air = zone.infiltration.constant * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
+        air = _air_changes(zone) * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
         yield (
             f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'surface')} of {area:.2f} m2, "
             f"UA {total:.2f} W/K by the U values below{_other_ua(total, meant)}, "
             f"infiltration {air:.2f} W/K (air of {heavy:.3f} kg/m3), {_exchange(building, name)}"
         )
+
+
+def _air_changes(zone: Zone) -> float:
+    """Constant part of infiltration, with a formula in calm air at 10 K. [1/h]"""
+    leak = zone.infiltration
+    by_law = float(leak.value(10.0)) if isinstance(leak, TextInfiltration) else 0.0
+    return float(leak.constant) + by_law
 
 
 def _other_ua(by_iso: float, described: float) -> str:

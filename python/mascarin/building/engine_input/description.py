@@ -22,6 +22,7 @@ from mascarin.building.engine_input.air import (
     describe_unit,
 )
 from mascarin.building.engine_input.channels import channels
+from mascarin.building.engine_input.derived_outputs import describe_derived
 from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
@@ -43,6 +44,7 @@ from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.air.zone import AirPath
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.materials.text_law import TextSky, numbers_of
 from mascarin.building.parts.self_shading import obstructions
 from mascarin.building.parts.site import CloudFactor, CloudLayer, Site
 
@@ -139,6 +141,7 @@ def _describe(
             ],
         ),
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
+        "outputs": describe_derived(building, ids),
         "humidity": describe_humidity(building, positions, ids),
         "shades": [corners(shade.vertices) for shade in building.shades.values()],
         "channels": columns,
@@ -218,11 +221,18 @@ def _clouds(clouds: CloudFactor | CloudLayer, ids: Ids) -> Json | list[int]:
     return {key: ids(f"cloud.{key}") for key in ("emissivity", "base")}
 
 
+def _sky(site: Site, ids: Ids) -> Json:
+    if isinstance(site.sky, TextSky):
+        law = numbers_of(site.sky, ids, "sky.")
+        return {"kind": "text", "temperature": site.sky.of == "temperature", "law": law}
+    return fields_of(site.sky, ids, "sky.")
+
+
 def _site(site: Site, ids: Ids) -> Json:
     return {
         **fields_of(site, ids),
         "wind": fields_of(site.wind, ids, "wind."),
-        "sky": fields_of(site.sky, ids, "sky."),
+        "sky": _sky(site, ids),
         "cloud": _clouds(site.cloud, ids),
         "diffuse": site.diffuse,
         **(

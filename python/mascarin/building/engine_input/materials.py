@@ -10,7 +10,7 @@ from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import Construction
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
 from mascarin.building.parts.materials.history_laws import OneCurveLaw
-from mascarin.building.parts.materials.material import Material, PhaseChangeMaterial
+from mascarin.building.parts.materials.material import Material, PhaseChangeMaterial, VariableSolid
 from mascarin.building.parts.materials.phase_change import (
     CapacityLaw,
     FractionsLaw,
@@ -20,10 +20,14 @@ from mascarin.building.parts.materials.phase_change import (
     TanhLaw,
 )
 from mascarin.building.parts.materials.phases import Phases
+from mascarin.building.parts.materials.text_law import numbers_of
 
 
 def describe_material(_: str, material: Material, ids: Ids) -> Json:
     """Describe a material."""
+    if isinstance(material, VariableSolid):
+        law = numbers_of(material.conductivity, ids, "conductivity.")
+        return fields_of(material, ids) | {"conductivity": law}
     if not isinstance(material, PhaseChangeMaterial):
         return fields_of(material, ids)
     properties = {

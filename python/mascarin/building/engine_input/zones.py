@@ -7,8 +7,16 @@ from typing import Any
 from mascarin.building.engine_input.air import driven, schedule_of, set_point
 from mascarin.building.engine_input.ids import Ids, Json, Positions, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
-from mascarin.building.parts.air.zone import FloorSun, GivenSun, IdealLoads, SunShares, Zone
+from mascarin.building.parts.air.zone import (
+    FloorSun,
+    GivenSun,
+    IdealLoads,
+    SunShares,
+    TextInfiltration,
+    Zone,
+)
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.materials.text_law import numbers_of
 from mascarin.building.parts.zone_surfaces import closed, floors, surface_names
 from mascarin.errors import InputError
 
@@ -48,6 +56,9 @@ def _infiltration(zone: Zone, ids: Ids) -> Json:
     test = zone.infiltration.blower_door
     if test is not None:
         written["leakage"] = fields_of(test, ids, "infiltration.blower_door.")
+    if isinstance(zone.infiltration, TextInfiltration):
+        written.pop("kind")
+        written["law"] = numbers_of(zone.infiltration, ids, "infiltration.")
     return written
 
 

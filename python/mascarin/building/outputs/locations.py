@@ -62,6 +62,10 @@ def places(building: Description, owner: str, index: int, name: str, of: str) ->
     """
     if owner == "ZONE":
         locations = [Place({"zone": index}, {})] if _ZONES[of](building, name) else []
+    elif of == "derived":
+        locations = [
+            Place({"derived": number}, {"NAME": word}) for number, word in enumerate(building.derived_outputs)
+        ]
     elif owner == "SURFACE":
         locations = list(_of_surface(building, index, name, of))
     elif owner == "WINDOW":

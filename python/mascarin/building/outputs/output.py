@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -63,6 +63,10 @@ class Output:
         Position of the layer, counted from outside.
     interface : int or None
         Number of layers outside the interface, at least 1.
+    derived : int or None
+        Position among the derived outputs of the description.
+    means : bool
+        Whether it is derived from means over the interval alone.
     aliases : tuple of str
         Other names.
 
@@ -85,12 +89,14 @@ class Output:
     sensor: int | None = None
     vent: int | None = None
     control: int | None = None
+    derived: int | None = None
+    means: bool = False
     aliases: tuple[str, ...] = ()
 
     @property
     def mean(self) -> bool:
         """Whether a record is the mean over the interval before it, and not a state at its time."""
-        return KINDS[self.kind].mean
+        return self.means or KINDS[self.kind].mean
 
     @property
     def usual(self) -> bool:
@@ -105,12 +111,12 @@ class Output:
     @property
     def label(self) -> str:
         """Title of figures of it."""
-        return KINDS[self.kind].label
+        return self.name.replace("_", " ") if self.derived is not None else KINDS[self.kind].label
 
     @property
     def place(self) -> dict[str, int]:
         """Positions that are set for this kind, by name."""
-        keys = ("zone", "surface", "side", "layer", "interface", "sensor", "vent", "control")
+        keys = ("zone", "surface", "side", "layer", "interface", "sensor", "vent", "control", "derived")
         return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
 
@@ -119,7 +125,7 @@ def outputs(building: Description) -> list[Output]:
 
     Those of a part stand in the order of the engine's table; those of its sides and layers side by side.
     """
-    return list(cached_on(building, "_outputs", lambda: list(_all_outputs(building))))
+    return list(cached_on(building, "_outputs", lambda: _with_unit(building, list(_all_outputs(building)))))
 
 
 def _all_outputs(building: Description) -> Iterator[Output]:
@@ -138,12 +144,32 @@ def _all_outputs(building: Description) -> Iterator[Output]:
                 yield from (_output(*candidate) for candidate in candidates)
 
 
+def _with_unit(building: Description, all_outputs: list[Output]) -> list[Output]:
+    """Give derived outputs their unit, and say which of them are means over the interval."""
+    means = {output.name: output.mean for output in all_outputs if output.derived is None}
+    derived = building.derived_outputs
+
+    def is_mean(name: str, above: tuple[str, ...] = ()) -> bool:
+        used = [word for word in derived[name].used if word in means or word in derived]
+        return bool(used) and all(
+            means[word] if word in means else word not in above and is_mean(word, (*above, name))
+            for word in used
+        )
+
+    return [
+        output
+        if output.derived is None
+        else replace(output, unit=derived[output.name].unit, means=is_mean(output.name))
+        for output in all_outputs
+    ]
+
+
 def _output(location: Place, kind: str, row: OutputKind, name: OutputName) -> Output:
     def written(pattern: str) -> str:
         return _WORD.sub(lambda word: location.words[word[0]], pattern)
 
     aliases = (written(name.alias),) if name.alias else ()
-    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **location.positions)
+    return Output(written(name.pattern), row.unit, kind, aliases=aliases, **location.positions)  # type: ignore[arg-type]
 
 
 def named(building: Description, names: Iterable[str]) -> list[Output]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.number import Number, Remark
+from mascarin.building.parameters.text_laws import text_laws
 from mascarin.building.parameters.unused_parameters import has_height, sides, without_effect
 from mascarin.building.parts.air.humidity import EMPD, PSYCHROMETRICS
 from mascarin.building.parts.air.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
@@ -113,6 +114,7 @@ def _of_methods(building: Description) -> Iterator[str]:
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
     yield from (film.source for film in films if isinstance(film, FormulaLaw) and film.source)
+    yield from (law.source for _, law in text_laws(building) if law.source)
     if any(item.windy and has_height(item.side) for item in sides(building)):
         yield ASHRAE_WIND
     yield from _of_air(building)

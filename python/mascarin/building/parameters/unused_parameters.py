@@ -18,6 +18,7 @@ from mascarin.building.parts.envelope.convection import (
 )
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import NoLongwave, Side, Surface
+from mascarin.building.parts.materials.text_law import TextSky
 from mascarin.building.parts.measured_sun import paths as obstructed_paths
 from mascarin.building.parts.openings.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.parts.openings.window import WindowInside, WindowOutside, outer_side
@@ -45,7 +46,7 @@ class SurfaceSide:
         if not self.side.exposed.wind:
             return False
         if isinstance(film, FormulaLaw):
-            return film.uses("V") or film.uses("windward")
+            return any(film.uses(name) for name in ("V", "windward", "wind_angle"))
         return isinstance(film, ConvectionLaw) and film.windy
 
     @property
@@ -189,7 +190,8 @@ def _in_site(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
         )
     if not seeing:
         yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
-    if not seeing or site.sky.kind in ("measured", "offset"):
+    clouded = isinstance(site.sky, TextSky) and site.sky.clouded
+    if not seeing or clouded or site.sky.kind in ("measured", "offset"):
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
     if not any(item.windy and has_height(item.side) for item in all_sides):
         reason = "no surface with a height depends on wind: the wind at the mast is used"
@@ -205,7 +207,8 @@ def _on_side(item: SurfaceSide, obstructed: set[str]) -> Reasons:
     side, path = item.side, item.path
     if side.ground is not None and side.ground.amplitude == 0.0:
         yield f"{path}.ground.coldest_day", "the amplitude is 0"
-    if not item.windy:
+    law = item.side.convection
+    if not item.windy and not (isinstance(law, FormulaLaw) and law.uses("height")):
         yield f"{path}.height", "the surface heat transfer coefficient does not depend on wind"
     if not isinstance(side, WindowInside) and side.outdoors and isinstance(side.longwave, NoLongwave):
         yield f"{path}.emissivity", "longwave is none"

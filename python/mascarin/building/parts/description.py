@@ -14,6 +14,7 @@ from mascarin.building.parts.air.schedule import Schedule
 from mascarin.building.parts.air.vent import Vent, VentControl
 from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, Opening, Zone
+from mascarin.building.parts.derived_output import DerivedOutput
 from mascarin.building.parts.envelope.surface import Construction, Sensor, Surface
 from mascarin.building.parts.materials.material import Material
 from mascarin.building.parts.openings.glazing import Glazing
@@ -56,6 +57,9 @@ class Description(Part):
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
     )
     sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+    derived_outputs: dict[Name, DerivedOutput] = Field(
+        default_factory=dict, description="Outputs that follow from others by a formula, by name"
+    )
     ties: dict[str, Literal["factor", "value"]] = Field(
         default_factory=dict,
         description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "

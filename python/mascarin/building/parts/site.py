@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, model_validator
 from mascarin.building import quantities as q
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand, fault, refuse
+from mascarin.building.parts.materials.text_law import TextSky
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -157,9 +158,9 @@ class OffsetSky(Part):
 
 
 Sky = Annotated[
-    MartinBerdahlSky | ClarkAllenSky | BruntSky | OffsetSky | MeasuredSky,
+    MartinBerdahlSky | ClarkAllenSky | BruntSky | OffsetSky | MeasuredSky | TextSky,
     Field(discriminator="kind"),
-    Shorthand(word="kind"),
+    Shorthand(word="kind", implied=("formula", "text")),
 ]
 
 
@@ -299,6 +300,6 @@ class Site(Part):
 
 
 def _cloud_kind(sky: Any) -> str:
-    """The layer is by the authors of ``martin_berdahl``; the other models are used with the factor."""
+    """The layer is by the authors of ``martin_berdahl``; other published models are used with the factor."""
     kind = sky.get("kind") if isinstance(sky, Mapping) else getattr(sky, "kind", sky)
-    return "layer" if kind in (None, "martin_berdahl") else "factor"
+    return "layer" if kind in (None, "martin_berdahl", "text") else "factor"

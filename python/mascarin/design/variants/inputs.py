@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import pandas as pd
 
-from mascarin.building import Building, load
+from mascarin.building import Building, TextInfiltration, load
 from mascarin.building.files import yaml_document
 from mascarin.building.parameters.ties import expanded, spread
 from mascarin.comfort import Surroundings
@@ -231,6 +231,8 @@ def _require_wind(climate: Climate, building: Building) -> None:
 
 def _by_wind(zone: Any) -> bool:
     leaks = zone.infiltration
+    if isinstance(leaks, TextInfiltration) and "V" in leaks.names:
+        return True
     return float(leaks.wind) > 0.0 or getattr(leaks.blower_door, "kind", "") == "stack_wind"
 
 

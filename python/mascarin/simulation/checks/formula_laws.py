@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin.building.checks.formula_sides import formula_sides
+from mascarin.building.parameters.text_laws import text_laws
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def require_laws(building: Building, vectors: Array, *, positions: Mapping[str, 
     InputError
         Naming the law, the member, and the point at which it is no law.
     """
+    _require_text_laws(building, vectors, positions)
     for side in formula_sides(building):
         names = list(side.law.numbers)
         columns = [positions[f"{side.path}.{name}"] for name in names]
@@ -51,6 +53,24 @@ def require_laws(building: Building, vectors: Array, *, positions: Mapping[str, 
                     f"{side.path}: found {context['found']}{whose}, with "
                     f"{', '.join(f'{name} = {x:g}' for name, x in zip(names, values[member], strict=True))}; "
                     f"expected {context['expected']}. Take other values of its numbers"
+                )
+
+
+def _require_text_laws(building: Building, vectors: Array, positions: Mapping[str, int]) -> None:
+    """The same for conductivities, infiltration and the sky."""
+    for path, law in text_laws(building):
+        names = list(law.numbers)
+        values = vectors[:, [positions[f"{path}.{name}"] for name in names]]
+        ends = [law.numbers[name].range or (float(law.numbers[name]),) * 2 for name in names]
+        low, high = np.array(ends, dtype=np.float64).reshape(-1, 2).T
+        for member in np.flatnonzero(((values < low) | (values > high)).any(axis=1)):
+            for fault in law.at_values(dict(zip(names, values[member], strict=True))):
+                context = fault["type"].context or {}  # type: ignore[union-attr]
+                whose = f" (member {member})" if len(vectors) > 1 else ""
+                numbers = ", ".join(f"{name} = {x:g}" for name, x in zip(names, values[member], strict=True))
+                raise InputError(
+                    f"{path}: found {context['found']}{whose}, with {numbers}; expected "
+                    f"{context['expected']}. Take other values of its numbers"
                 )
 
 

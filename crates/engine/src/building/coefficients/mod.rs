@@ -21,11 +21,14 @@ pub use self::zone::ZoneCoefficients;
 pub use super::cell::{Cell, Matter};
 use super::ids::BySurface;
 use super::plan::Plan;
+use crate::input::description::DerivedOutput;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::Path;
 use crate::physics::doors::Door;
-use crate::physics::longwave::CloudEffect;
+use crate::physics::formula::expression::Expression;
+use crate::physics::formula::function::Function;
+use crate::physics::longwave::{CloudEffect, sky_law};
 
 /// All coefficients of a run.
 #[derive(Debug, Clone)]
@@ -52,8 +55,12 @@ pub struct Coefficients<S> {
     pub ground_reflectance: S,
     /// Effect of clouds on the sky's emission.
     pub clouds: CloudEffect<S>,
+    /// The sky as text.
+    pub(crate) sky: Option<Function<S>>,
     /// Vapour balance of the zones.
     pub humidity: Option<HumidityCoefficients<S>>,
+    /// Outputs that are derived from others.
+    pub(crate) outputs: Vec<Expression<S>>,
     /// Depth of each sensor from the outside surface [m].
     pub sensor_depths: Vec<S>,
 }
@@ -88,7 +95,15 @@ impl<S: Real> Coefficients<S> {
             bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),
             clouds: CloudEffect::new(&site.cloud, &values),
+            sky: sky_law(&site.sky, &values),
+            outputs: description.outputs.iter().map(|output| derived(output, &values)).collect(),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
         }
     }
+}
+
+/// The formula of a derived output.
+fn derived<S: Real>(output: &DerivedOutput, values: &Values<'_, S>) -> Expression<S> {
+    let names: Vec<&str> = output.of.iter().map(|used| used.name.as_str()).collect();
+    Expression::of(&output.law, &names, values)
 }

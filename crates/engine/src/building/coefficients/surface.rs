@@ -97,6 +97,7 @@ impl<S: Real> SurfaceCoefficients<S> {
             wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
             inclination: degrees.min(S::constant(180.0) - degrees),
             density: air::density(plan, values),
+            height: values.get_or(side.height, 0.0),
         };
         Self {
             convection: side

@@ -7,6 +7,7 @@ use crate::building::plan::Plan;
 use crate::input::description::{Material, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::formula::function::Function;
 use crate::physics::pcm::PcmCoefficients;
 
 /// Both surface resistances of a rated U value [m2 K/W] (ISO 6946:2017, table 7: 0.13 inside, 0.04 outside).
@@ -57,6 +58,12 @@ impl<S: Real> WallCoefficients<S> {
                     conductivity: values.get(*conductivity),
                     capacity: values.get(*density) * values.get(*specific_heat),
                 },
+                Material::Variable { conductivity, density, specific_heat } => {
+                    let heat = values.get(*density) * values.get(*specific_heat);
+                    let law = Function::of("conductivity", conductivity, values);
+                    pcm.push(PcmCoefficients::without_melting(law, heat));
+                    Matter::Pcm(pcm.len() - 1)
+                }
                 Material::Pcm { conductivity, density, specific_heat, law } => {
                     pcm.push(PcmCoefficients::new(values, *conductivity, *density, *specific_heat, law));
                     Matter::Pcm(pcm.len() - 1)
@@ -94,7 +101,7 @@ fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> 
         Material::Rated { u_value } => {
             rated_resistance(values.get(*u_value), S::constant(RATED_SURFACE_RESISTANCES))
         }
-        Material::Solid { .. } | Material::Pcm { .. } => S::zero(),
+        Material::Solid { .. } | Material::Variable { .. } | Material::Pcm { .. } => S::zero(),
     }
 }
 

@@ -7,6 +7,7 @@ use crate::input::description::{Infiltration, ParamId, Zone, ZoneLongwave};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening};
+use crate::physics::formula::function::Function;
 use crate::physics::gains::{Gain, Thermostat};
 use crate::physics::leakage::{StackWind, leakage};
 use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
@@ -25,6 +26,8 @@ pub struct ZoneCoefficients<S> {
     pub infiltration: [S; 3],
     /// Infiltration by stack and wind, from a pressure test.
     pub leakage: Option<StackWind<S>>,
+    /// Infiltration as text [1/h].
+    pub(crate) infiltration_law: Option<Function<S>>,
     /// Part of the transmitted sun that the air gets at once [-].
     pub solar_to_air: Option<S>,
     /// Exchange areas between its surfaces, by row [m2]; empty without long-wave exchange.
@@ -79,14 +82,13 @@ impl<S: Real> ZoneCoefficients<S> {
             Vec::new()
         };
         let air_capacity = values.get(definition.volume) * heat;
-        let Infiltration { constant, temperature, wind, leakage: test } = &definition.infiltration;
+        let Infiltration { constant, temperature, wind, leakage: test, law } = &definition.infiltration;
         let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
-        let mut by_stack_and_wind = None;
-        if let Some(test) = test {
+        let by_stack_and_wind = test.as_ref().and_then(|test| {
             let (constant, law) = leakage(test, values);
             infiltration[0] += constant;
-            by_stack_and_wind = law;
-        }
+            law
+        });
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
         let ([heating, cooling], radiated_loads) = plants(definition, values);
@@ -102,6 +104,7 @@ impl<S: Real> ZoneCoefficients<S> {
             air_capacity,
             infiltration,
             leakage: by_stack_and_wind,
+            infiltration_law: law.as_ref().map(|law| Function::of("infiltration", law, values)),
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
             exchange_sums: sums_of_others(&exchange, zone_surfaces.len()),
             exchange,

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::air_flow::{AirPath, DirectedFlow, Door, Opening, VentilationUnit};
 use super::bridge::ThermalBridge;
 use super::construction::Construction;
+use super::convection::TextLaw;
 use super::humidity::Humidity;
 use super::material::Material;
 use super::parameter::Parameter;
@@ -56,6 +57,9 @@ pub struct Description {
     /// Sensors inside walls.
     #[serde(default)]
     pub sensors: Vec<Sensor>,
+    /// Outputs that are derived from others.
+    #[serde(default)]
+    pub outputs: Vec<DerivedOutput>,
     /// Vapour balance of the zones. None: air without vapour.
     #[serde(default)]
     pub humidity: Option<Humidity>,
@@ -65,4 +69,45 @@ pub struct Description {
     /// Names of the forcing channels after the climate channels (measured temperatures, irradiances, schedules).
     #[serde(default)]
     pub channels: Vec<String>,
+}
+
+/// An output that is derived from others.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DerivedOutput {
+    /// Name in messages.
+    pub name: String,
+    /// Its formula.
+    pub law: TextLaw,
+    /// The outputs that the formula uses.
+    pub of: Vec<UsedOutput>,
+}
+
+/// An output by its name in a formula.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UsedOutput {
+    /// Name in the formula.
+    pub name: String,
+    /// Kind in the table of outputs (`run/outputs`).
+    pub kind: String,
+    /// Where it is read.
+    #[serde(default)]
+    pub place: OutputPlace,
+}
+
+/// Positions of an output in the description; those that it does not use are zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[allow(missing_docs, reason = "each is the position of what its name says")]
+pub struct OutputPlace {
+    pub zone: usize,
+    pub surface: usize,
+    pub side: usize,
+    pub layer: usize,
+    pub interface: usize,
+    pub vent: usize,
+    pub control: usize,
+    pub sensor: usize,
+    pub derived: usize,
 }

@@ -106,6 +106,17 @@ impl TryFrom<Written> for Convection {
     }
 }
 
+/// A law of other things than convection and melting as text, see `physics/formula/function.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TextLaw {
+    /// The law.
+    pub formula: String,
+
+    /// Its numbers.
+    pub numbers: Vec<FormulaNumber>,
+}
+
 /// A number of a formula.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::convection::TextLaw;
 use super::parameter::ParamId;
 use super::phase_change::PcmLaw;
 
@@ -13,6 +14,15 @@ pub enum Material {
     Solid {
         /// [W/(m K)].
         conductivity: ParamId,
+        /// [kg/m3].
+        density: ParamId,
+        /// [J/(kg K)].
+        specific_heat: ParamId,
+    },
+    /// A conductivity that changes with temperature: W/(m K), kg/m3, J/(kg K).
+    Variable {
+        /// Of the temperature `T` [degC]: [W/(m K)].
+        conductivity: TextLaw,
         /// [kg/m3].
         density: ParamId,
         /// [J/(kg K)].

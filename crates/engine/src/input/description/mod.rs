@@ -26,9 +26,9 @@ mod zone;
 
 pub use air_flow::{AirPath, DirectedFlow, Door, Opening, UnitFlow, VentilationUnit};
 pub use bridge::ThermalBridge;
-pub use building::Description;
+pub use building::{DerivedOutput, Description, OutputPlace, UsedOutput};
 pub use construction::{Construction, Layer};
-pub use convection::{Convection, ConvectionLaw, FormulaNumber};
+pub use convection::{Convection, ConvectionLaw, FormulaNumber, TextLaw};
 pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use humidity::{
     Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,

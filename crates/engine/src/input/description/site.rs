@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::convection::TextLaw;
 use super::parameter::ParamId;
 
 /// Site constants that act in the engine. (Latitude and longitude act through the sun's path in the forcing.)
@@ -84,6 +85,13 @@ pub enum Sky {
     Offset {
         /// Air minus sky [K].
         depression: ParamId,
+    },
+    /// An emissivity [-] or a temperature [degC] as text.
+    Text {
+        /// Whether it gives a temperature.
+        temperature: bool,
+        /// Of `To`, `Td`, `pw` and `cloud`.
+        law: TextLaw,
     },
 }
 

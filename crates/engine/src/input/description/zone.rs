@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::convection::TextLaw;
 use super::parameter::ParamId;
 
 /// A volume of well-mixed air.
@@ -60,6 +61,10 @@ pub struct Infiltration {
     /// What a pressure test adds to them. None: nothing.
     #[serde(default)]
     pub leakage: Option<Leakage>,
+
+    /// Air changes as text, in addition. None: nothing.
+    #[serde(default)]
+    pub law: Option<TextLaw>,
 }
 
 /// Infiltration by the air changes of a pressure test at 50 Pa; equations and sources in `physics/leakage.rs`.

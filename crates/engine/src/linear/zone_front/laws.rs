@@ -36,7 +36,7 @@ pub(super) struct Laws<S> {
     pub(super) convection: [Vec<S>; 2],
     pub(super) emission: [Vec<S>; 2],
     /// What the wind drives, see [`SurfaceConditions`](crate::weather::conditions::SurfaceConditions).
-    forced: [Vec<S>; 2],
+    forced: [Vec<S>; 4],
     /// Temperature of the air in front of each surface [degC].
     pub(super) air: Vec<S>,
     /// Surfaces whose heat transfer coefficient depends on the wind alone: place, convective area over plane area.
@@ -57,7 +57,7 @@ impl<S: Real> Laws<S> {
             count,
             convection: [zeros(), zeros()],
             emission: [zeros(), zeros()],
-            forced: [zeros(), zeros()],
+            forced: [zeros(), zeros(), zeros(), zeros()],
             air: zeros(),
             by_wind: Vec::new(),
             nonlinear: Vec::new(),
@@ -176,9 +176,10 @@ impl<S: Real> Laws<S> {
         if self.nonlinear.is_empty() && self.by_wind.is_empty() {
             return;
         }
-        let [first, second] = &mut self.forced;
-        for ((&place, first), second) in self.places[..self.count].iter().zip(first).zip(second) {
-            [*first, *second] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+        let [first, second, third, fourth] = &mut self.forced;
+        let parts = first.iter_mut().zip(second).zip(third.iter_mut().zip(fourth));
+        for (&place, ((first, second), (third, fourth))) in self.places[..self.count].iter().zip(parts) {
+            [*first, *second, *third, *fourth] = conditions.surfaces[SurfaceId::from_index(place)].forced;
         }
         for &(i, factor) in &self.by_wind {
             self.convection[1][i] = self.forced[0][i] * factor;
@@ -193,7 +194,9 @@ impl<S: Real> Laws<S> {
             let start = group.start;
             let temperature = V::gather(temperatures, &self.places[start..start + S::CHUNK]);
             let difference = temperature - part!(self.air, start);
-            let forced = [part!(self.forced[0], start), part!(self.forced[1], start)];
+            let [first, second, third, fourth] = &self.forced;
+            let forced =
+                [part!(first, start), part!(second, start), part!(third, start), part!(fourth, start)];
             let flux = group.convection.flux_of(
                 #[inline(always)]
                 |numbers| V::load(numbers),

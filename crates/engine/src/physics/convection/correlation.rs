@@ -20,6 +20,8 @@ pub struct Placement<S> {
     pub inclination: S,
     /// Density of the air [kg/m3].
     pub density: S,
+    /// Height above ground, where it has one; else zero [m].
+    pub height: S,
 }
 
 /// A correlation, reduced to the numbers that depend neither on temperature nor on the wind.

@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use super::correlation::{Correlation, Placement, WindPart};
+use super::correlation::Placement;
 use super::formula_text::{FormulaText, Number};
 use super::natural::{Coefficient, Difference};
-use super::wind::{Forced, Wind, WindTerms};
+use super::wind::{Driven, Surroundings, Wind, WindTerms};
 use crate::number::real::{Mask, Real};
 
 /// Largest difference at which a formula is used as it is [K].
@@ -18,6 +18,8 @@ const FARTHEST: f64 = 200.0;
 const TRIED: u32 = 24;
 /// Winds at which they are tried [m/s].
 const WINDS: [(f64, bool); 3] = [(0.0, true), (30.0, true), (30.0, false)];
+/// Least and largest temperature of the air [degC], angle [deg], irradiance [W/m2] and air change [1/h] at which they are tried.
+const SURROUNDINGS: [[f64; 2]; 4] = [[-20.0, 45.0], [0.0, 180.0], [0.0, 1200.0], [0.0, 30.0]];
 /// Half of the second derivative of natural convection, times the cube root of the square of the difference [W/(m2 K^(4/3))], that
 /// `step/remainder.rs` reckons with.
 const BEND: f64 = 0.6;
@@ -43,6 +45,7 @@ impl<S: Real> Formula<S> {
             Number::Upward => surface.upward,
             Number::Area => surface.area,
             Number::Density => surface.density,
+            Number::Height => surface.height,
             Number::Given(place) => given[place],
         };
         let known: Vec<S> = text.run_numbers.iter().map(number).collect();
@@ -62,9 +65,7 @@ impl<S: Real> Formula<S> {
         for k in 1..=TRIED {
             let part = f64::from(k) / f64::from(TRIED);
             let difference = S::constant(sign * FARTHEST * part * part);
-            for (speed, windward) in WINDS {
-                let wind = Wind::new(speed, WindTerms::default());
-                let forced = self.forced(&wind, S::Mask::splat(windward)).map(S::fixed);
+            for forced in self.extremes() {
                 let [value, slope] = self.plain(&|number| number.fixed(), difference, &forced);
                 let rise = value + difference * slope;
                 let least = S::constant(-1e-9);
@@ -75,23 +76,45 @@ impl<S: Real> Formula<S> {
         limit
     }
 
+    /// What drives it in extreme winds and surroundings.
+    fn extremes(&self) -> Vec<Driven<S>> {
+        let mut surroundings = vec![Surroundings::<S>::calm().list()];
+        for (place, ends) in SURROUNDINGS.iter().enumerate() {
+            if self.text.surroundings[place] {
+                let with = |list: &[S; 4]| {
+                    let list = *list;
+                    ends.map(|end| {
+                        let mut changed = list;
+                        changed[place] = S::constant(end);
+                        changed
+                    })
+                };
+                surroundings = surroundings.iter().flat_map(with).collect();
+            }
+        }
+        let winds =
+            WINDS.into_iter().map(|(speed, windward)| (Wind::new(speed, WindTerms::default()), windward));
+        let all = winds.flat_map(|wind| surroundings.iter().map(move |list| (wind, *list)));
+        all.map(|((wind, windward), list)| {
+            self.driven(&wind, S::Mask::splat(windward), &Surroundings::from_list(list)).map(S::fixed)
+        })
+        .collect()
+    }
+
     /// How much more the flow bends than [`BEND`]; one at least.
     pub(super) fn bend(&self) -> S {
         let mut most = S::one();
         if !self.text.buoyant {
             return most;
         }
-        for (speed, windward) in WINDS {
-            let wind = Wind::new(speed, WindTerms::default());
-            let forced = self.forced(&wind, S::Mask::splat(windward)).map(S::fixed);
+        for forced in self.extremes() {
             for sign in [-1.0, 1.0] {
                 let mut before: Option<(S, S)> = None;
                 for k in 0..=TRIED {
                     let part = f64::from(k) / f64::from(TRIED);
                     let distance = FARTHEST * part * part;
                     let at = Difference::new(S::constant(sign * distance));
-                    let Coefficient { value, rise } =
-                        self.coefficient(&|n: &S| n.fixed(), &S::zero(), &at, &forced);
+                    let Coefficient { value, rise } = self.coefficient(&|n: &S| n.fixed(), &at, &forced);
                     let slope = value + rise;
                     if let Some((last, other)) = before {
                         let middle = S::constant(distance).scale(0.5) + other.scale(0.5);
@@ -106,13 +129,33 @@ impl<S: Real> Formula<S> {
         most
     }
 
-    /// Whether the law holds at a difference [K] and a wind at the mast [m/s]; one or zero.
-    pub(super) fn valid(&self, d: S, speed: S, windward: S::Mask) -> S {
+    /// Whether the law holds at a difference [K], a wind at the mast [m/s] and a temperature of the air [degC]; one or zero.
+    pub(super) fn valid(&self, d: S, speed: S, air: S) -> S {
         let Some(program) = &self.text.validity else { return S::one() };
         let at = Difference::new(d);
-        let windward = S::select(windward, S::one(), S::zero());
-        let [holds] = program.compute(&[d, at.rounded, speed, windward], |place| self.numbers[place]);
+        let [holds] = program.compute(&[d, at.rounded, speed, air], |place| self.numbers[place]);
         holds
+    }
+
+    /// What drives it.
+    #[inline(always)]
+    pub(super) fn driven(&self, wind: &Wind, windward: S::Mask, surroundings: &Surroundings<S>) -> Driven<S> {
+        if self.text.stage.results() == 0 {
+            return [S::zero(); 4];
+        }
+        let windward = S::select(windward, S::one(), S::zero());
+        let [air, angle, sun, air_change] = surroundings.list();
+        self.text.stage.compute(
+            &[S::constant(wind.speed), windward, air, angle, sun, air_change],
+            #[inline(always)]
+            |place| self.numbers[place],
+        )
+    }
+
+    /// What drives it in calm air.
+    pub(super) fn calm(&self) -> Driven<S> {
+        let wind = Wind::new(0.0, WindTerms::default());
+        self.driven(&wind, S::Mask::splat(true), &Surroundings::calm())
     }
 
     /// Whether it says where it is valid.
@@ -127,35 +170,54 @@ impl<S> Formula<S> {
         Arc::ptr_eq(&self.text, &other.text) || self.text == other.text
     }
 
+    /// Whether it depends on the wind or on its surroundings, which change from stage to stage.
+    pub(super) fn depends_on_wind(&self) -> bool {
+        self.text.windy
+    }
+
+    /// Whether it depends on its surroundings.
+    pub(super) fn surrounded(&self) -> bool {
+        self.text.surroundings.iter().any(|used| *used)
+    }
+
+    /// Whether it depends on the air change of a zone.
+    pub(super) fn needs_air_change(&self) -> bool {
+        self.text.surroundings[3]
+    }
+
+    /// Whether the temperature difference contributes nothing.
+    pub(super) fn linear(&self) -> bool {
+        !self.text.buoyant
+    }
+
     /// The coefficient and its derivative as written.
     #[inline(always)]
-    fn plain<V: Real>(&self, number: &impl Fn(&S) -> V, d: V, forced: &Forced<V>) -> [V; 2] {
+    fn plain<V: Real>(&self, number: &impl Fn(&S) -> V, d: V, forced: &Driven<V>) -> [V; 2] {
         let at = Difference::new(d);
+        let [a, b, c, e] = *forced;
+        let inputs = [d, at.rounded, a, b, c, e];
         self.text.iteration.compute(
-            &[d, at.rounded, forced[0], forced[1]],
+            if self.text.many { &inputs } else { &inputs[..4] },
             #[inline(always)]
             |place| number(&self.numbers[place]),
         )
     }
-}
 
-impl<S> Correlation<S> for Formula<S> {
-    type Of<T> = Formula<T>;
-
+    /// The same law with other numbers.
     #[inline(always)]
-    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Formula<T> {
+    pub(super) fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Formula<T> {
         let numbers = self.numbers.iter().map(&mut change).collect();
         let [low, high] = &self.limits;
         Formula { text: Arc::clone(&self.text), numbers, limits: [change(low), change(high)] }
     }
 
+    /// The coefficient at a temperature difference; `number` turns its numbers into those to compute with.
     #[inline(always)]
-    fn coefficient<V: Real>(
+    pub(super) fn coefficient<V: Real>(
         &self,
         number: &impl Fn(&S) -> V,
-        _upward: &S,
         at: &Difference<V>,
-        forced: &Forced<V>,
+        forced: &Driven<V>,
     ) -> Coefficient<V> {
         if !self.text.buoyant {
             return Coefficient::fixed(forced[0]);
@@ -172,32 +234,5 @@ impl<S> Correlation<S> for Formula<S> {
         let steepness = value + inside.rise;
         let mean = (value * d + steepness * (at.d - d)) / V::select(beyond, at.d, V::one());
         inside.or(beyond, Coefficient { value: mean, rise: steepness - mean })
-    }
-}
-
-impl<S: Real> WindPart<S> for Formula<S> {
-    fn depends_on_wind(&self) -> bool {
-        self.text.windy
-    }
-
-    fn linear(&self) -> bool {
-        !self.text.buoyant
-    }
-
-    #[inline(always)]
-    fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
-        if self.text.stage.results() == 0 {
-            return [S::zero(); 2];
-        }
-        let windward = S::select(windward, S::one(), S::zero());
-        self.text.stage.compute(
-            &[S::constant(wind.speed), windward],
-            #[inline(always)]
-            |place| self.numbers[place],
-        )
-    }
-
-    fn calm(&self) -> Forced<S> {
-        self.forced(&Wind::new(0.0, WindTerms::default()), S::Mask::splat(true))
     }
 }

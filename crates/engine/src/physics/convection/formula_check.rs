@@ -5,10 +5,11 @@
 
 use core::fmt::Write;
 
-use super::formula_text::{DIFFERENCE, FormulaText, WIND, WINDWARD};
+use super::formula_text::{AIR, CHANGING, DIFFERENCE, FormulaText, SURFACE, SideNames, WIND, WINDWARD};
+use super::wind::Surroundings;
 use crate::physics::formula::lexer::fault;
 use crate::physics::formula::units::{self, Unit};
-use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position};
+use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position, corners};
 
 /// Largest difference of the grid [K].
 const FARTHEST: f64 = 60.0;
@@ -16,12 +17,19 @@ const FARTHEST: f64 = 60.0;
 const DIFFERENCES: i32 = 100;
 /// Winds of the grid [m/s].
 const WINDS: [f64; 7] = [0.0, 0.2, 1.0, 3.0, 8.0, 15.0, 30.0];
+/// Temperatures of the air of the grid [degC], angles of the wind [deg], irradiances [W/m2] and air changes [1/h].
+const SURROUNDINGS: [&[f64]; 4] = [
+    &[-30.0, -10.0, 5.0, 20.0, 35.0, 60.0],
+    &[0.0, 45.0, 90.0, 135.0, 180.0],
+    &[0.0, 100.0, 500.0, 1200.0],
+    &[0.0, 0.3, 2.0, 10.0, 50.0],
+];
 /// Coefficients above this have no physical meaning [W/(m2 K)].
 const LARGEST: f64 = 1e5;
 /// Rounding of a flow, as a part of it.
 const ROUNDING: f64 = 1e-9;
 /// Units of the names of a side, in their order; an angle may be in degrees or not.
-const SIDE_UNITS: [Option<Unit>; 7] = [
+const SIDE_UNITS: [Option<Unit>; 13] = [
     Some(units::KELVIN),
     Some(units::SPEED),
     Some(units::NONE),
@@ -29,9 +37,13 @@ const SIDE_UNITS: [Option<Unit>; 7] = [
     Some(units::NONE),
     Some(units::AREA),
     Some(units::DENSITY),
+    Some(units::KELVIN),
+    Some(units::KELVIN),
+    None,
+    Some(units::FLUX),
+    None,
+    Some(units::LENGTH),
 ];
-/// With more numbers that have ranges not all ends of them are combined.
-const COMBINED: usize = 4;
 
 /// A coefficient as text, at a side of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,14 +54,49 @@ pub struct LawText<'a> {
     pub valid: Option<&'a str>,
     /// Its numbers.
     pub numbers: &'a [LawNumber],
-    /// Whether wind reaches the side.
+    /// The side that it stands at.
+    pub side: LawSide,
+}
+
+/// A side of a surface, as far as laws as text depend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LawSide {
+    /// Whether wind reaches it.
     pub wind: bool,
+    /// Whether the irradiance of its plane is known.
+    pub sun: bool,
+    /// Whether it faces a zone.
+    pub zone: bool,
     /// Angle between upwards and the normal into the air [deg].
     pub tilt: f64,
     /// Area [m2].
     pub area: f64,
     /// Density of the air [kg/m3].
     pub density: f64,
+    /// Height above ground, where it has one [m].
+    pub height: Option<f64>,
+}
+
+impl LawSide {
+    /// Values of the names that a side gives, in their order; those that change are zero.
+    fn values(&self) -> [f64; 13] {
+        let upward = crate::number::elementary::cos_of_degrees(self.tilt);
+        let mut values = [0.0; 13];
+        values[3..7].copy_from_slice(&[self.tilt, upward, self.area, self.density]);
+        values[12] = self.height.unwrap_or(0.0);
+        values
+    }
+}
+
+/// A point of a law: the temperature difference [K], the wind at the surface, windward [m/s], and what is around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LawPoint {
+    /// [K].
+    pub difference: f64,
+    /// [m/s].
+    pub wind: f64,
+    /// What is around the surface.
+    pub around: Surroundings<f64>,
 }
 
 impl LawText<'_> {
@@ -59,37 +106,37 @@ impl LawText<'_> {
     /// The first fault of its texts, or the first point at which it is no coefficient.
     pub fn check(&self) -> Result<(), FormulaFault> {
         let text = self.read()?;
-        let upward = crate::number::elementary::cos_of_degrees(self.tilt);
-        let side = [0.0, 0.0, 0.0, self.tilt, upward, self.area, self.density];
+        let side = self.side.values();
         let nominal: Vec<f64> = self.numbers.iter().map(|number| number.value).collect();
         let mut names: Vec<f64> = side.into_iter().chain(nominal.clone()).collect();
         self.check_units(&text, &names)?;
         if !self.sweep(&text, &mut names)? {
-            let found = "no difference of -60 to 60 K and no wind of 0 to 30 m/s at which it is valid";
+            let found = "no difference of -60 to 60 K, no wind of 0 to 30 m/s and no air of -30 to 60 degC at which it is valid";
             let fault = fault(START, found, "some at which it is", "Correct 'valid'.");
             return Err(FormulaFault { key: "valid".into(), fault });
         }
-        for corner in self.corners(&nominal) {
+        for corner in corners(self.numbers) {
             names[side.len()..].copy_from_slice(&corner);
             self.sweep(&text, &mut names)?;
         }
         Ok(())
     }
 
-    /// Values of the coefficient at differences [K] and winds at the surface [m/s], windward [W/(m2 K)]; as written.
+    /// Values of the coefficient [W/(m2 K)]; as written.
     ///
     /// # Errors
     /// The first fault of its texts.
-    pub fn values(&self, points: &[[f64; 2]]) -> Result<Vec<f64>, FormulaFault> {
+    pub fn values(&self, points: &[LawPoint]) -> Result<Vec<f64>, FormulaFault> {
         let text = self.read()?;
-        let upward = crate::number::elementary::cos_of_degrees(self.tilt);
         let given = self.numbers.iter().map(|number| number.value);
-        let side = [0.0, 0.0, 1.0, self.tilt, upward, self.area, self.density];
-        let mut names: Vec<f64> = side.into_iter().chain(given).collect();
+        let mut names: Vec<f64> = self.side.values().into_iter().chain(given).collect();
+        names[WINDWARD] = 1.0;
         Ok(points
             .iter()
-            .map(|[difference, wind]| {
+            .map(|LawPoint { difference, wind, around }| {
                 (names[DIFFERENCE], names[WIND]) = (*difference, *wind);
+                names[AIR..AIR + 4].copy_from_slice(&around.list());
+                names[SURFACE] = around.air + difference;
                 text.tree.value(&names)
             })
             .collect())
@@ -98,7 +145,7 @@ impl LawText<'_> {
     fn check_units(&self, text: &FormulaText, values: &[f64]) -> Result<(), FormulaFault> {
         let Some(units) = units::of_numbers(&SIDE_UNITS, self.numbers)? else { return Ok(()) };
         let at = |key: &str, fault: Fault| FormulaFault { key: key.to_owned(), fault };
-        let stated = units::Stated { units: &units, values, variables: WINDWARD + 1 };
+        let stated = units::Stated { units: &units, values, changing: &CHANGING };
         stated.check(&text.tree, units::COEFFICIENT).map_err(|fault| at("formula", fault))?;
         let valid = text.valid.as_ref();
         valid.map_or(Ok(()), |valid| stated.check_condition(valid)).map_err(|fault| at("valid", fault))
@@ -106,46 +153,48 @@ impl LawText<'_> {
 
     fn read(&self) -> Result<FormulaText, FormulaFault> {
         let names: Vec<&str> = self.numbers.iter().map(|number| number.name.as_str()).collect();
-        FormulaText::new(self.formula, self.valid, &names, self.wind)
+        let LawSide { wind, sun, zone, height, .. } = self.side;
+        let side = SideNames { wind, sun, zone, height: height.is_some() };
+        FormulaText::new(self.formula, self.valid, &names, side)
     }
 
-    /// The numbers at the ends of their ranges.
-    fn corners(&self, nominal: &[f64]) -> Vec<Vec<f64>> {
-        let ranges: Vec<(usize, [f64; 2])> = (self.numbers.iter().enumerate())
-            .filter_map(|(place, number)| number.range.map(|range| (place, range)))
-            .collect();
-        let with = |chosen: &dyn Fn(usize) -> Option<usize>| {
-            let mut values = nominal.to_vec();
-            for (k, (place, range)) in ranges.iter().enumerate() {
-                if let Some(end) = chosen(k) {
-                    values[*place] = range[end];
-                }
-            }
-            values
-        };
-        let count = ranges.len();
-        if count == 0 {
-            return Vec::new();
+    /// Winds, sides of the wind and surroundings of the grid: those that the law uses.
+    fn weathers(text: &FormulaText) -> Vec<[f64; 6]> {
+        let one: &[f64] = &[0.0];
+        let mut all = vec![[0.0; 6]];
+        let air = text.uses(AIR) || text.uses(SURFACE);
+        let lists: [&[f64]; 6] = [
+            if text.uses(WIND) { &WINDS } else { one },
+            if text.uses(WINDWARD) { &[0.0, 1.0] } else { &[1.0] },
+            if air { SURROUNDINGS[0] } else { one },
+            if text.uses(AIR + 1) { SURROUNDINGS[1] } else { one },
+            if text.uses(AIR + 2) { SURROUNDINGS[2] } else { one },
+            if text.uses(AIR + 3) { SURROUNDINGS[3] } else { one },
+        ];
+        for (place, list) in lists.into_iter().enumerate() {
+            let with = |weather: [f64; 6]| {
+                list.iter().map(move |&value| {
+                    let mut changed = weather;
+                    changed[place] = value;
+                    changed
+                })
+            };
+            all = all.into_iter().flat_map(with).collect();
         }
-        if count <= COMBINED {
-            return (0..1usize << count).map(|bits| with(&|k| Some(bits >> k & 1))).collect();
-        }
-        let alone = (0..count).flat_map(|k| [0, 1].map(|end| with(&|other| (other == k).then_some(end))));
-        alone.chain([0, 1].map(|end| with(&|_| Some(end)))).collect()
+        all
     }
 
     /// Looks at all points of the grid; whether it is valid at some of them.
     fn sweep(&self, text: &FormulaText, names: &mut [f64]) -> Result<bool, FormulaFault> {
-        let winds: &[f64] = if text.uses(WIND) { &WINDS } else { &WINDS[..1] };
-        let sides: &[f64] = if text.uses(WINDWARD) { &[0.0, 1.0] } else { &[1.0] };
         let mut valid = false;
-        for (&wind, &windward) in winds.iter().flat_map(|wind| sides.iter().map(move |side| (wind, side))) {
+        for [wind, windward, around @ ..] in Self::weathers(text) {
             (names[WIND], names[WINDWARD]) = (wind, windward);
+            names[AIR..AIR + 4].copy_from_slice(&around);
             let mut before: Option<[f64; 2]> = None;
             for k in -DIFFERENCES..=DIFFERENCES {
                 let part = f64::from(k) / f64::from(DIFFERENCES);
                 let difference = FARTHEST * part * part.abs();
-                names[DIFFERENCE] = difference;
+                (names[DIFFERENCE], names[SURFACE]) = (difference, around[0] + difference);
                 if text.valid.as_ref().is_some_and(|valid| !valid.holds(names)) {
                     before = None;
                     continue;
@@ -204,6 +253,13 @@ impl LawText<'_> {
         }
         if text.uses(WINDWARD) {
             words += if names[WINDWARD] > 0.5 { ", windward" } else { ", leeward" };
+        }
+        let others = [("Ts", SURFACE, "degC"), ("Ta", AIR, "degC"), ("wind_angle", AIR + 1, "deg")];
+        let others = others.into_iter().chain([("sun", AIR + 2, "W/m2"), ("air_change", AIR + 3, "1/h")]);
+        for (name, place, unit) in others {
+            if text.uses(place) {
+                let _ = write!(words, ", {name} = {:.3} {unit}", names[place]);
+            }
         }
         for (number, value) in self.numbers.iter().zip(&names[super::formula_text::VARIABLES.len()..]) {
             if number.range.is_some() {

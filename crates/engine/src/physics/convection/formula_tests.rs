@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::correlation::Placement;
-use super::formula_check::LawText;
-use super::formula_text::FormulaText;
+use super::formula_check::{LawPoint, LawSide, LawText};
+use super::formula_text::{FormulaText, SideNames};
 use super::testing::power;
-use super::{SurfaceConvection, Wind, WindTerms};
+use super::{SurfaceConvection, Surroundings, Wind, WindTerms};
 use crate::input::description::{Convection, FormulaNumber, ParamId};
 use crate::input::values::Values;
 use crate::number::dual::Dual;
@@ -30,6 +30,7 @@ fn placement<S: Real>(tilt: f64) -> Placement<S> {
         wind_factor: number(0.8),
         inclination: number(tilt.min(180.0 - tilt)),
         density: number(DENSITY),
+        height: number(4.5),
     }
 }
 
@@ -42,7 +43,8 @@ fn written(formula: &str, names: &[&str]) -> Convection {
 fn surface<S: Real>(law: &Convection, values: &[S], tilt: f64) -> SurfaceConvection<S> {
     let text = if let Convection::Formula { formula, valid, numbers } = law {
         let names: Vec<&str> = numbers.iter().map(|number| number.name.as_str()).collect();
-        match FormulaText::new(formula, valid.as_deref(), &names, true) {
+        let side = SideNames { wind: true, sun: true, zone: true, height: true };
+        match FormulaText::new(formula, valid.as_deref(), &names, side) {
             Ok(text) => Some(Arc::new(text)),
             Err(fault) => panic!("{fault:?}"),
         }
@@ -204,9 +206,9 @@ fn lanes_have_the_bits_of_plain_numbers() {
     let values: Vec<Lanes<4>> = (0..3).map(|k| Lanes(members.map(|member| member[k]))).collect();
     let lanes = surface(&law, &values, 90.0);
     for difference in [0.002, -7.0, 44.0, -190.0, 260.0] {
-        let flux = lanes.flux(Lanes([difference; 4]), &[Lanes::zero(); 2]);
+        let flux = lanes.flux(Lanes([difference; 4]), &[Lanes::zero(); 4]);
         for (lane, member) in members.iter().enumerate() {
-            let alone = surface(&law, &member[..], 90.0).flux(difference, &[0.0; 2]);
+            let alone = surface(&law, &member[..], 90.0).flux(difference, &[0.0; 4]);
             assert_eq!(flux.flux.lane(lane).to_bits(), alone.flux.to_bits());
             assert_eq!(flux.slope.lane(lane).to_bits(), alone.slope.to_bits());
             assert!(alone.slope > -1e-9, "the flow rises everywhere");
@@ -214,8 +216,15 @@ fn lanes_have_the_bits_of_plain_numbers() {
     }
 }
 
+/// A wall, outdoors or in a zone.
+fn side(outdoors: bool) -> LawSide {
+    let height = outdoors.then_some(4.5);
+    let (wind, sun, zone) = (outdoors, outdoors, !outdoors);
+    LawSide { wind, sun, zone, tilt: 90.0, area: 10.0, density: 1.2, height }
+}
+
 fn check(formula: &str, valid: Option<&str>, numbers: &[LawNumber], wind: bool) -> Result<(), String> {
-    let law = LawText { formula, valid, numbers, wind, tilt: 90.0, area: 10.0, density: 1.2 };
+    let law = LawText { formula, valid, numbers, side: side(wind) };
     law.check().map_err(|found| format!("{} {}", found.key, found.fault))
 }
 
@@ -236,7 +245,18 @@ fn laws_that_are_none_are_refused() {
         ("c*(20 - abs(dT))*n", Some("abs(dT) < 19"), false, "falls from"),
         ("c*n + dT", None, false, "not negative"),
         ("c*n + V", None, false, "column 7: found the name 'V'"),
-        ("c*n + Ts", None, true, "write dT"),
+        ("c*n + T", None, true, "Write Ts for the surface"),
+        ("c*n + height", None, false, "no height above ground"),
+        ("c*n + wind_angle", None, false, "No wind reaches"),
+        ("c*n + sun", None, false, "The irradiance is known"),
+        ("c*n + air_change", None, true, "faces no zone"),
+        ("c*n", Some("sun < 800"), true, "by dT, Ts, Ta and V"),
+        // Falling or singular only somewhere in what is around the surface.
+        ("c*n + 1/abs(Ts - 5)", Some("Ts > 4.99 and Ts < 5.01"), true, "column 8: found inf"),
+        ("c*n + 40*(Ts - 50)^2/100", None, true, "falls from"),
+        ("c*n*(1 - wind_angle/120)", None, true, "wind_angle = 135.000 deg"),
+        ("c*n + 8*(1 - sun/1000)", None, true, "sun = 1200.000 W/m2"),
+        ("c*n/(air_change - 10)^2", None, false, "air_change = 10.000 1/h"),
         ("c*n", Some("abs(dT) < -1"), false, "valid column 1: found no difference"),
         ("c", None, false, "n column 1: found the number 'n'"),
         ("c*n*(1 - V/20)", None, true, "V = 30 m/s"),
@@ -258,15 +278,7 @@ fn units_that_do_not_fit_are_refused() {
         let mut numbers = [number("c", 2.3, None), number("n", 0.25, None), number("b", 3.0, None)];
         numbers[0].unit = Some(units[0].into());
         numbers[2].unit = Some(units[1].into());
-        let law = LawText {
-            formula,
-            valid: Some("abs(dT) < 30"),
-            numbers: &numbers,
-            wind: true,
-            tilt: 90.0,
-            area: 10.0,
-            density: 1.2,
-        };
+        let law = LawText { formula, valid: Some("abs(dT) < 30"), numbers: &numbers, side: side(true) };
         law.check().map_err(|found| format!("{} {}", found.key, found.fault))
     };
     let law = "c*abs(dT)^n + b*V";
@@ -292,5 +304,56 @@ fn units_that_do_not_fit_are_refused() {
     ] {
         let fault = check(formula, units).unwrap_err();
         assert!(fault.contains(words), "{formula}: {fault}");
+    }
+}
+
+/// `Ts`, `Ta`, the angle, the sun, the air change and the height: the coefficient of the engine is that of the tree, and its slopes are those of
+/// dual numbers. More than two parts change with what is around the surface.
+#[test]
+fn what_is_around_a_surface() {
+    for (formula, [wind_acts, air_changes]) in [
+        (
+            "c*(Ts + 273.15)^0.5*abs(dT)^(1/3)/10 + b*V^0.8*(1 + cos(wind_angle*pi/180)) + 1e-3*sun*exp(-dT/60) + 0.01*height",
+            [true, false],
+        ),
+        ("c*abs(dT)^0.25*(1 + 0.1*air_change) + b*(Ta + 40)/100", [false, true]),
+    ] {
+        let law = written(formula, &["c", "b"]);
+        let around = Surroundings { air: 12.0, angle: 70.0, sun: 400.0, air_change: 1.5 };
+        let (values, numbers) = ([1.3, 2.1], [number("c", 1.3, None), number("b", 2.1, None)]);
+        let side = LawSide { wind: true, sun: true, zone: true, height: Some(4.5), ..side(true) };
+        let text = LawText { formula, valid: None, numbers: &numbers, side };
+        let plain = surface(&law, &values, 90.0);
+        assert!(plain.surrounded() && plain.windy() && !plain.straight());
+        assert_eq!(plain.needs_air_change(), air_changes);
+        let wind = Wind::new(3.0, WindTerms::default());
+        for d in [-20.0, -2.0, 0.5, 15.0] {
+            let flux = plain.flux(d, &plain.driven(&wind, true, &around));
+            let point = LawPoint { difference: d, wind: 3.0 * 0.8, around };
+            let expected = text.values(&[point]).unwrap()[0];
+            // The magnitude of the difference is rounded.
+            assert!((flux.flux / d / expected - 1.0).abs() < 1e-4, "{} is not {expected}", flux.flux / d);
+            let dual = surface(&law, &values.map(Dual::<1>::constant), 90.0);
+            let with = |place: Option<usize>| {
+                let mut list = around.list().map(Dual::constant);
+                if let Some(place) = place {
+                    list[place].slope = [1.0];
+                }
+                dual.driven(&wind, true, &Surroundings::from_list(list))
+            };
+            let slope = dual.flux(Dual { value: d, slope: [1.0] }, &with(None)).flux.slope[0];
+            assert!((slope / flux.slope - 1.0).abs() < 1e-9, "{slope} is not {}", flux.slope);
+            for place in 0..4 {
+                let found = dual.flux(Dual::constant(d), &with(Some(place))).flux.slope[0];
+                let [low, high] = [-1e-4, 1e-4].map(|nudge| {
+                    let mut list = around.list();
+                    list[place] += nudge;
+                    let driven = plain.driven(&wind, true, &Surroundings::from_list(list));
+                    plain.flux(d, &driven).flux
+                });
+                assert!((found - (high - low) / 2e-4).abs() < 1e-6, "{formula}: {place}");
+                assert_eq!(found == 0.0, ![true, wind_acts, wind_acts, air_changes][place]);
+            }
+        }
     }
 }

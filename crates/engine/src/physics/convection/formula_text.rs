@@ -9,6 +9,12 @@
 //! | `upward` | upward component of that normal, the cosine of `tilt` [-] | once per run |
 //! | `area` | of the surface [m2] | once per run |
 //! | `density` | of the air [kg/m3] | once per run |
+//! | `Ts` | temperature of the surface [degC] | in every iteration |
+//! | `Ta` | temperature of the air in front of it, in a zone that at the start of the step [degC] | once per stage |
+//! | `wind_angle` | between the normal and the direction that the wind comes from [deg] | once per stage |
+//! | `sun` | irradiance of the plane [W/m2] | once per stage |
+//! | `air_change` | of the zone, by its air at the start of the step [1/h] | once per stage |
+//! | `height` | of the side above ground [m] | once per run |
 //!
 //! Numbers of the law have their own names. `abs(dT)` is `(dT^2 + r^2)^1/2` with the small r of [`natural`](super::natural), as in all
 //! laws: its powers and their derivatives are finite at zero. In powers and roots `V` is at least 1 mm/s at the mast, likewise.
@@ -24,30 +30,76 @@ use crate::physics::formula::tree::{Condition, Tree};
 use crate::physics::formula::{FormulaFault, Position};
 
 /// Names that the side of a surface gives, by their places in [`Tree`].
-pub(crate) const VARIABLES: [&str; 7] = ["dT", "V", "windward", "tilt", "upward", "area", "density"];
-/// Places of the first three.
+pub(crate) const VARIABLES: [&str; 13] = [
+    "dT",
+    "V",
+    "windward",
+    "tilt",
+    "upward",
+    "area",
+    "density",
+    "Ts",
+    "Ta",
+    "wind_angle",
+    "sun",
+    "air_change",
+    "height",
+];
 pub(crate) const DIFFERENCE: usize = 0;
 pub(crate) const WIND: usize = 1;
 pub(crate) const WINDWARD: usize = 2;
+pub(crate) const SURFACE: usize = 7;
+/// Place of the first of the four [`Surroundings`](super::wind::Surroundings): air, angle, sun and air change.
+pub(crate) const AIR: usize = 8;
+/// Those that change during a run.
+pub(crate) const CHANGING: [usize; 8] = [DIFFERENCE, WIND, WINDWARD, SURFACE, AIR, AIR + 1, AIR + 2, AIR + 3];
 
 const NO_WIND: &str =
     "No wind reaches this side: it does not face outdoors, or its exposure leaves the wind out.";
-const DIFFERENCE_ONLY: &str =
-    "A coefficient may depend on the difference of the two temperatures, not on each: write dT.";
-const ANY_DIRECTION: &str = "Say where the law holds by dT and V, for winds of any direction.";
-const NOT_HERE: &str = "A coefficient cannot depend on it: give a number of its own beside the formula.";
+const NO_SUN: &str = "The irradiance is known of sides that face outdoors and whose exposure has the sun.";
+const NO_ZONE: &str = "This side faces no zone.";
+const NO_HEIGHT: &str =
+    "This side has no height above ground: it faces no wind outdoors. Give a number of another name.";
+const BY_THESE: &str = "Say where the law holds by dT, Ts, Ta and V.";
 
 /// Names that papers use and that no side gives.
-const ABSENT: [(&str, &str); 8] = [
-    ("Ts", DIFFERENCE_ONLY),
-    ("Ta", DIFFERENCE_ONLY),
-    ("wind_angle", "Write windward, which holds where the wind blows onto the surface."),
-    ("sun", NOT_HERE),
-    ("air_change", NOT_HERE),
-    ("T", DIFFERENCE_ONLY),
+const ABSENT: [(&str, &str); 5] = [
+    ("T", "Write Ts for the surface, Ta for the air, or dT for their difference."),
     ("dt", "Write dT."),
     ("v", "Write V for the wind at the surface."),
+    ("angle", "Write wind_angle."),
+    ("ACH", "Write air_change."),
 ];
+
+/// Which names a side gives beside those that all sides have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each says whether some names exist")]
+pub(crate) struct SideNames {
+    /// The wind reaches it.
+    pub(crate) wind: bool,
+    /// The irradiance of its plane is known.
+    pub(crate) sun: bool,
+    /// It faces a zone.
+    pub(crate) zone: bool,
+    /// It has a height above ground.
+    pub(crate) height: bool,
+}
+
+impl SideNames {
+    /// Names that it does not give, and why.
+    fn absent(self) -> Vec<(&'static str, &'static str)> {
+        let names = [
+            ("V", NO_WIND, self.wind),
+            ("windward", NO_WIND, self.wind),
+            ("wind_angle", NO_WIND, self.wind),
+            ("sun", NO_SUN, self.sun),
+            ("air_change", NO_ZONE, self.zone),
+            ("height", NO_HEIGHT, self.height),
+        ];
+        let absent = names.into_iter().filter(|(_, _, has)| !has).map(|(name, why, _)| (name, why));
+        absent.chain(ABSENT).collect()
+    }
+}
 
 /// A coefficient written as text.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,14 +110,18 @@ pub(crate) struct FormulaText {
     /// Whether it depends on the temperature difference, and on the wind.
     pub(crate) buoyant: bool,
     pub(crate) windy: bool,
+    /// Which of the [`Surroundings`](super::wind::Surroundings) the formula uses.
+    pub(crate) surroundings: [bool; 4],
+    /// Whether more than two parts change with wind and surroundings.
+    pub(crate) many: bool,
     /// From what a run has, the numbers that the other programs need.
     pub(crate) run: Program,
     pub(crate) run_numbers: Vec<Number>,
-    /// From the wind, what [`Forced`](super::wind::Forced) holds.
+    /// From wind and surroundings, what [`Driven`](super::wind::Driven) holds.
     pub(crate) stage: Program,
-    /// The coefficient and its derivative, from `d`, `d^2 + r^2` and [`Forced`](super::wind::Forced).
+    /// The coefficient and its derivative, from `d`, `d^2 + r^2` and [`Driven`](super::wind::Driven).
     pub(crate) iteration: Program,
-    /// One where the law is valid, else zero, from `d`, `d^2 + r^2`, the wind at the mast and whether it blows onto the surface.
+    /// One where the law is valid, else zero, from `d`, `d^2 + r^2`, the wind at the mast and the temperature of the air.
     pub(crate) validity: Option<Program>,
 }
 
@@ -78,12 +134,13 @@ pub(crate) enum Number {
     Upward,
     Area,
     Density,
+    Height,
     /// By its place among the numbers of the law.
     Given(usize),
 }
 
 impl FormulaText {
-    /// Reads a law; `numbers`: the names of its numbers; `wind`: whether wind reaches the side.
+    /// Reads a law; `numbers`: the names of its numbers; `side`: which names the side gives.
     ///
     /// # Errors
     /// The first fault of its texts.
@@ -91,19 +148,13 @@ impl FormulaText {
         formula: &str,
         valid: Option<&str>,
         numbers: &[&str],
-        wind: bool,
+        side: SideNames,
     ) -> Result<Self, FormulaFault> {
         let usable: Vec<&str> = VARIABLES.iter().chain(numbers).copied().collect();
-        let absent: Vec<(&str, &str)> = if wind {
-            ABSENT.to_vec()
-        } else {
-            [("V", NO_WIND), ("windward", NO_WIND)].into_iter().chain(ABSENT).collect()
-        };
-        // Places stay the same where there is no wind.
-        let usable: Vec<&str> = usable
-            .into_iter()
-            .map(|name| if !wind && ["V", "windward"].contains(&name) { "" } else { name })
-            .collect();
+        let absent = side.absent();
+        let gives = |name: &str| absent.iter().all(|(other, _)| *other != name);
+        // Places stay the same where a side does not give a name.
+        let usable: Vec<&str> = usable.into_iter().map(|name| if gives(name) { name } else { "" }).collect();
         check_names(numbers)?;
         let names = Names { usable: &usable, flags: &["windward"], absent: &absent };
         let at = |key: &str| {
@@ -111,10 +162,11 @@ impl FormulaText {
             move |fault| FormulaFault { key, fault }
         };
         let tree = parser::number(formula, names).map_err(at("formula"))?;
+        let elsewhere = ["windward", "wind_angle", "sun", "air_change"];
         let usable: Vec<&str> =
-            usable.iter().map(|name| if *name == VARIABLES[WINDWARD] { "" } else { *name }).collect();
+            usable.iter().map(|name| if elsewhere.contains(name) { "" } else { *name }).collect();
         let absent: Vec<(&str, &str)> =
-            [("windward", ANY_DIRECTION)].into_iter().chain(absent.clone()).collect();
+            elsewhere.into_iter().map(|name| (name, BY_THESE)).chain(absent.clone()).collect();
         let names = Names { usable: &usable, flags: &[], absent: &absent };
         let valid = valid.map(|text| parser::condition(text, names)).transpose().map_err(at("valid"))?;
         for (place, name) in numbers.iter().enumerate() {
@@ -126,13 +178,9 @@ impl FormulaText {
             }
         }
         Compiler::new(numbers.len()).compile(tree, valid).map_err(|TooLong| {
-            let expected = "fewer operations";
-            at("formula")(fault(
-                START,
-                "a formula that needs too many numbers at once",
-                expected,
-                "Simplify it.",
-            ))
+            let found = "a formula that needs too many numbers at once";
+            let remedy = "Simplify it; write terms of wind, sun and air side by side in one bracket.";
+            at("formula")(fault(START, found, "fewer operations", remedy))
         })
     }
 
@@ -142,6 +190,8 @@ impl FormulaText {
     }
 }
 
+/// Places of [`Driven`](super::wind::Driven).
+const SLOTS: usize = 4;
 const START: Position = Position { line: 1, column: 1 };
 
 fn check_names(numbers: &[&str]) -> Result<(), FormulaFault> {
@@ -167,6 +217,7 @@ struct Compiler {
     rounded: Id,
     speed: Id,
     windward: Id,
+    surroundings: [Id; 4],
     inputs: Vec<(Id, Number)>,
     /// The wind at the surface, as it is and as the base of powers.
     wind: [Id; 2],
@@ -184,12 +235,14 @@ impl Compiler {
         graph.round(difference, rounded);
         let speed = input(&mut graph, Level::Stage, false);
         let windward = input(&mut graph, Level::Stage, false);
+        let surroundings = [(); 4].map(|()| input(&mut graph, Level::Stage, false));
         let mut inputs = vec![
             (input(&mut graph, Level::Run, true), Number::WindFactor),
             (input(&mut graph, Level::Run, false), Number::Tilt),
             (input(&mut graph, Level::Run, false), Number::Upward),
             (input(&mut graph, Level::Run, true), Number::Area),
             (input(&mut graph, Level::Run, true), Number::Density),
+            (input(&mut graph, Level::Run, false), Number::Height),
         ];
         for given in 0..numbers {
             inputs.push((input(&mut graph, Level::Run, false), Number::Given(given)));
@@ -197,19 +250,23 @@ impl Compiler {
         let calm = graph.constant(CALM);
         let moving = graph.max(speed, calm);
         let wind = [speed, moving].map(|speed| graph.times(inputs[0].0, speed));
-        Self { graph, difference, rounded, speed, windward, inputs, wind }
+        Self { graph, difference, rounded, speed, windward, surroundings, inputs, wind }
     }
 
     /// The part that a name stands for; `base`: in the base of a power.
     fn leaf(&self) -> impl FnMut(&mut Graph, usize, bool) -> Id + use<> {
         let inputs: Vec<Id> = self.inputs.iter().map(|(id, _)| *id).collect();
         let (difference, windward, wind) = (self.difference, self.windward, self.wind);
-        move |_, name, base| match name {
+        let surroundings = self.surroundings;
+        move |graph, name, base| match name {
             DIFFERENCE => difference,
             WIND => wind[usize::from(base)],
             WINDWARD => windward,
-            // tilt, upward, area and density come after the wind factor, then the numbers.
-            other => inputs[other - WINDWARD],
+            SURFACE => graph.plus(surroundings[0], difference),
+            name if (AIR..AIR + 4).contains(&name) => surroundings[name - AIR],
+            // tilt, upward, area and density come after the wind factor, then the height and the numbers.
+            name if name < SURFACE => inputs[name - WINDWARD],
+            name => inputs[name - AIR - 4 + SURFACE - WINDWARD],
         }
     }
 
@@ -243,11 +300,15 @@ impl Compiler {
         let iteration_parts = if buoyant { vec![value, slope] } else { Vec::new() };
         let iteration_inputs: Vec<Id> =
             [self.difference, self.rounded].into_iter().chain(slots.clone()).collect();
-        let stage_inputs = [self.speed, self.windward];
-        // One slot fills both places.
-        let stage_parts: Vec<Id> =
-            slots.iter().chain(&slots).take(2 * usize::from(!slots.is_empty())).copied().collect();
-        let validity_inputs = [self.difference, self.rounded, self.speed, self.windward];
+        let [air, angle, sun, air_change] = self.surroundings;
+        let stage_inputs = [self.speed, self.windward, air, angle, sun, air_change];
+        if slots.len() > SLOTS {
+            return Err(TooLong);
+        }
+        // The slots fill all places.
+        let filled = SLOTS * usize::from(!slots.is_empty());
+        let stage_parts: Vec<Id> = slots.iter().cycle().take(filled).copied().collect();
+        let validity_inputs = [self.difference, self.rounded, self.speed, air];
         let validity_parts: Vec<Id> = holds.into_iter().collect();
         constants(graph, &iteration_parts, &iteration_inputs, &mut numbers);
         constants(graph, &stage_parts, &stage_inputs, &mut numbers);
@@ -265,6 +326,9 @@ impl Compiler {
             stage: Program::new(graph, &stage_parts, &stage_inputs, &numbers)?,
             iteration: Program::new(graph, &iteration_parts, &iteration_inputs, &numbers)?,
             validity,
+            surroundings: [0, 1, 2, 3]
+                .map(|place| tree.uses(AIR + place) || (place == 0 && tree.uses(SURFACE))),
+            many: slots.len() > 2,
             tree,
             valid,
             buoyant,
@@ -272,14 +336,17 @@ impl Compiler {
         })
     }
 
-    /// What the wind gives to the coefficient, at most two parts: what is expensive to compute if that is enough.
+    /// What wind and surroundings give to the coefficient: what is expensive to compute if that is two parts at most, else the
+    /// fewest of several ways.
     fn slots(&self, parts: &[Id]) -> Vec<Id> {
         let mut found = [Vec::new(), Vec::new(), Vec::new()];
         for &part in parts {
             self.collect(part, &mut found, &mut Vec::new());
         }
         let [largest, expensive, inputs] = found;
-        [expensive, largest].into_iter().find(|slots| slots.len() <= 2).unwrap_or(inputs)
+        let ways = [expensive, largest, inputs];
+        let few = ways.iter().find(|slots| slots.len() <= 2);
+        few.or_else(|| ways.iter().min_by_key(|slots| slots.len())).cloned().unwrap_or_default()
     }
 
     fn collect(&self, part: Id, found: &mut [Vec<Id>; 3], seen: &mut Vec<Id>) {

@@ -8,7 +8,7 @@ use super::formula_text::FormulaText;
 use super::laws::{self, with_laws};
 use super::measured::Measured;
 use super::natural::{Coefficient, Difference};
-use super::wind::{Forced, Wind, WindTerms};
+use super::wind::{Driven, Forced, Surroundings, Wind, WindTerms};
 use crate::input::description::{Convection, ConvectionLaw};
 use crate::input::values::Values;
 use crate::number::real::Real;
@@ -50,12 +50,13 @@ macro_rules! laws {
                 number: &impl Fn(&S) -> V,
                 upward: &S,
                 at: &Difference<V>,
-                forced: &Forced<V>,
+                driven: &Driven<V>,
             ) -> Coefficient<V> {
+                let forced = &[driven[0], driven[1]];
                 match self {
                     $(Self::$law(law) => law.coefficient(number, upward, at, forced),)*
                     Self::Measured(law) => law.coefficient(number, upward, at, forced),
-                    Self::Formula(law) => law.coefficient(number, upward, at, forced),
+                    Self::Formula(law) => law.coefficient(number, at, driven),
                 }
             }
         }
@@ -93,18 +94,18 @@ macro_rules! laws {
             }
 
             #[inline(always)]
-            fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
+            fn forced(&self, wind: &Wind, windward: S::Mask) -> Driven<S> {
                 match self {
-                    $(Self::$law(law) => law.forced(wind, windward),)*
-                    Self::Measured(law) => law.forced(wind, windward),
-                    Self::Formula(law) => law.forced(wind, windward),
+                    $(Self::$law(law) => widened(law.forced(wind, windward)),)*
+                    Self::Measured(law) => widened(law.forced(wind, windward)),
+                    Self::Formula(law) => law.driven(wind, windward, &Surroundings::calm()),
                 }
             }
 
-            fn calm(&self) -> Forced<S> {
+            fn calm(&self) -> Driven<S> {
                 match self {
-                    $(Self::$law(law) => law.calm(),)*
-                    Self::Measured(law) => law.calm(),
+                    $(Self::$law(law) => widened(law.calm()),)*
+                    Self::Measured(law) => widened(law.calm()),
                     Self::Formula(law) => law.calm(),
                 }
             }
@@ -141,12 +142,21 @@ fn entry<L: NamedLaw<f64>>(kind: &'static str) -> LawEntry {
     LawEntry { kind, wind: L::WIND.is_some(), wind_direction, linear: L::LINEAR, row: L::ROW }
 }
 
+#[inline(always)]
+fn widened<S: Real>([first, second]: Forced<S>) -> Driven<S> {
+    [first, second, S::zero(), S::zero()]
+}
+
 /// The terms of the wind that several laws need together.
 pub fn wind_terms<'a>(convections: impl Iterator<Item = &'a Convection>) -> WindTerms {
     convections.fold(WindTerms::default(), |sum, convection| {
         sum.and(match convection {
             Convection::Law(law) => terms(law),
-            Convection::Formula { formula, .. } if formula.contains("windward") => WindTerms::DIRECTION,
+            Convection::Formula { formula, .. }
+                if ["windward", "wind_angle"].iter().any(|name| formula.contains(name)) =>
+            {
+                WindTerms::DIRECTION
+            }
             Convection::Formula { .. } | Convection::Measured { .. } => WindTerms::default(),
         })
     })
@@ -206,7 +216,7 @@ impl<S> SurfaceConvection<S> {
         &self,
         number: impl Fn(&S) -> V,
         d: V,
-        forced: &Forced<V>,
+        forced: &Driven<V>,
     ) -> ConvectiveFlux<V> {
         // q = h d, so q' = h + d h'.
         let Coefficient { value, rise } =
@@ -253,9 +263,28 @@ impl<S: Real> SurfaceConvection<S> {
         matches!(&self.law, Law::Formula(law) if law.limited())
     }
 
-    /// One where it is valid at a difference [K] and a wind at the mast [m/s], else zero.
-    pub(crate) fn valid(&self, d: S, speed: S, windward: S::Mask) -> S {
-        if let Law::Formula(law) = &self.law { law.valid(d, speed, windward) } else { S::one() }
+    /// One where it is valid at a difference [K], a wind at the mast [m/s] and a temperature of the air [degC], else zero.
+    pub(crate) fn valid(&self, d: S, speed: S, air: S) -> S {
+        if let Law::Formula(law) = &self.law { law.valid(d, speed, air) } else { S::one() }
+    }
+
+    /// Whether it depends on its [`Surroundings`].
+    pub(crate) fn surrounded(&self) -> bool {
+        matches!(&self.law, Law::Formula(law) if law.surrounded())
+    }
+
+    /// Whether it depends on the air that flows into a zone.
+    pub(crate) fn needs_air_change(&self) -> bool {
+        matches!(&self.law, Law::Formula(law) if law.needs_air_change())
+    }
+
+    /// What drives it in its surroundings; `windward`: where the wind blows onto the surface.
+    pub(crate) fn driven(&self, wind: &Wind, windward: S::Mask, at: &Surroundings<S>) -> Driven<S> {
+        if let Law::Formula(law) = &self.law {
+            law.driven(wind, windward, at)
+        } else {
+            self.law.forced(wind, windward)
+        }
     }
 
     /// The coefficient, where it depends neither on temperature nor on wind.
@@ -280,19 +309,19 @@ impl<S: Real> SurfaceConvection<S> {
 
     /// The part of the coefficient without temperature; `windward`: where the wind blows onto the surface.
     #[inline(always)]
-    pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
+    pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Driven<S> {
         self.law.forced(wind, windward)
     }
 
     /// The part of the coefficient without temperature in calm air.
-    pub fn calm(&self) -> Forced<S> {
+    pub fn calm(&self) -> Driven<S> {
         self.law.calm()
     }
 
     /// Heat flow at `d = T_surface - T_air` [K], in numbers with derivatives. Where none of its numbers has any, it is that of plain
     /// numbers: most surfaces do not depend on the few parameters that slopes are computed by.
     #[inline(always)]
-    pub(crate) fn tangent_flux(&self, d: S, forced: &Forced<S>) -> ConvectiveFlux<S> {
+    pub(crate) fn tangent_flux(&self, d: S, forced: &Driven<S>) -> ConvectiveFlux<S> {
         if const { S::DERIVATIVES } && !self.carries(d, forced) {
             let ConvectiveFlux { flux, slope } = self.plain_flux(d.lane(0), forced.map(|part| part.lane(0)));
             return ConvectiveFlux { flux: S::constant(flux), slope: S::constant(slope) };
@@ -302,7 +331,7 @@ impl<S: Real> SurfaceConvection<S> {
 
     /// Whether one of the numbers of the heat flow has derivatives.
     #[inline(always)]
-    fn carries(&self, d: S, forced: &Forced<S>) -> bool {
+    fn carries(&self, d: S, forced: &Driven<S>) -> bool {
         let mut carries = d.carries() || forced.iter().any(|part| part.carries());
         self.map(|number| carries |= number.carries());
         carries
@@ -310,13 +339,13 @@ impl<S: Real> SurfaceConvection<S> {
 
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
-    fn plain_flux(&self, d: f64, forced: Forced<f64>) -> ConvectiveFlux<f64> {
+    fn plain_flux(&self, d: f64, forced: Driven<f64>) -> ConvectiveFlux<f64> {
         self.flux_of(|number| number.lane(0), d, &forced)
     }
 
     /// Heat flow at `d = T_surface - T_air` [K].
     #[inline(always)]
-    pub fn flux(&self, d: S, forced: &Forced<S>) -> ConvectiveFlux<S> {
+    pub fn flux(&self, d: S, forced: &Driven<S>) -> ConvectiveFlux<S> {
         self.flux_of(
             #[inline(always)]
             |number| *number,

@@ -61,6 +61,6 @@ mod tests {
         assert!(law.constant().is_none() && law.straight() && !law.windy());
         let (channel, factor) = law.measured().unwrap();
         assert_eq!(channel, CLIMATE_CHANNELS + 1);
-        assert_eq!(law.flux(2.0, &[factor * 4.0; 2]).flux, 12.0);
+        assert_eq!(law.flux(2.0, &[factor * 4.0; 4]).flux, 12.0);
     }
 }

@@ -32,6 +32,6 @@ mod testing;
 pub(crate) mod wind;
 
 pub use correlation::Placement;
-pub use formula_check::LawText;
+pub use formula_check::{LawSide, LawText};
 pub use law::{SurfaceConvection, table, wind_terms};
-pub use wind::{Forced, Wind, WindTerms};
+pub use wind::{Driven, Surroundings, Wind, WindTerms};

@@ -23,7 +23,7 @@ pub(super) fn power(first: [u32; 2]) -> Convection {
 /// A surface of 1 m2 in air of 1.2 kg/m3 with the mast's wind.
 pub(super) fn surface(law: &Convection, numbers: &[f64], upward: f64) -> SurfaceConvection<f64> {
     let inclination = crate::number::elementary::acos(upward.abs()).to_degrees();
-    let surface = Placement { area: 1.0, upward, wind_factor: 1.0, inclination, density: 1.2 };
+    let surface = Placement { area: 1.0, upward, wind_factor: 1.0, inclination, density: 1.2, height: 0.0 };
     SurfaceConvection::new(&Values::new(numbers), law, None, &surface)
 }
 

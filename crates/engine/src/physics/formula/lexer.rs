@@ -113,8 +113,12 @@ fn number(rest: &[char], at: Position, tokens: &mut Vec<Token>) -> Result<usize,
 }
 
 fn name(rest: &[char], at: Position, tokens: &mut Vec<Token>) -> usize {
-    let name: String = rest.iter().take_while(|c| c.is_ascii_alphanumeric() || **c == '_').collect();
-    let length = name.len();
+    // Names of outputs have dots inside.
+    let letter = |c: Option<&char>| c.is_some_and(|c| c.is_ascii_alphabetic() || *c == '_');
+    let inside =
+        |k: usize, c: char| c.is_ascii_alphanumeric() || c == '_' || (c == '.' && letter(rest.get(k + 1)));
+    let length = rest.iter().enumerate().take_while(|(k, c)| inside(*k, **c)).count();
+    let name: String = rest[..length].iter().collect();
     tokens.push(Token { word: Word::Name(name), at });
     length
 }

@@ -29,6 +29,12 @@ pub(crate) const KELVIN: Unit = [0.0, 0.0, 0.0, 1.0];
 pub(crate) const SPEED: Unit = [0.0, 1.0, -1.0, 0.0];
 pub(crate) const AREA: Unit = [0.0, 2.0, 0.0, 0.0];
 pub(crate) const DENSITY: Unit = [1.0, -3.0, 0.0, 0.0];
+/// Pa, and W/(m K).
+pub(crate) const PRESSURE: Unit = [1.0, -1.0, -2.0, 0.0];
+pub(crate) const CONDUCTIVITY: Unit = [1.0, 1.0, -3.0, -1.0];
+pub(crate) const LENGTH: Unit = [0.0, 1.0, 0.0, 0.0];
+/// W/m2.
+pub(crate) const FLUX: Unit = [1.0, 0.0, -3.0, 0.0];
 /// W/(m2 K).
 pub(crate) const COEFFICIENT: Unit = [1.0, 0.0, -3.0, -1.0];
 /// Exponents this close are the same.
@@ -110,6 +116,12 @@ fn shown(unit: Unit) -> String {
     if same(unit, COEFFICIENT) {
         return "W/(m2 K)".into();
     }
+    if same(unit, FLUX) {
+        return "W/m2".into();
+    }
+    if same(unit, CONDUCTIVITY) {
+        return "W/(m K)".into();
+    }
     let power = |(name, exponent): (&str, f64)| match exponent {
         1.0 => name.to_owned(),
         exponent => format!("{name}^{}", (exponent * 1e4).round() / 1e4),
@@ -117,6 +129,23 @@ fn shown(unit: Unit) -> String {
     let parts = ["kg", "m", "s", "K"].into_iter().zip(unit).filter(|(_, exponent)| exponent.abs() > SAME);
     let parts: Vec<String> = parts.map(power).collect();
     if parts.is_empty() { "no unit".into() } else { parts.join(" ") }
+}
+
+/// A unit as outputs state it; none where it is no product of the known ones.
+pub(crate) fn known(text: &str) -> Option<Unit> {
+    read(text, &[], &[]).ok()
+}
+
+/// As [`of_numbers`], also where no number states a unit.
+///
+/// # Errors
+/// What is no unit, by the name of its number.
+pub(crate) fn of_any_numbers(
+    variables: &[Option<Unit>],
+    numbers: &[LawNumber],
+) -> Result<Vec<Option<Unit>>, FormulaFault> {
+    let stated = of_numbers(variables, numbers)?;
+    Ok(stated.unwrap_or_else(|| variables.iter().copied().chain(numbers.iter().map(|_| None)).collect()))
 }
 
 /// Units of variables and numbers, by their places; none where no number states one: then nothing is compared.
@@ -146,8 +175,8 @@ pub(crate) fn of_numbers(
 pub(crate) struct Stated<'a> {
     pub(crate) units: &'a [Option<Unit>],
     pub(crate) values: &'a [f64],
-    /// How many of the names change during a run; exponents of units must not depend on them.
-    pub(crate) variables: usize,
+    /// Places of the names that change during a run; exponents of units must not depend on them.
+    pub(crate) changing: &'a [usize],
 }
 
 impl Stated<'_> {
@@ -164,6 +193,17 @@ impl Stated<'_> {
                 "Correct the units of its numbers, or leave out those that the paper does not state.",
             )),
             _ => Ok(()),
+        }
+    }
+
+    /// The same, where a unit is expected; else only the units of its parts are compared.
+    ///
+    /// # Errors
+    /// The first operation of parts that do not fit together.
+    pub(crate) fn check_if(&self, tree: &Tree, expected: Option<Unit>) -> Result<(), Fault> {
+        match expected {
+            Some(expected) => self.check(tree, expected),
+            None => self.unit(tree).map(|_| ()),
         }
     }
 
@@ -226,7 +266,7 @@ impl Stated<'_> {
         if same(base, NONE) {
             return Ok(Some(NONE));
         }
-        if (0..self.variables).any(|name| of[1].uses(name)) {
+        if self.changing.iter().any(|&name| of[1].uses(name)) {
             let remedy = "Divide the base by a number of its unit.";
             return Err(fault(
                 at,

@@ -12,4 +12,5 @@ pub(crate) use emission::COLDEST;
 pub use emission::{Emission, black_temperature};
 pub(crate) use exchange::direct_exchange_areas;
 pub use exchange::{exchange_areas, self_weight};
+pub(crate) use sky::sky_law;
 pub use sky::{CloudEffect, SkyState, sky_emission};

@@ -12,10 +12,14 @@ use crate::input::forcing::channel;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::{KELVIN, SIGMA};
+use crate::physics::formula::function::Function;
 use crate::physics::psychrometrics::saturation_pressure;
 
 /// Scale height of the effect of clouds [m]: the base of a cloud is colder than the air at the ground (Martin & Berdahl 1984).
 const CLOUD_SCALE_HEIGHT: f64 = 8200.0;
+
+/// Place of the cloud cover among the names of a sky as text.
+const CLOUD: usize = 3;
 
 /// Effect of clouds on the emissivity of the clear sky.
 #[derive(Debug, Clone)]
@@ -62,6 +66,8 @@ pub struct SkyState {
     humidity: f64,
     /// Cloud cover [tenths].
     cloud: f64,
+    /// Dew point [degC].
+    dew: f64,
 }
 
 impl SkyState {
@@ -77,9 +83,16 @@ impl SkyState {
             Sky::MartinBerdahl { .. } => dew / 100.0,
             // His law takes the vapour pressure in [hPa].
             Sky::Brunt { .. } => Real::sqrt(saturation_pressure(dew).scale(0.01)),
+            Sky::Text { .. } => saturation_pressure(dew),
         };
-        Self { black: SIGMA * air.pow4(), air, humidity, cloud: row[channel::CLOUD_COVER] }
+        Self { black: SIGMA * air.pow4(), air, humidity, cloud: row[channel::CLOUD_COVER], dew }
     }
+}
+
+/// A sky that is written as text; none where it is not.
+pub(crate) fn sky_law<S: Real>(sky: &Sky, values: &Values<'_, S>) -> Option<Function<S>> {
+    let Sky::Text { temperature, law } = sky else { return None };
+    Some(Function::of(if *temperature { "sky_temperature" } else { "sky_emissivity" }, law, values))
 }
 
 /// Downward emission of the sky on a horizontal plane [W/m2].
@@ -87,7 +100,7 @@ impl SkyState {
 pub fn sky_emission<S: Real>(
     values: &Values<'_, S>,
     sky: &Sky,
-    clouds: &CloudEffect<S>,
+    (clouds, text): (&CloudEffect<S>, Option<&Function<S>>),
     state: &SkyState,
 ) -> S {
     let h = state.humidity;
@@ -95,6 +108,18 @@ pub fn sky_emission<S: Real>(
         Sky::Measured { scale } => return values.get(*scale).scale(h),
         Sky::Offset { depression } => {
             return (S::constant(state.air) - values.get(*depression)).pow4().scale(SIGMA);
+        }
+        Sky::Text { temperature, law: _ } => {
+            let names = [state.dew, state.humidity, state.cloud].map(S::constant);
+            let [value, _] =
+                text.map_or([S::zero(); 2], |text| text.at(S::constant(state.air - KELVIN), &names));
+            if *temperature {
+                return (value + S::constant(KELVIN)).pow4().scale(SIGMA);
+            }
+            if text.is_some_and(|text| text.uses(CLOUD)) {
+                return value.min(S::one()).scale(state.black);
+            }
+            value
         }
         Sky::ClarkAllen { a, b } | Sky::Brunt { a, b } => values.get(*a) + values.get(*b).scale(h),
         Sky::MartinBerdahl { a, b, c } => {
@@ -107,7 +132,7 @@ pub fn sky_emission<S: Real>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::description::ParamId;
+    use crate::input::description::{FormulaNumber, ParamId, TextLaw};
     use crate::input::forcing::CLIMATE_CHANNELS;
 
     /// Air at 20 degC, dew point 10 degC, 5 tenths of cloud.
@@ -117,7 +142,9 @@ mod tests {
         row[channel::DEW_POINT] = 10.0;
         row[channel::CLOUD_COVER] = 5.0;
         row[channel::INFRARED] = 333.0;
-        sky_emission(&Values::new(numbers), sky, clouds, &SkyState::new(sky, &row))
+        let values = Values::new(numbers);
+        let text = sky_law(sky, &values);
+        sky_emission(&values, sky, (clouds, text.as_ref()), &SkyState::new(sky, &row))
     }
 
     /// Black at 20 degC: 418.766 W/m2.
@@ -140,6 +167,17 @@ mod tests {
         // 10 K below the air: sigma 283.15^4 = 364.484; measured: the channel.
         close(emission(&Sky::Offset { depression: a }, &[10.0], clear), 364.484);
         close(emission(&Sky::Measured { scale: a }, &[1.1], cloud), 1.1 * 333.0);
+        // The same models as text; a law with clouds of its own has no effect of clouds.
+        let text = |formula: &str, temperature| {
+            let number = |(k, name): (u32, &str)| FormulaNumber { name: name.into(), value: ParamId(k) };
+            let numbers = [(0, "a"), (1, "b")].map(number).into();
+            Sky::Text { temperature, law: TextLaw { formula: formula.into(), numbers } }
+        };
+        let written = text("a + b*log((Td + 273.15)/273)", false);
+        close(emission(&written, &[0.787, 0.764], cloud), 0.814_890 * 1.0595 * 418.766);
+        let written = text("a + b*sqrt(pw/100) + 0.01*cloud", false);
+        close(emission(&written, &[0.52, 0.065], cloud), (0.747_778 + 0.05) * 418.766);
+        close(emission(&text("To - a*b", true), &[5.0, 2.0], cloud), 364.484);
         // No more than a black body.
         close(emission(&martin, &[1.2, 0.0, 0.0], cloud), 418.766);
     }

@@ -13,15 +13,21 @@ pub(crate) mod history;
 mod normal;
 mod segments;
 mod table;
+#[cfg(test)]
+mod tests;
 pub(crate) mod text;
 
 use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
+use crate::physics::formula::function::Function;
 use curve::{Curve, CurvePoint, limit_at};
 use history::two_curves::FAR;
 use history::{AnyHistoryLaw, Ingredients};
 use table::{Table, TablePoint};
+
+/// Half-width of a melting range that does not exist [K].
+const NO_MELTING: f64 = 1e3;
 
 pub use curve::CUT;
 pub use evaluate::LiquidFraction;
@@ -82,6 +88,8 @@ enum Law<S> {
     Melting(Latent<S>, Curve<S>),
     History(Latent<S>, AnyHistoryLaw<S>),
     Table(Table<S>),
+    /// Nothing melts: the conductivity of the temperature.
+    Sensible(Function<S>),
 }
 
 /// Heat of melting per volume as built, at a temperature.
@@ -137,6 +145,18 @@ impl<S: Real> PcmCoefficients<S> {
         }
     }
 
+    /// A material that does not melt, whose conductivity changes with temperature; `heat` per volume [J/(m3 K)].
+    pub(crate) fn without_melting(conductivity: Function<S>, heat: S) -> Self {
+        let zero = S::zero();
+        Self {
+            conductivity: [zero; 2],
+            volumetric_heat: [heat; 2],
+            conductivity_rise: zero,
+            heat_rise: zero,
+            law: Law::Sensible(conductivity),
+        }
+    }
+
     /// Properties at a temperature [degC].
     pub fn at(&self, temperature: S, history: &PcmHistory<S>) -> PcmPoint<S> {
         let mut point = PcmPoint::zero();
@@ -184,6 +204,9 @@ impl<S: Real> PcmCoefficients<S> {
                             *point = self.tabulated(table, (temperature, curved));
                         }
                     }
+                    Law::Sensible(conductivity) => places.for_each(|(point, &temperature)| {
+                        *point = self.sensible(conductivity, (temperature, curved));
+                    }),
                 }
             },
         );
@@ -225,6 +248,19 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
+    fn sensible(&self, law: &Function<S>, (temperature, curved): (S, bool)) -> PcmPoint<S> {
+        let [heat, _] = self.volumetric_heat;
+        let [conductivity, slope] = law.at(temperature, &[]);
+        PcmPoint {
+            enthalpy: heat * temperature,
+            capacity: if curved { heat } else { heat.fixed() },
+            conductivity,
+            conductivity_slope: if curved { slope } else { slope.fixed() },
+            ..PcmPoint::zero()
+        }
+    }
+
+    #[inline(always)]
     fn point(
         &self,
         (temperature, curved): (S, bool),
@@ -261,7 +297,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn integrable(&self) -> bool {
         match &self.law {
             Law::Melting(_, curve) => curve.integrable(),
-            Law::History(..) => false,
+            Law::History(..) | Law::Sensible(_) => false,
             Law::Table(_) => true,
         }
     }
@@ -286,7 +322,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn in_stage(&self, history: &PcmHistory<S>, start: &StageStart<S>) -> PcmHistory<S> {
         match &self.law {
             Law::History(_, law) => law.in_stage(history, start),
-            Law::Melting(..) | Law::Table(_) => *history,
+            Law::Melting(..) | Law::Table(_) | Law::Sensible(_) => *history,
         }
     }
 
@@ -304,7 +340,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn next(&self, history: &PcmHistory<S>, temperature: S, fraction: S, step: f64) -> PcmHistory<S> {
         match &self.law {
             Law::History(_, law) => law.next(history, temperature, fraction, step),
-            Law::Melting(..) | Law::Table(_) => PcmHistory::new(fraction, temperature),
+            Law::Melting(..) | Law::Table(_) | Law::Sensible(_) => PcmHistory::new(fraction, temperature),
         }
     }
 
@@ -312,7 +348,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn complete(&self, history: &PcmHistory<S>) -> PcmHistory<S> {
         match &self.law {
             Law::History(_, law) => law.complete(history),
-            Law::Melting(..) | Law::Table(_) => *history,
+            Law::Melting(..) | Law::Table(_) | Law::Sensible(_) => *history,
         }
     }
 
@@ -324,6 +360,7 @@ impl<S: Real> PcmCoefficients<S> {
             Law::Melting(_, curve) => (curve.peak(), curve.width()),
             Law::Table(table) => (table.peak(), table.width()),
             Law::History(_, law) => return law.limit(from, to, history),
+            Law::Sensible(_) => return to,
         };
         limit_at(from, to, peak, width)
     }
@@ -337,6 +374,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub fn limit_heat(&self, from: S, to: S, history: &PcmHistory<S>) -> S {
         match &self.law {
             Law::Melting(_, curve) if !curve.is_measured() => self.limit(from, to, history),
+            Law::Sensible(_) => to,
             Law::Melting(..) | Law::Table(_) | Law::History(..) => self.move_by_heat(from, to, history),
         }
     }
@@ -370,7 +408,7 @@ impl<S: Real> PcmCoefficients<S> {
     pub(crate) fn curvature(&self) -> Option<S> {
         match &self.law {
             Law::Melting(latent, curve) if curve.tanh().is_some() => Some(latent.heat / curve.width()),
-            Law::Melting(..) | Law::Table(_) | Law::History(..) => None,
+            Law::Melting(..) | Law::Table(_) | Law::History(..) | Law::Sensible(_) => None,
         }
     }
 
@@ -380,6 +418,7 @@ impl<S: Real> PcmCoefficients<S> {
             Law::Melting(_, curve) => curve.width(),
             Law::History(_, law) => law.width(),
             Law::Table(table) => table.width(),
+            Law::Sensible(_) => S::constant(NO_MELTING),
         }
     }
 
@@ -401,90 +440,8 @@ impl<S: Real> PcmCoefficients<S> {
             Law::Table(table) => {
                 return table.convex(temperature, self.volumetric_heat);
             }
+            Law::Sensible(_) => return (self.volumetric_heat[0] * temperature, self.volumetric_heat[0]),
         };
         self.heat(*latent, (temperature, true), fraction, slope)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::input::description::{MeltingCurve, ParamId, TablePoints};
-    use crate::number::dual::Dual;
-
-    type D = Dual<1>;
-
-    fn ids<const N: usize>(first: u32) -> [ParamId; N] {
-        core::array::from_fn(|i| ParamId(first + u32::try_from(i).unwrap()))
-    }
-
-    fn check_slopes(law: &PcmLaw, numbers: &[f64]) {
-        let numbers: Vec<D> = numbers.iter().map(|&v| D::constant(v)).collect();
-        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), law);
-        let memory = PcmHistory::new(D::zero(), D::zero());
-        let mut last = f64::NEG_INFINITY;
-        for i in 0..400 {
-            let t = 10.0 + 0.083 * f64::from(i);
-            let point = pcm.at(D::variable(t, 0), &memory);
-            assert!((point.enthalpy.slope[0] / point.capacity.value - 1.0).abs() < 1e-9, "capacity at {t}");
-            let slope = point.conductivity.slope[0] - point.conductivity_slope.value;
-            assert!(slope.abs() < 1e-12, "conductivity at {t}");
-            let slope = point.potential.slope[0] - point.conductivity.value;
-            assert!(slope.abs() < 1e-12, "potential at {t}");
-            assert!(point.enthalpy.value > last);
-            last = point.enthalpy.value;
-        }
-    }
-
-    /// Energain, reference/paper Table 2.
-    const ENERGAIN: [f64; 6] = [0.22, 0.18, 855.0, 855.0, 3134.0, 2833.0];
-
-    #[test]
-    fn capacity_is_the_derivative_of_enthalpy() {
-        let [latent_heat, melting_temperature, gamma, delta_t] = ids(6);
-        let curve = MeltingCurve::TanhGamma { melting_temperature, gamma, delta_t };
-        let law = PcmLaw::Melting { latent_heat, curve };
-        check_slopes(&law, &[&ENERGAIN[..], &[71e3, 23.4, 0.04, 0.01]].concat());
-        let [temperature_shift, enthalpy_scale] = ids(6);
-        let law = PcmLaw::Tabulated {
-            temperatures: vec![15.0, 20.0, 22.0, 23.0, 25.0, 30.0],
-            points: TablePoints::Enthalpies(vec![0.0, 16e3, 40e3, 70e3, 90e3, 104e3]),
-            melting_range: [18.0, 25.0],
-            temperature_shift,
-            enthalpy_scale,
-        };
-        check_slopes(&law, &[&ENERGAIN[..], &[0.4, 1.1]].concat());
-    }
-
-    #[test]
-    fn melting_takes_up_the_latent_heat() {
-        let [latent_heat, melting_temperature, width] = ids(6);
-        let law =
-            PcmLaw::Melting { latent_heat, curve: MeltingCurve::TanhWidth { melting_temperature, width } };
-        let numbers = [&ENERGAIN[..], &[71e3, 23.4, 1.0]].concat();
-        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
-        let memory = PcmHistory::new(0.0, 0.0);
-        let rise = pcm.at(33.4, &memory).enthalpy - pcm.at(13.4, &memory).enthalpy;
-        let expected = 855.0 * (71e3 + 10.0 * 3134.0 + 10.0 * 2833.0);
-        assert!((rise / expected - 1.0).abs() < 1e-7);
-    }
-
-    #[test]
-    fn table_passes_through_its_points() {
-        let [temperature_shift, enthalpy_scale] = ids(6);
-        let (temperatures, enthalpies) = (vec![10.0, 20.0, 24.0, 40.0], vec![0.0, 20e3, 90e3, 130e3]);
-        let law = PcmLaw::Tabulated {
-            temperatures: temperatures.clone(),
-            points: TablePoints::Enthalpies(enthalpies.clone()),
-            melting_range: [20.0, 24.0],
-            temperature_shift,
-            enthalpy_scale,
-        };
-        let numbers = [&ENERGAIN[..], &[0.0, 1.0]].concat();
-        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
-        let memory = PcmHistory::new(0.0, 0.0);
-        for (t, h) in temperatures.iter().zip(&enthalpies) {
-            assert!((pcm.at(*t, &memory).enthalpy - 855.0 * h).abs() < 1e-6 * 855.0 * 130e3);
-        }
     }
 }

@@ -211,7 +211,7 @@ impl CurveText<'_> {
         let variables = [Some(units::KELVIN); VARIABLES.len()];
         let units = units::of_numbers(&variables, self.numbers)?;
         let Some(units) = units else { return Ok(()) };
-        let stated = units::Stated { units: &units, values: &values, variables: 1 };
+        let stated = units::Stated { units: &units, values: &values, changing: &[0] };
         let at = |fault| FormulaFault { key: "formula".into(), fault };
         stated.check(&text.tree, units::NONE).map_err(at)
     }

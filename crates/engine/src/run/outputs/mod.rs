@@ -9,12 +9,13 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::Real;
+use crate::physics::formula::expression::MOST;
 use crate::physics::globe::globe_temperature;
 use crate::physics::psychrometrics::{dew_point, relative_humidity, wet_bulb};
 use crate::step::readings::Readings;
 use crate::step::state::State;
 
-use row::{At, Place, outputs, require};
+use row::{At, Place, is_kind, outputs, require};
 pub use row::{Entry, Of, Row, Time};
 use values::{
     interface_temperature, layer_flux, layer_mean, mean_radiant, sensor_temperature, solar_transmittance,
@@ -246,6 +247,25 @@ outputs! {
     Sensor { sensor } =
         Row::state(Of::Sensor, "SENSOR.temperature", "degC", "Temperature of a sensor").usual(),
         |at| sensor_temperature(&at, sensor);
+
+    /// What the formula of an entry of `derived_outputs` gives.
+    Derived { derived } =
+        Row::state(Of::Derived, "NAME", "-", "Derived output"),
+        |at| derived_output(&at, derived);
+}
+
+/// The value of a derived output from those of the outputs that its formula uses.
+// Outputs are read by outputs: no inlining.
+#[inline(never)]
+fn derived_output<S: Real>(at: &At<'_, S>, derived: usize) -> S {
+    let mut quantities = [S::zero(); MOST];
+    let of = &at.plan.description.outputs[derived].of;
+    for (quantity, used) in quantities.iter_mut().zip(of) {
+        if let Some(output) = Output::at(&used.kind, &used.place) {
+            *quantity = output.read(at.plan, at.step, at.state);
+        }
+    }
+    at.step.model.coefficients.outputs[derived].value(&quantities[..of.len()])
 }
 
 impl Output {
@@ -254,7 +274,18 @@ impl Output {
     /// # Errors
     /// [`EngineError::Input`].
     pub fn check(&self, plan: &Plan) -> Result<(), EngineError> {
-        require(self.row().of, plan, &self.place(), self)
+        require(self.row().of, plan, &self.place(), self)?;
+        let Self::Derived { derived } = *self else { return Ok(()) };
+        for used in &plan.description.outputs[derived].of {
+            let output = Self::at(&used.kind, &used.place).ok_or_else(|| {
+                EngineError::Input(format!(
+                    "{}: found the kind '{}', expected one of the table",
+                    used.name, used.kind
+                ))
+            })?;
+            output.check(plan)?;
+        }
+        Ok(())
     }
 
     /// The part of the building that it is read at, for messages.
@@ -265,7 +296,7 @@ impl Output {
     /// Whether it is the mean over the step of the sun that surfaces absorb, which is averaged on request only.
     #[must_use]
     pub fn averages_absorbed_sun(&self) -> bool {
-        matches!(self, Self::AbsorbedSolar { .. })
+        matches!(self, Self::AbsorbedSolar { .. } | Self::Derived { .. })
     }
 }
 
@@ -287,6 +318,7 @@ mod tests {
             Of::Control => r#", "control": 0"#,
             Of::Building => "",
             Of::Sensor => r#", "sensor": 0"#,
+            Of::Derived => r#", "derived": 0"#,
             _ => r#", "zone": 0"#,
         };
         let table = Output::table();
@@ -294,6 +326,7 @@ mod tests {
             let text = format!(r#"{{"kind": "{}"{}}}"#, entry.kind, positions(entry.row.of));
             let output: Output = serde_json::from_str(&text).expect(&text);
             assert_eq!(*output.row(), entry.row);
+            assert_eq!(Output::at(&entry.kind, &output.place()), Some(output));
         }
         assert_eq!(table[1].kind, "mean_radiant_temperature");
         assert_eq!(table[0].meaning, "Temperature of the air");

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::error::EngineError;
+pub(super) use crate::input::description::OutputPlace as Place;
 use crate::number::real::Real;
 use crate::step::readings::Readings;
 use crate::step::state::State;
@@ -104,19 +105,6 @@ impl Entry {
     }
 }
 
-/// Positions of a quantity in the description; those that its row does not use are zero.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) zone: usize,
-    pub(super) surface: usize,
-    pub(super) side: usize,
-    pub(super) layer: usize,
-    pub(super) interface: usize,
-    pub(super) vent: usize,
-    pub(super) control: usize,
-    pub(super) sensor: usize,
-}
-
 /// Parts of a building that have a quantity. `python/mascarin/building/outputs/locations.py` lists the parts of a description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -167,6 +155,8 @@ pub enum Of {
     Building,
     /// Sensors.
     Sensor,
+    /// Derived outputs.
+    Derived,
 }
 
 impl Of {
@@ -196,6 +186,7 @@ impl Of {
             Self::Control => "every control",
             Self::Building => "every building",
             Self::Sensor => "every entry of `sensors`",
+            Self::Derived => "every entry of `derived_outputs`",
         }
     }
 
@@ -235,6 +226,7 @@ impl Of {
             Self::Control => at.control < description.controls.len(),
             Self::Building => true,
             Self::Sensor => at.sensor < description.sensors.len(),
+            Self::Derived => at.derived < description.outputs.len(),
         }
     }
 
@@ -268,6 +260,7 @@ impl Of {
             Self::Control => format!("control {}", description.controls[at.control].name),
             Self::Building => "the building".to_owned(),
             Self::Sensor => format!("sensor {}", description.sensors[at.sensor].name),
+            Self::Derived => format!("output {}", description.outputs[at.derived].name),
         }
     }
 }
@@ -328,6 +321,14 @@ macro_rules! outputs {
                 }
             }
 
+            /// An output by its kind, as in JSON, and its place.
+            pub(super) fn at(kind: &str, place: &Place) -> Option<Self> {
+                $(if is_kind(kind, stringify!($variant)) {
+                    return Some(Self::$variant $({ $($position: place.$position),+ })?);
+                })+
+                None
+            }
+
             /// Reads the quantity after a step.
             pub(crate) fn read<S: Real>(&self, plan: &Plan, step: &Readings<'_, S>, state: &State<S>) -> S {
                 let now = At { plan, step, state };
@@ -342,6 +343,12 @@ macro_rules! outputs {
     };
 }
 pub(super) use outputs;
+
+/// Whether a kind is that of a variant, which is written without `_` and with capitals.
+pub(super) fn is_kind(kind: &str, variant: &str) -> bool {
+    let letters = kind.bytes().filter(|letter| *letter != b'_');
+    letters.eq(variant.bytes().map(|letter| letter.to_ascii_lowercase()))
+}
 
 /// Checks that the engine can read a quantity of some parts at a place.
 ///

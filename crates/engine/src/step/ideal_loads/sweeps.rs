@@ -187,7 +187,7 @@ impl<S: Real> Stepper<'_, S> {
                 let (cells, solver) = (&self.model.parts.nonlinear_cells, &mut self.solver);
                 self.ideal_loads.guess(index, cells, &mut solver.iterate, &mut solver.solution);
             } else {
-                self.weather.set_stage(&self.model, weather, tableau, part, index);
+                self.weather.set_stage(&self.model, weather, tableau, (part, index), &state.air);
                 self.drive_vents(state);
                 if self.ideal_loads.continues {
                     self.correct_guess(state, index);

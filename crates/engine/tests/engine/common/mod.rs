@@ -80,6 +80,7 @@ impl Builder {
             horizon: Vec::new(),
         };
         let description = Description {
+            outputs: Vec::new(),
             parameters,
             site,
             materials: Vec::new(),
@@ -194,6 +195,7 @@ impl Builder {
             volume: self.number(&format!("zones.{name}.volume"), volume),
             capacity_factor: self.number(&format!("zones.{name}.capacity_factor"), 1.0),
             infiltration: Infiltration {
+                law: None,
                 constant: self.number(&format!("zones.{name}.infiltration.constant"), air_changes),
                 temperature: self.number(&format!("zones.{name}.infiltration.temperature"), 0.0),
                 wind: self.number(&format!("zones.{name}.infiltration.wind"), 0.0),

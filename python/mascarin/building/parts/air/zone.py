@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from mascarin.building import quantities as q
 from mascarin.building.base.names import ControlName, Name, ScheduleName, ZoneName
@@ -16,6 +16,7 @@ from mascarin.building.parts.air.measured_values import Driven
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.surface import Linearised, NoLongwave
+from mascarin.building.parts.materials.text_law import InfiltrationLaw
 
 BROWN_SOLVASON = "Brown & Solvason 1962, doi:10.1016/0017-9310(62)90184-9 (two-way flow through a door)"
 ASHRAE_OPENING = (
@@ -38,6 +39,26 @@ class Infiltration(Part):
     blower_door: PressureTest | None = Field(
         None, description="Infiltration by a pressure test, in addition: n50 [1/h], or a part with its kind"
     )
+
+
+class TextInfiltration(InfiltrationLaw, Infiltration):
+    """Infiltration as a formula, beside what the other keys add to it.
+
+    The formula may use ``dT`` (air of the zone minus outdoor air [K]), ``V`` (wind at the mast [m/s]), ``Ti``
+    and ``To`` (air of the zone and outdoor air [degC]), and the numbers given with it: [1/h].
+
+    Examples
+    --------
+    >>> law = TextInfiltration(formula="c*sqrt(0.02*abs(dT) + 0.01*V^2)", c={"value": 0.8, "range": [0.2, 2]})
+    >>> law.value(20.0, 3.0).round(4).tolist()
+    0.56
+    """
+
+
+def _infiltration_kind(raw: Any) -> str:
+    if isinstance(raw, Mapping):
+        return "text" if "formula" in raw else "parts"
+    return "text" if isinstance(raw, TextInfiltration) else "parts"
 
 
 class Radiosity(Part):
@@ -264,9 +285,13 @@ class Zone(Part):
 
     volume: q.Volume | None = None
     capacity_factor: q.CapacityFactor = Number(1.0, source=Remark("air alone, no furniture"), assumed=True)
-    infiltration: Annotated[Infiltration, Shorthand(number="constant")] = Field(
+    infiltration: Annotated[
+        Annotated[Infiltration, Tag("parts")] | Annotated[TextInfiltration, Tag("text")],
+        Discriminator(_infiltration_kind),
+        Shorthand(number="constant"),
+    ] = Field(
         default_factory=Infiltration,
-        description="Infiltration: a number [1/h], or its three parts",
+        description="Infiltration: a number [1/h], its three parts, or a formula",
     )
     longwave: ZoneLongwave = Field(
         default_factory=lambda: Radiosity(kind="radiosity"),

@@ -158,7 +158,7 @@ def is_law(convection: Convection | None, kind: str) -> TypeGuard[ConvectionLaw]
 def by_wind_direction(convection: Convection | None) -> bool:
     """Whether a coefficient depends on the direction of the wind."""
     if isinstance(convection, FormulaLaw):
-        return convection.uses("windward")
+        return convection.uses("windward") or convection.uses("wind_angle")
     return isinstance(convection, ConvectionLaw) and convection.row.wind_direction
 
 

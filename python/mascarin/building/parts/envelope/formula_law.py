@@ -26,12 +26,19 @@ PERIMETER: Final = "perimeter"
 StatedNumbers = tuple[tuple[str, float, Interval | None, str | None], ...]
 
 
+#: Whether wind reaches a side, whether its irradiance is known, whether it faces a zone; tilt of the normal
+#: into the air [deg], area [m2], density of the air [kg/m3], height above ground, where it has one [m].
+LawSide = tuple[tuple[bool, bool, bool], tuple[float, float, float, float | None]]
+
+
 class FormulaLaw(Formula):
     """A coefficient as a formula of the temperature difference and the wind; its numbers stand beside it.
 
     The formula may use ``dT`` (surface minus air [K]), ``V`` (wind at the surface [m/s]), ``windward`` (holds
     where the wind blows onto the surface), ``tilt`` [deg] and ``upward`` [-] of the normal into the air,
-    ``area`` [m2], ``density`` of the air [kg/m3], ``length`` and ``perimeter`` [m] of the surface, and the
+    ``area`` [m2], ``density`` of the air [kg/m3], ``length`` and ``perimeter`` [m] of the surface, the
+    temperatures ``Ts`` of the surface and ``Ta`` of the air [degC], ``wind_angle`` [deg], ``sun`` on the
+    plane of the side [W/m2] and ``height`` [m] outdoors, ``air_change`` of the zone [1/h] indoors, and the
     numbers given with it.
 
     Examples
@@ -68,9 +75,14 @@ class FormulaLaw(Formula):
         difference: npt.ArrayLike,
         wind: npt.ArrayLike = 0.0,
         *,
+        air: npt.ArrayLike = 20.0,
+        wind_angle: npt.ArrayLike = 0.0,
+        sun: npt.ArrayLike = 0.0,
+        air_change: npt.ArrayLike = 0.0,
         tilt: float = 90.0,
         area: float = 10.0,
         density: float = 1.2,
+        height: float = 3.0,
     ) -> npt.NDArray[np.float64]:
         """The coefficient as written, where the wind blows onto the surface.
 
@@ -80,17 +92,27 @@ class FormulaLaw(Formula):
             Temperature of the surface minus that of the air. [K]
         wind : array_like
             Wind at the surface. [m/s]
+        air : array_like
+            Temperature of the air. [degC]
+        wind_angle : array_like
+            Angle between the normal and the direction that the wind comes from. [deg]
+        sun : array_like
+            Irradiance of the plane of the side. [W/m2]
+        air_change : array_like
+            Outdoor air that flows into the zone. [1/h]
         tilt : float
             Angle between upwards and the normal into the air. [deg]
         area : float
             Area of the surface. [m2]
         density : float
             Density of the air. [kg/m3]
+        height : float
+            Height of the side above ground. [m]
 
         Returns
         -------
         ndarray
-            In the shape of difference and wind together. [W/(m2 K)]
+            In the shape of all arrays together. [W/(m2 K)]
 
         Raises
         ------
@@ -102,32 +124,32 @@ class FormulaLaw(Formula):
         >>> FormulaLaw(formula="2*abs(dT)^(1/3)").coefficient([8.0, -8.0]).round(6).tolist()
         [4.0, 4.0]
         """
-        both = np.broadcast_arrays(np.asarray(difference, float), np.asarray(wind, float))
-        flat = [np.ascontiguousarray(array.ravel()) for array in both]
+        inputs = (difference, wind, air, wind_angle, sun, air_change)
+        arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in inputs))
+        flat = [np.ascontiguousarray(array.ravel()) for array in arrays]
+        side = (tilt, area, density, height)
         try:
-            values = _engine.formula_values(self.formula, list(self.stated), (tilt, area, density), *flat)
+            values = _engine.formula_values(self.formula, list(self.stated), side, flat)
         except _engine.EngineInputError as error:
             raise InputError(f"formula: {error}") from None
-        return values.reshape(both[0].shape)
+        return values.reshape(arrays[0].shape)
 
     def at_values(self, values: Mapping[str, float]) -> FormulaLaw:
         """The same law with other values of its numbers, without their ranges."""
         numbers = {name: float(values.get(name, number)) for name, number in self.numbers.items()}
         return FormulaLaw(formula=self.formula, valid=self.valid, numbers=numbers)
 
-    def faults(self, location: Location, side: tuple[float, float, float], *, wind: bool) -> Iterator[Any]:
+    def faults(self, location: Location, side: LawSide) -> Iterator[Any]:
         """What is wrong with it at a side of a surface.
 
         Parameters
         ----------
         location : tuple
             Path of the law.
-        side : tuple of float
-            Tilt of the normal into the air [deg], area [m2], density of the air [kg/m3].
-        wind : bool
-            Whether wind reaches the side.
+        side : tuple
+            What the side gives to the law.
         """
-        defect = _checked(self.formula, self.valid, self.stated, side, wind=wind)
+        defect = _checked(self.formula, self.valid, self.stated, side)
         if defect is not None:
             key, line, column, *words = defect
             in_text = key in ("formula", "valid")
@@ -136,6 +158,6 @@ class FormulaLaw(Formula):
 
 @lru_cache(maxsize=512)
 def _checked(
-    formula: str, valid: str | None, stated: StatedNumbers, side: tuple[float, float, float], *, wind: bool
+    formula: str, valid: str | None, stated: StatedNumbers, side: LawSide
 ) -> tuple[str, int, int, str, str, str] | None:
-    return _engine.check_formula(formula, valid, list(stated), wind, side)
+    return _engine.check_formula(formula, valid, list(stated), side)

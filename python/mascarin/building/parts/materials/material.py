@@ -24,6 +24,7 @@ from mascarin.building.parts.materials.phase_change import (
     TableLaw,
 )
 from mascarin.building.parts.materials.products import DEFAULT_CURVE, expand
+from mascarin.building.parts.materials.text_law import ConductivityLaw
 
 
 class Solid(Part):
@@ -39,6 +40,23 @@ class Solid(Part):
     has_usual_kind: ClassVar[bool] = True
     kind: Literal["solid"] = "solid"
     conductivity: q.Conductivity
+    density: q.Density
+    specific_heat: q.SpecificHeat
+    source: str | None = Field(None, description="Where the properties come from")
+
+
+class VariableSolid(Part):
+    """A material whose conductivity changes with its temperature.
+
+    Examples
+    --------
+    >>> foam = VariableSolid(conductivity={"formula": "0.023 + 1e-4*T"}, density=35, specific_heat=1400)
+    >>> round(float(foam.conductivity), 4)
+    0.025
+    """
+
+    kind: Literal["variable"] = "variable"
+    conductivity: ConductivityLaw = Field(description="Conductivity as a formula of the temperature T [degC]")
     density: q.Density
     specific_heat: q.SpecificHeat
     source: str | None = Field(None, description="Where the properties come from")
@@ -222,11 +240,15 @@ def _only_compared(number: Number) -> Number:
 def _kind(raw: Any) -> str:
     if not isinstance(raw, Mapping):
         return str(getattr(raw, "kind", "solid"))
+    conductivity = raw.get("conductivity")
+    if "kind" not in raw and isinstance(conductivity, Mapping) and "formula" in conductivity:
+        return "variable"
     return "pcm" if raw.get("product") is not None else str(raw.get("kind", "solid"))
 
 
 Material = Annotated[
     Annotated[Solid, Tag("solid")]
+    | Annotated[VariableSolid, Tag("variable")]
     | Annotated[Resistance, Tag("resistance")]
     | Annotated[PhaseChangeMaterial, Tag("pcm")],
     Discriminator(_kind),

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, SupportsFloat
 
 from pydantic import Discriminator, Tag
 
 from mascarin.building import quantities as q
-from mascarin.building.base.number import Number
 from mascarin.building.base.part import Pair
 
 
@@ -54,13 +53,13 @@ SpecificHeatByPhase = Annotated[
 ]
 
 
-def phase(value: Number | Phases, name: str) -> float:
+def phase(value: SupportsFloat | Phases, name: str) -> float:
     """Value of a property in one phase.
 
     Parameters
     ----------
-    value : Number or Phases
-        The property, of both phases alike or of each. [its unit]
+    value : Number, law or Phases
+        The property, of both phases alike (a law at a usual temperature) or of each. [its unit]
     name : str
         ``solid`` or ``liquid``.
 
@@ -74,4 +73,4 @@ def phase(value: Number | Phases, name: str) -> float:
     >>> phase(PhaseDensities(solid=880, liquid=770), "liquid")
     770.0
     """
-    return float(value) if isinstance(value, Number) else float(getattr(value, name))
+    return float(getattr(value, name)) if isinstance(value, Phases) else float(value)

@@ -89,6 +89,6 @@ mod tests {
             0.0,
         );
         assert_close(coefficient(&law, 5.0, 4.0, false), 20.9);
-        assert_eq!(law.calm(), [5.7; 2]);
+        assert_eq!(law.calm()[..2], [5.7; 2]);
     }
 }

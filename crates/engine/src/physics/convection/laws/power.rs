@@ -167,6 +167,6 @@ mod tests {
         assert_close(coefficient(&plate, -16.0, 3.0, true), 0.3);
         // A vertical surface takes the upward numbers in both directions.
         assert_close(coefficient(&surface(&law, &numbers, 0.0), -16.0, 3.0, true), 6.5);
-        assert_eq!(plate.calm(), [1.0, 0.3]);
+        assert_eq!(plate.calm()[..2], [1.0, 0.3]);
     }
 }
