@@ -16,6 +16,8 @@ from mascarin.figures.files import save
 from mascarin.pages.study.data.folder import read_folder
 from mascarin.pages.study.figures.figure_files import Once, write_figures
 from mascarin.sensitivity.files import save_all
+from mascarin.study.calibrated import building_with_posterior
+from mascarin.study.carried.calibrated_building import FILE
 from mascarin.study.comfort_step import comfort_figures, comfort_table, rated
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
@@ -56,7 +58,16 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
+    calibrated = building_with_posterior(
+        findings.setup,
+        findings.fitted,
+        findings.calibration,
+        findings.prediction_intervals,
+        findings.combination,
+    )
+    calibrated.to_yaml(out / FILE)
     return [
+        out / FILE,
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,

@@ -11,6 +11,7 @@ from mascarin._io import display
 from mascarin.errors import InputError, did_you_mean
 from mascarin.pages import study as reports
 from mascarin.pages.study.data.folder import read_series
+from mascarin.study.calibrated import building_with_posterior
 from mascarin.study.document.whole import document
 from mascarin.study.findings import Findings
 from mascarin.study.outputs import run_facts
@@ -18,6 +19,8 @@ from mascarin.study.tables import metrics_table, tables_of
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from mascarin.building import Building
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,6 +131,13 @@ class StudyResults(Findings):
             Ready for JSON.
         """
         return document(self)
+
+    @property
+    def building(self) -> Building:
+        """The calibrated building with its posterior; ``to_yaml`` writes it for other buildings to extend."""
+        return building_with_posterior(
+            self.setup, self.fitted, self.calibration, self.prediction_intervals, self.combination
+        )
 
     def report(self, path: str | Path = "report.html") -> Path:
         """Write the report: one HTML file that needs no network.

@@ -10,9 +10,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mascarin._io import atomic
+from mascarin.calibration.posterior_checks import NOT_STATED, Contradiction
 from mascarin.sensitivity.files import save_all
-from mascarin.study.calibrated import calibrated
+from mascarin.study.calibrated import building_with_posterior, calibrated
+from mascarin.study.carried.bands import carried_bands
+from mascarin.study.carried.calibrated_building import FILE
+from mascarin.study.carried.validation import Validation
 from mascarin.study.description import SensitivityPlan
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.errors import error_entries, error_tables, error_words
@@ -24,6 +30,7 @@ from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import fit_figures
 from mascarin.study.prediction_intervals import interval_table, interval_words
 from mascarin.study.predictive_checks import statements
+from mascarin.study.residuals_step import DRIVERS
 from mascarin.study.storage import Workspace
 from mascarin.study.tables import (
     criteria_table,
@@ -39,6 +46,7 @@ if TYPE_CHECKING:
 
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
+    from mascarin.study.carried.bands import Bands
     from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
 
@@ -139,11 +147,14 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
             "calibration_criteria": criteria_table(verdicts),
             "quality": quality_table(study.quality),
         }
-        _write(workspace, "calibration", content, tables, fit_figures(fit, profiles, out / "figures"))
+        calibrated_file = out / FILE
+        building_with_posterior(study, fitted, fit, intervals, found.combination).to_yaml(calibrated_file)
+        further = [calibrated_file, *fit_figures(fit, profiles, out / "figures")]
+        _write(workspace, "calibration", content, tables, further)
     return content
 
 
-def validation(study: Setup, out: Path | None) -> dict[str, Any]:
+def validation(study: Setup, out: Path | None) -> Validation:
     """Comparison of the uncalibrated model with the measurements.
 
     Parameters
@@ -155,20 +166,20 @@ def validation(study: Setup, out: Path | None) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        What validation.json holds.
+    Validation
+        What validation.json and series.csv hold.
     """
     if out is None:
         return _validated(study)[0]
     with Workspace(out, study.inputs()) as workspace:  # raises before the run if the folder cannot be used
-        content, tables, run = _validated(study)
+        validated, tables = _validated(study)
         series = out / "series.csv"
-        atomic.write(series, validation_series(study, run).to_csv(index=False, lineterminator="\n"))
-        _write(workspace, "validation", content, tables, [series])
-    return content
+        atomic.write(series, validated.to_dataframe().to_csv(index=False, lineterminator="\n"))
+        _write(workspace, "validation", validated.to_dict(), tables, [series])
+    return validated
 
 
-def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
+def _validated(study: Setup) -> tuple[Validation, dict[str, pd.DataFrame]]:
     run = nominal(study)
     verdicts = judged(study, run)
     tables = {
@@ -176,12 +187,42 @@ def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame], M
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
+    bands, words = _carried(study, run)
     content = {
-        "contradictions": [one.to_dict() for one in statements(study)],
+        "contradictions": [one.to_dict() for one in (*words, *statements(study))],
         **header(study, "validate"),
         **comparison({"nominal": run}, verdicts),
     }
-    return content, tables, run
+    series = validation_series(study, run)
+    if bands is not None:
+        units = [output.unit for output in run.results.outputs]
+        content["band"] = bands.entries(study.observation, study.used)
+        series = bands.beside(series, study.observation.names, units)
+    return Validation(content, series), tables
+
+
+def _carried(study: Setup, run: ModelRun) -> tuple[Bands | None, list[Contradiction]]:
+    """Bands of the posterior that the building has from another study, and where it extrapolates."""
+    posterior = study.building.posterior
+    if posterior is None:
+        return None, []
+    if not posterior.stated:
+        text = f"no bands: those of the study '{posterior.study}' are {NOT_STATED}"
+        return None, [Contradiction("period", "posterior", text)]
+    observation, outputs, stated = study.observation, [], []
+    for s, (name, sensor) in enumerate(study.plan.sensors.items()):
+        output = study.building.output(sensor.output)
+        sizes = sensor.stated_uncertainty(output.unit, name)
+        measured = np.abs(observation.measured[:, s])
+        size = float(np.mean(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
+        outputs.append(output.name)
+        stated.append(float(np.hypot(sizes.absolute, sizes.relative * size)))
+    weather = {
+        channel: observation.sampled(run.results.index, run.simulation.weather(channel))
+        for channel in DRIVERS.values()
+    }
+    bands = carried_bands(run.simulation, observation, posterior, outputs, stated, weather)
+    return bands, [Contradiction("period", "posterior", text) for text in bands.words]
 
 
 def _write(

@@ -28,6 +28,7 @@ from mascarin.study.prediction_intervals import interval_words, slopes
 from mascarin.study.residuals_step import error_sources, examined, too_few
 from mascarin.study.results import StudyResults
 from mascarin.study.setup import Setup
+from mascarin.study.steps import validation
 from mascarin.study.storage import Workspace
 from mascarin.study.writing import study_text, write_study
 from mascarin.validation.criteria import judge
@@ -35,6 +36,7 @@ from mascarin.validation.criteria import judge
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
+    from mascarin.study.carried.validation import Validation
     from mascarin.study.description import Periods, SensitivityPlan, Sensor, Variant
     from mascarin.validation.criteria import Criterion
     from mascarin.weather import Climate, Measurements
@@ -286,6 +288,31 @@ class Study(Setup):
             workspace.drop("diagnosis")
             workspace.drop(NAME)
         return results
+
+    def validate(self, out: str | Path | None = None) -> Validation:
+        """Compare the building as described with the measurements; nothing is calibrated.
+
+        A building that extends the ``calibrated.yaml`` of another study has a posterior: its bands are made
+        with it, and ``remarks`` says where it extrapolates.
+
+        Parameters
+        ----------
+        out : str or Path, optional
+            Folder for validation.json, series.csv and tables. Default: nothing is written.
+
+        Returns
+        -------
+        Validation
+            Metrics, series and bands.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be used.
+        SolverError
+            The run failed.
+        """
+        return validation(self, None if out is None else Path(out))
 
     def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
         """All steps, one after the other."""

@@ -18,6 +18,7 @@ from mascarin.building.parts.envelope.surface import Construction, Sensor, Surfa
 from mascarin.building.parts.materials.material import Material
 from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
+from mascarin.building.parts.posterior import Posterior
 from mascarin.building.parts.site import Site
 from mascarin.building.parts.zone_surfaces import Connections
 
@@ -60,6 +61,9 @@ class Description(Part):
         default_factory=dict,
         description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "
         "common factor, or by a common value",
+    )
+    posterior: Posterior | None = Field(
+        None, description="What a calibration found, as a study has written it; for bands of a comparison"
     )
 
     @cached_property
