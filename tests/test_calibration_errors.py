@@ -20,8 +20,8 @@ from mascarin.calibration.discrepancy import (
 from mascarin.calibration.joint_estimation import estimate_jointly
 from mascarin.calibration.joint_posterior import ErrorStatement, Linear, joint_posterior
 from mascarin.calibration.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
+from mascarin.calibration.sampling.truncated_normal import within_bounds
 from mascarin.calibration.sensor_errors import SensorError, error_columns
-from mascarin.calibration.truncated_normal import within_bounds
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import mascarin as mc
@@ -95,7 +96,7 @@ def test_another_season_widens_the_bands_and_says_so(bench: Bench) -> None:
         outputs=["wall.interface_1_temperature", "core.temperature"],
     )  # fmt: skip
     measured = run.to_dataframe().iloc[:-1]
-    measured.index = measured.index.tz_localize(None)
+    measured.index = pd.DatetimeIndex(measured.index).tz_localize(None)
     both = (
         table.resample("30min")
         .first()
@@ -137,5 +138,35 @@ def test_another_value_counts_as_known(bench: Bench) -> None:
 
 
 def test_days_are_those_of_the_clock_on_the_wall() -> None:
-    index = drivers(2).index.tz_localize("UTC+01:00")
+    index = pd.DatetimeIndex(drivers(2).index).tz_localize("UTC+01:00")
     assert np.bincount(day_numbers(index)).tolist() == [144, 144]
+
+
+def test_a_study_samples_its_posterior_and_writes_the_chains(bench: Bench, tmp_path: Path) -> None:
+    text = (bench.folder / "study.yaml").read_text(encoding="utf-8")
+    sampled = bench.folder / "sampled.yaml"
+    sampled.write_text(
+        text.replace("  starts: 2", "  starts: 2\n  posterior: sampled\n  draws: 150"), encoding="utf-8"
+    )
+    results = Study.from_yaml(sampled).run(tmp_path / "out", figures=False)
+    chains = results.calibration.posterior
+    assert chains is not None
+    assert chains.names == (*TRUTH, "joint offset", "core offset")
+    assert chains.draws.shape == (16, 150, 6)
+    assert (tmp_path / "out" / "posterior.nc").is_file()
+    assert "sampled with the model itself" in results.calibration.uncertainty_method
+    plain = mc.load(bench.folder / "out" / "calibrated.yaml").posterior
+    assert plain is not None
+    for path, low, high in zip(TRUTH, results.calibration.low, results.calibration.high, strict=True):
+        assert low < TRUTH[path] < high
+        _, bottom, top = plain.intervals[path]
+        assert 0.4 < (high - low) / (top - bottom) < 2.5, path
+
+
+def test_what_is_not_estimated_cannot_be_sampled(bench: Bench) -> None:
+    text = (bench.folder / "study.yaml").read_text(encoding="utf-8")
+    file = bench.folder / "refused.yaml"
+    scatter = text.replace("offset: 0.1, repeatability: 0.03", "offset: 0, uncertainty: 0.1")
+    file.write_text(scatter.replace("  starts: 2", "  starts: 2\n  posterior: sampled"), encoding="utf-8")
+    with pytest.raises(InputError, match="posterior: found sampled, expected linearized"):
+        Study.from_yaml(file)

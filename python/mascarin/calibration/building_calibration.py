@@ -23,6 +23,7 @@ from mascarin.calibration.stated_errors import (
     depth_paths,
     only_scatter,
     reason_not_to_estimate,
+    require_errors,
     require_supported,
     with_sensor_errors,
 )
@@ -185,6 +186,8 @@ def calibrate(
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
     errors, not_estimated = _estimates_errors(simulation, named, method, cost, begin)
+    reason = None if errors else (*not_estimated, "all sensors state that they have none")[0]
+    require_errors("linearized" if options is None else options.posterior, reason, "options: posterior")
     observation = observe(simulation, measurements, named, begin)
     all_samples = np.ones(len(observation.times), dtype=np.bool_)
     fit = solve(

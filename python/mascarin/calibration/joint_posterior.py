@@ -35,8 +35,10 @@ from mascarin.calibration.discrepancy import (
     hour_basis,
 )
 from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.sampled_posterior import ChainLengths, Coefficients, Simulate, sampled
+from mascarin.calibration.sampling.posterior_sample import PosteriorSample
+from mascarin.calibration.sampling.truncated_normal import within_bounds
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.truncated_normal import within_bounds
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -142,6 +144,8 @@ class JointPosterior:
         if the model of the errors is right; NaN where nothing was measured. [-]
     left_out, left_out_sd : ndarray, shape (D, H, S)
         The same difference, and its standard deviation given the sizes of the errors. [unit]
+    chains : PosteriorSample, optional
+        Chains of the parameters and errors of sensors, where the model itself was sampled.
     """
 
     z: Floats
@@ -158,6 +162,7 @@ class JointPosterior:
     whitened: Floats
     left_out: Floats
     left_out_sd: Floats
+    chains: PosteriorSample | None = None
 
     def quantile(self, confidence: float) -> float:
         """Half-width of an interval on other days, in standard deviations: Student's.
@@ -248,6 +253,9 @@ def joint_posterior(
     linear: Linear,
     stated: ErrorStatement,
     covariances: Discrepancy | None = None,
+    *,
+    simulate: Simulate | None = None,
+    lengths: ChainLengths | None = None,
 ) -> JointPosterior:
     """Estimate parameters and errors together from one linearization.
 
@@ -261,6 +269,11 @@ def joint_posterior(
         What is known of the errors.
     covariances : Discrepancy, optional
         Sizes of the errors of the model; drawn from their distribution when absent.
+    simulate : callable, optional
+        The model itself, from positions (M, P) to series (M, T, S). With it parameters and errors of sensors
+        are sampled by `mascarin.calibration.sampled_posterior`, in place of the linear model within bounds.
+    lengths : ChainLengths, optional
+        How long is sampled.
 
     Returns
     -------
@@ -290,13 +303,28 @@ def joint_posterior(
     bounded_sample = within_bounds(
         mean[:, limited], covariance[:, limited, limited], low[limited], high[limited]
     )
+    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
+    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
+    chains = None
+    if simulate is not None:
+        ends = low[limited], high[limited]
+        chains = _sampled(
+            problem,
+            linear,
+            data,
+            draws,
+            bounded_sample,
+            ends,
+            of_sensors,
+            simulate,
+            lengths or ChainLengths(),
+        )
+        bounded_sample = _coefficients_of(problem, chains)
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
     bounded_mean, bounded = moments_within(middle, together, bounded_sample)
     sample = bounded_sample[:, :count]
-    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
-    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
     z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
     whitened = gaussian.whitened(data.error).reshape(data.grid.days, data.grid.slots, data.sensors)
     return JointPosterior(
@@ -313,7 +341,58 @@ def joint_posterior(
         unlimited,
         whitened,
         *gaussian.days_left_out(data.error, data.sensors),
+        chains=chains,
     )
+
+
+def _sampled(
+    problem: CalibrationProblem,
+    linear: Linear,
+    data: DayData,
+    draws: CovarianceSample,
+    first: Floats,
+    ends: tuple[Floats, Floats],
+    of_sensors: tuple[str, ...],
+    simulate: Simulate,
+    lengths: ChainLengths,
+) -> PosteriorSample:
+    """Chains of parameters and errors of sensors, with the model itself."""
+    center, spread = _priors(problem)
+    count = center.size
+    shift, scale = np.zeros(ends[0].size), np.ones(ends[0].size)
+    shift[:count], scale[:count] = center, spread
+    mask = problem.mask
+
+    def misfit(coefficients: Floats) -> Floats:
+        z = np.clip(coefficients[:, :count] * spread + center, 0.0, 1.0)
+        straight = linear.simulated + np.einsum("tsp,mp->mts", linear.jacobian, z - linear.z, optimize=True)
+        away = np.where(mask, simulate(z) - straight, 0.0)
+        return np.array([data.grid.means(one, mask)[0] for one in away])
+
+    normal = np.array([p.prior is not None for p in problem.parameters] + [True] * len(of_sensors))
+    coefficients = Coefficients(
+        (ends[0] - shift) / scale, (ends[1] - shift) / scale, normal, (first - shift) / scale
+    )
+    chains = sampled(data, draws.covariances, coefficients, misfit, lengths)
+    values = chains.draws * scale + shift
+    flat = values[:, :, :count].reshape(-1, count)
+    values[:, :, :count] = problem.values(flat).reshape(values[:, :, :count].shape)
+    return PosteriorSample(
+        (*problem.paths, *of_sensors),
+        (*(p.unit for p in problem.parameters), *("-" for _ in of_sensors)),
+        values,
+        chains.log_density,
+        chains.accepted,
+        chains.diverged,
+    )
+
+
+def _coefficients_of(problem: CalibrationProblem, chains: PosteriorSample) -> Floats:
+    """Draws of all chains as positions and errors of sensors, shape (n, q). [-]"""
+    flat = chains.draws.reshape(-1, len(chains.names)).copy()
+    count = len(problem.parameters)
+    flat[:, :count] = [problem.positions(row) for row in flat[:, :count]]
+    return flat
 
 
 def numbered(count: int, names: tuple[str, ...]) -> tuple[str, ...]:

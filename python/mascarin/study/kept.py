@@ -40,6 +40,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.joint_posterior": ("JointPosterior",),
     "mascarin.calibration.problem": ("FitParameter",),
     "mascarin.calibration.result": ("Calibration", "Minimum"),
+    "mascarin.calibration.sampling.posterior_sample": ("PosteriorSample",),
     "mascarin.calibration.uncertainty": ("Uncertainty",),
     "mascarin.diagnosis.error_sources": ("Correction", "ErrorSources"),
     "mascarin.diagnosis.hypotheses": ("Cause", "Diagnosis"),

@@ -68,11 +68,17 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     calibrated.to_yaml(out / FILE)
     return [
         out / FILE,
+        *chains_file(findings.calibration, out),
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,
         *(out / name for name in WRITTEN),
     ]
+
+
+def chains_file(fit: Calibration, out: Path) -> list[Path]:
+    """Write the chains of a sampled posterior, for ArviZ; none of a linearized one."""
+    return [] if fit.posterior is None else [fit.posterior.to_netcdf(out / "posterior.nc")]
 
 
 def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:

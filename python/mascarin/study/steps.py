@@ -27,7 +27,7 @@ from mascarin.study.document.header import header
 from mascarin.study.document.sensitivity import analyzed_hours, importance
 from mascarin.study.document.whole import ESTIMATES
 from mascarin.study.model_runs import ModelRuns, judged, nominal
-from mascarin.study.outputs import fit_figures
+from mascarin.study.outputs import chains_file, fit_figures
 from mascarin.study.prediction_intervals import interval_table, interval_words
 from mascarin.study.predictive_checks import statements
 from mascarin.study.residuals_step import DRIVERS
@@ -149,7 +149,7 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
         }
         calibrated_file = out / FILE
         building_with_posterior(study, fitted, fit, intervals, found.combination).to_yaml(calibrated_file)
-        further = [calibrated_file, *fit_figures(fit, profiles, out / "figures")]
+        further = [calibrated_file, *chains_file(fit, out), *fit_figures(fit, profiles, out / "figures")]
         _write(workspace, "calibration", content, tables, further)
     return content
 

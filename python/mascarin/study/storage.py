@@ -40,6 +40,7 @@ WRITTEN: Final = ("study.json", RUN, REPORT)
 #: Files that single steps write into the result folder.
 OF_STEPS: Final = (
     "sensitivity.json", "calibration.json", "validation.json", "series.csv", "calibrated.yaml",
+    "posterior.nc",
 )  # fmt: skip
 #: Names of results in the folder of a study.
 _RESULT: Final = re.compile(

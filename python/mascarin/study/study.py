@@ -17,7 +17,7 @@ from mascarin.study import opening
 from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
 from mascarin.study.days_step import days
-from mascarin.study.derived_quantities import derived_quantities
+from mascarin.study.derived_quantities import derived_quantities, latent_heat_used
 from mascarin.study.diagnosis_step import diagnosis
 from mascarin.study.diagnosis_words import summary
 from mascarin.study.document.errors import error_words
@@ -364,7 +364,11 @@ class Study(Setup):
             seconds=time.monotonic() - began,
             combination=found.combination,
             contradictions=found.contradictions,
-            derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, joint)),
+            derived=kept(
+                workspace,
+                ("derived", at),
+                lambda: [*derived_quantities(fit, joint), *latent_heat_used(fitted, fit, joint)],
+            ),
         )
 
     def __repr__(self) -> str:

@@ -116,7 +116,8 @@ def with_posterior(
     }
     building = fit.building
     positions = _positions(fit, joint)
-    sample, others = as_reported(fit, positions), {}
+    sample = as_reported(fit, positions)
+    others: dict[str, float] = {}
     if joint is not None and numbers is not None:
         others, columns = _others(building, joint, numbers, positions)
         sample = np.column_stack([sample, columns])

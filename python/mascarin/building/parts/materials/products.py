@@ -66,7 +66,7 @@ def _with_hysteresis(expanded: dict[str, Any], given: Mapping[str, Any], one: Pr
     hysteresis = _cooling_fractions(given["hysteresis"], law, one)
     numbers = _melting(one)
     if _is_fractions(law):
-        numbers = {"latent_heat": _latent_heat(one, law)}
+        numbers = {"latent_heat": _with_tolerance(_latent_heat(one, law), one)}
     return numbers | expanded | {"law": law, "hysteresis": hysteresis}
 
 
@@ -240,7 +240,29 @@ def _table(one: Product, curve: Curve, name: str) -> dict[str, Any]:
         "curve": name,
         "temperatures": _noted(list(curve.temperatures), one),
         "enthalpies": _noted(list(enthalpies), one),
+        **_scale(one),
     }
+
+
+def _scale(one: Product) -> dict[str, Number]:
+    """Factor on the curve with the tolerance of the maker; none for a maker that states none."""
+    if one.heat_tolerance is None:
+        return {}
+    half, reason = one.heat_tolerance
+    span = (1.0 - half, 1.0 + half)
+    return {
+        "enthalpy_scale": Number(1.0, range=span, source=f"the curve as measured; {reason}", derived=True)
+    }
+
+
+def _with_tolerance(heat: Number, one: Product) -> Number:
+    """A latent heat with the tolerance of the maker as its range, unless the product has one."""
+    if one.heat_tolerance is None or heat.range is not None:
+        return heat
+    half, reason = one.heat_tolerance
+    span = (float(heat) * (1.0 - half), float(heat) * (1.0 + half))
+    source = f"{heat.source}; {reason}"
+    return Number(float(heat), range=span, source=source, assumed=heat.assumed, derived=True)
 
 
 def _by_melting_temperature(law: Any) -> bool:
@@ -252,8 +274,11 @@ def _by_melting_temperature(law: Any) -> bool:
 def _melting(one: Product) -> dict[str, Any]:
     known = {"latent_heat": one.number("latent_heat"), "melting_temperature": one.melting_temperature}
     half = f"half of the heating curve; {one.source}"
-    return {
+    numbers = {
         key: _noted(one.raw.get(key, value), one, half if key not in one.raw else None)
         for key, value in known.items()
         if value is not None
     }
+    if "latent_heat" in numbers:
+        numbers["latent_heat"] = _with_tolerance(numbers["latent_heat"], one)
+    return numbers
