@@ -192,3 +192,29 @@ def test_the_file_is_laid_out_as_inference_data(tmp_path: Path) -> None:
 def test_another_word_is_refused() -> None:
     with pytest.raises(InputError, match="posterior: found 'exact', expected linearized or sampled"):
         SearchOptions(posterior="exact")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("model_itself", [False, True])
+def test_an_interval_does_not_depend_on_another_estimate_being_at_its_end(model_itself: bool) -> None:
+    """Two parameters of which the data tell the sum alone: one is at its end, the other may be anywhere."""
+    effect = np.full((72, 1, 2), 2.0)
+
+    def simulate(points: Floats) -> Floats:
+        return np.asarray(np.einsum("tsp,mp->mts", effect, points))
+
+    measured = 1.0 + 0.05 * np.random.default_rng(8).standard_normal(72)  # the sum is one half
+    problem = CalibrationProblem(
+        (FitParameter("first", 0.0, 1.0), FitParameter("second", 0.0, 1.0)),
+        (FitSensor("room", measured, 0.2),),
+        simulate,
+    )
+    z = np.array([0.0, 0.5])  # the estimate of the first is at its end
+    linear = Linear(z, simulate(z[None])[0], effect, np.zeros((72, 1, 0)))
+    stated = ErrorStatement((SensorError(offset=0.0),), HOURS, 3600.0, np.array([5.0]))
+    found = joint_posterior(
+        problem, linear, stated, sizes(), simulate=simulate if model_itself else None, lengths=LENGTHS
+    )
+    low, high = np.quantile(found.sample, [0.025, 0.975], axis=0)
+    assert high[0] > 0.4
+    assert low[1] < 0.1
+    assert np.std(found.sample.sum(axis=1)) < 0.5 * np.std(found.sample[:, 1])

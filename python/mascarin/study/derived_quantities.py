@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from mascarin.building.engine_input.ratings import WindowRating
     from mascarin.calibration import Calibration
     from mascarin.calibration.joint_posterior import JointPosterior
-    from mascarin.study.findings import ModelRun
+    from mascarin.simulation.results import Results
+    from mascarin.simulation.simulation import Simulation
 
     Array = npt.NDArray[np.float64]
 
@@ -137,7 +138,7 @@ def _numbers(
 
 
 def latent_heat_used(
-    run: ModelRun, fit: Calibration, joint: JointPosterior | None = None
+    simulation: Simulation, results: Results, fit: Calibration, joint: JointPosterior | None = None
 ) -> list[DerivedQuantity]:
     """Compute the latent heat that phase-change layers take up on a day, with its interval.
 
@@ -146,8 +147,8 @@ def latent_heat_used(
 
     Parameters
     ----------
-    run : ModelRun
-        The calibrated model over the record; it records the liquid fractions.
+    simulation, results
+        The calibrated model over the record and its run, with the liquid fractions.
     fit, joint
         As for `derived_quantities`.
 
@@ -156,22 +157,22 @@ def latent_heat_used(
     list of DerivedQuantity
         One for each layer whose material states its latent heat.
     """
-    layers = melting_layers(run.simulation.building)
-    names = [output.name for output in run.results.outputs]
-    days = day_of(run.results.index)
+    layers = melting_layers(simulation.building)
+    names = [output.name for output in results.outputs]
+    days = day_of(results.index)
     if not layers or days is None:
         return []
     rows = _sample(fit, joint)[:_FEW_RUNS]
     paths, problem = fit.problem.paths, fit.problem
     values = np.concatenate([fit.x[None], problem.values(rows)])
-    base = run.simulation.vector(fit.values)
-    records, _, _ = run.simulation.ensemble(run.simulation.varied(list(paths), values, base))
+    base = simulation.vector(fit.values)
+    records, _, _ = simulation.ensemble(simulation.varied(list(paths), values, base))
     quantities, tail = [], 0.5 * (1.0 - fit.confidence)
     for layer in layers:
         ranges = daily_range(records[..., names.index(layer.liquid_fraction)], days)
         heats = []
         for value, part in zip(values, ranges, strict=True):
-            building = run.simulation.building.replace(dict(zip(paths, value.tolist(), strict=True)))
+            building = simulation.building.replace(dict(zip(paths, value.tolist(), strict=True)))
             heats.append(float(part) * latent_heat_of(building, layer) / 3600.0)
         if not np.isfinite(heats).all() or not any(heats):
             continue

@@ -103,9 +103,9 @@ def latent_heat_of(building: Building, layer: MeltingLayer) -> float:
     thickness = next(float(part.thickness or 0.0) for part in layers if str(part.name) == layer.layer)
     if material.latent_heat is None:
         return float("nan")
-    # Enthalpies are those of a mass, which is the same solid and liquid.
-    mass = solid_density(material) * thickness * float(surface.area or 0.0)
-    return mass * float(material.latent_heat)
+    # The latent heat of a volume is that of its liquid, as in `law_curve`.
+    volume = thickness * float(surface.area or 0.0)
+    return volume * _pair(material.density)[1] * float(material.latent_heat)
 
 
 def day_of(index: pd.DatetimeIndex) -> npt.NDArray[np.int64] | None:

@@ -367,7 +367,10 @@ class Study(Setup):
             derived=kept(
                 workspace,
                 ("derived", at),
-                lambda: [*derived_quantities(fit, joint), *latent_heat_used(fitted, fit, joint)],
+                lambda: [
+                    *derived_quantities(fit, joint),
+                    *latent_heat_used(fitted.simulation, fitted.results, fit, joint),
+                ],
             ),
         )
 
