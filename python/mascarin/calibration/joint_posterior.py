@@ -35,7 +35,7 @@ from mascarin.calibration.discrepancy import (
     hour_basis,
 )
 from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.sampled_posterior import ChainLengths, Coefficients, Simulate, sampled
+from mascarin.calibration.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.calibration.sampling.truncated_normal import within_bounds
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
@@ -307,19 +307,11 @@ def joint_posterior(
     names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
     chains = None
     if simulate is not None:
-        ends = low[limited], high[limited]
-        chains = _sampled(
-            problem,
-            linear,
-            data,
-            draws,
-            bounded_sample,
-            ends,
-            of_sensors,
-            simulate,
-            lengths or ChainLengths(),
-        )
-        bounded_sample = _coefficients_of(problem, chains)
+        chains = chains_of(
+            problem, data, draws.covariances, bounded_sample, (low[limited], high[limited]), _priors(problem),
+            of_sensors, _departure(linear, simulate), lengths or ChainLengths(),
+        )  # fmt: skip
+        bounded_sample = coefficients_of(problem, chains)
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
@@ -328,71 +320,20 @@ def joint_posterior(
     z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
     whitened = gaussian.whitened(data.error).reshape(data.grid.days, data.grid.slots, data.sensors)
     return JointPosterior(
-        z,
-        bounded_mean,
-        bounded,
-        sample,
-        draws.typical,
-        names,
-        gaussian.left_out(data.error),
-        gaussian.log_density(data.error),
-        scale[:count],
-        beyond,
-        unlimited,
-        whitened,
-        *gaussian.days_left_out(data.error, data.sensors),
-        chains=chains,
-    )
+        z, bounded_mean, bounded, sample, draws.typical, names, gaussian.left_out(data.error),
+        gaussian.log_density(data.error), scale[:count], beyond, unlimited, whitened,
+        *gaussian.days_left_out(data.error, data.sensors), chains=chains,
+    )  # fmt: skip
 
 
-def _sampled(
-    problem: CalibrationProblem,
-    linear: Linear,
-    data: DayData,
-    draws: CovarianceSample,
-    first: Floats,
-    ends: tuple[Floats, Floats],
-    of_sensors: tuple[str, ...],
-    simulate: Simulate,
-    lengths: ChainLengths,
-) -> PosteriorSample:
-    """Chains of parameters and errors of sensors, with the model itself."""
-    center, spread = _priors(problem)
-    count = center.size
-    shift, scale = np.zeros(ends[0].size), np.ones(ends[0].size)
-    shift[:count], scale[:count] = center, spread
-    mask = problem.mask
+def _departure(linear: Linear, simulate: Simulate) -> Simulate:
+    """From positions (M, P) to the difference of the model from the linear one (M, T, S). [unit]"""
 
-    def misfit(coefficients: Floats) -> Floats:
-        z = np.clip(coefficients[:, :count] * spread + center, 0.0, 1.0)
-        straight = linear.simulated + np.einsum("tsp,mp->mts", linear.jacobian, z - linear.z, optimize=True)
-        away = np.where(mask, simulate(z) - straight, 0.0)
-        return np.array([data.grid.means(one, mask)[0] for one in away])
+    def departure(z: Floats) -> Floats:
+        along = np.einsum("tsp,mp->mts", linear.jacobian, z - linear.z, optimize=True)
+        return np.asarray(simulate(z) - linear.simulated - along)
 
-    normal = np.array([p.prior is not None for p in problem.parameters] + [True] * len(of_sensors))
-    coefficients = Coefficients(
-        (ends[0] - shift) / scale, (ends[1] - shift) / scale, normal, (first - shift) / scale
-    )
-    chains = sampled(data, draws.covariances, coefficients, misfit, lengths)
-    values = chains.draws * scale + shift
-    flat = values[:, :, :count].reshape(-1, count)
-    values[:, :, :count] = problem.values(flat).reshape(values[:, :, :count].shape)
-    return PosteriorSample(
-        (*problem.paths, *of_sensors),
-        (*(p.unit for p in problem.parameters), *("-" for _ in of_sensors)),
-        values,
-        chains.log_density,
-        chains.accepted,
-        chains.diverged,
-    )
-
-
-def _coefficients_of(problem: CalibrationProblem, chains: PosteriorSample) -> Floats:
-    """Draws of all chains as positions and errors of sensors, shape (n, q). [-]"""
-    flat = chains.draws.reshape(-1, len(chains.names)).copy()
-    count = len(problem.parameters)
-    flat[:, :count] = [problem.positions(row) for row in flat[:, :count]]
-    return flat
+    return departure
 
 
 def numbered(count: int, names: tuple[str, ...]) -> tuple[str, ...]:

@@ -26,7 +26,9 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.day_blocks import DayGaussian
 from mascarin.calibration.discrepancy import DayData, Discrepancy
+from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sampling.nuts import StepSize, moved
+from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -167,6 +169,70 @@ def sampled(
         accepted / max(tried, 1),
         diverged,
     )
+
+
+def chains_of(
+    problem: CalibrationProblem,
+    data: DayData,
+    sizes: Sequence[Discrepancy],
+    first: Floats,
+    ends: tuple[Floats, Floats],
+    priors: tuple[Floats, Floats],
+    of_sensors: tuple[str, ...],
+    departure: Simulate,
+    lengths: ChainLengths,
+) -> PosteriorSample:
+    """Chains of parameters and errors of sensors, with the model itself.
+
+    Parameters
+    ----------
+    problem, data, sizes, lengths
+        As for `sampled`.
+    first : ndarray, shape (n, q)
+        Positions and errors of sensors about which the chains begin. [-]
+    ends : tuple of ndarray, shape (q,)
+        Lowest and highest of each. [-]
+    priors : tuple of ndarray, shape (P,)
+        Mean and standard deviation of each position before the data. [-]
+    of_sensors : tuple of str
+        Names of the errors of sensors.
+    departure : callable
+        From positions (M, P) to the difference of the model from the linear one (M, T, S). [unit]
+    """
+    center, spread = priors
+    count, mask = center.size, problem.mask
+    shift, scale = np.zeros(ends[0].size), np.ones(ends[0].size)
+    shift[:count], scale[:count] = center, spread
+
+    def misfit(coefficients: Floats) -> Floats:
+        z = np.clip(coefficients[:, :count] * spread + center, 0.0, 1.0)
+        away = np.where(mask, departure(z), 0.0)
+        return np.array([data.grid.means(series, mask)[0] for series in away])
+
+    normal = np.array([p.prior is not None for p in problem.parameters] + [True] * len(of_sensors))
+    coefficients = Coefficients(
+        (ends[0] - shift) / scale, (ends[1] - shift) / scale, normal, (first - shift) / scale
+    )
+    chains = sampled(data, sizes, coefficients, misfit, lengths)
+    values = chains.draws * scale + shift
+    flat = values[:, :, :count].reshape(-1, count)
+    values[:, :, :count] = problem.values(flat).reshape(values[:, :, :count].shape)
+    return PosteriorSample(
+        (*problem.paths, *of_sensors),
+        (*(p.unit for p in problem.parameters), *("-" for _ in of_sensors)),
+        values,
+        chains.log_density,
+        chains.accepted,
+        chains.diverged,
+    )
+
+
+def coefficients_of(problem: CalibrationProblem, chains: PosteriorSample) -> Floats:
+    """Draws of all chains as positions and errors of sensors, shape (n, q). [-]"""
+    flat = chains.draws.reshape(-1, len(chains.names)).copy()
+    count = len(problem.parameters)
+    flat[:, :count] = [problem.positions(row) for row in flat[:, :count]]
+    return flat
 
 
 class _Linear:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part
@@ -62,7 +62,7 @@ class Description(Part):
         description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "
         "common factor, or by a common value",
     )
-    posterior: Posterior | None = Field(
+    posterior: Annotated[Posterior | None, WithJsonSchema({"type": "object"})] = Field(
         None, description="What a calibration found, as a study has written it; for bands of a comparison"
     )
 
