@@ -82,3 +82,29 @@ def test_the_effective_capacity_is_what_a_degree_stores_in_the_steady_state(tmp_
         stored += area * 0.2 * 1500.0 * 800.0 * (film + 2.5 + 0.2) / total
     assert found.capacity == pytest.approx(stored / 3600.0)
     assert found.time_constant == pytest.approx(found.capacity / found.total)
+
+
+def test_the_solar_aperture_of_a_room_by_hand(tmp_path: Path) -> None:
+    """The facade passes the part of the absorbed heat that its inner resistances leave."""
+    room = _room(tmp_path)
+    facade = 1.0 / (OUTSIDE + 0.1 / 0.04 + 0.2 / 0.5 + 1.0 / 8.0)
+    assert heat_loss(room).apertures == pytest.approx({"opaque": 0.5 * facade * OUTSIDE * 20.0})
+    described = room.to_dict()
+    for surface in described["surfaces"].values():
+        surface["inside"]["absorptance"] = 0.6
+    described["surfaces"]["partition"]["outside"]["absorptance"] = 0.6
+    glazed = Building.from_dict(
+        described
+        | {
+            "glazings": {"double": {"kind": "simple", "u_value": 1.1, "solar_heat_gain": 0.6}},
+            "windows": {
+                "south": {
+                    "surface": "facade", "glazing": "double", "area": 5,
+                    "outside": {"convection": 20}, "inside": {"convection": 8},
+                }
+            },
+        }
+    )  # fmt: skip
+    apertures = heat_loss(glazed).apertures
+    assert apertures["opaque"] == pytest.approx(0.5 * facade * OUTSIDE * 15.0)
+    assert apertures["windows"] == pytest.approx(0.6 * 5.0, rel=0.02)  # as the engine rates the glass

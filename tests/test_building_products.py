@@ -214,3 +214,16 @@ def test_a_curve_that_is_not_used_is_said() -> None:
     assert "RT25HC melts by its heating curve" in said("product: RT25HC, law: cooling")[0]
     assert said("product: RT25HC, hysteresis: {model: curve_switch}") == []
     assert said("product: RT28HC") == said("product: RT25HC, law: {kind: tanh, width: 1}") == []
+
+
+def test_the_heat_of_a_product_has_the_tolerance_of_its_maker() -> None:
+    """Within 7.5 % by the maker and 10 % between calorimeters: both in quadrature, 12.5 %."""
+    scale = building("product: RT25HC").parameter("materials.pcm.law.enthalpy_scale")
+    assert (scale.low, scale.high) == pytest.approx((0.875, 1.125))
+    assert "data sheets of Rubitherm" in (scale.source or "")
+    latent = building("product: RT25HC, law: {kind: tanh, width: 1}").parameter("materials.pcm.latent_heat")
+    assert (latent.low / latent.value, latent.high / latent.value) == pytest.approx((0.875, 1.125))
+    stated = building("product: RT25HC, law: {enthalpy_scale: {value: 1, range: [0.99, 1.01]}}")
+    assert stated.parameter("materials.pcm.law.enthalpy_scale").high == 1.01
+    other = building("product: Energain").parameter("materials.pcm.latent_heat")
+    assert (other.low / other.value, other.high / other.value) == pytest.approx((0.9, 1.1))

@@ -21,7 +21,7 @@ from mascarin.calibration.errors.joint_estimation import estimate_jointly
 from mascarin.calibration.errors.joint_posterior import ErrorStatement, Linear, joint_posterior
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
-from mascarin.calibration.errors.truncated_normal import within_bounds
+from mascarin.calibration.sampling.truncated_normal import within_bounds
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]

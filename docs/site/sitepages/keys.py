@@ -27,6 +27,7 @@ from mascarin.building.base.part import Part
 from mascarin.building.json_schemas import json_schema
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import ConvectionLaw
+from mascarin.building.parts.posterior import Posterior
 from sitepages.snippets import Snippets
 
 #: Steps of a path that the user names.
@@ -86,6 +87,8 @@ def parts() -> dict[type[Part], list[str]]:
         for name, field in kind.model_fields.items():
             step = f"{path}.{name}" if path else name
             for inner, named in inside(field.annotation):
+                if inner is Posterior:
+                    continue  # written by a study, and sealed: nobody writes its keys
                 visit(inner, f"{step}.{_NAMES.get(name, 'NAME')}" if named else step)
 
     visit(Description, "")
@@ -175,6 +178,8 @@ def holds(annotation: Any) -> str:
         if pieces[-1] is Ellipsis:
             return f"list of {holds(pieces[0])}"
         return f"list of {len(pieces)}: {holds(pieces[0])}"
+    if annotation is Posterior:
+        return "section written by a study"
     if isinstance(annotation, type) and issubclass(annotation, Part):
         return f"[{title(annotation)}](#{anchor(annotation)})"
     return {str: "text", bool: "true or false", float: "number", int: "whole number"}.get(annotation, "text")

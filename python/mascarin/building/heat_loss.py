@@ -8,7 +8,7 @@ Infiltration is taken at the same wind and a temperature difference of 10 K.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from mascarin.building.checks.u_values import (
@@ -17,12 +17,16 @@ from mascarin.building.checks.u_values import (
     described_window_u_value,
     layer_resistance,
 )
+from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.parts.air.zone import TextInfiltration
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.materials.phases import phase
 from mascarin.physics import AIR_SPECIFIC_HEAT, standard_density
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mascarin.building.engine_input.ratings import WindowRating
     from mascarin.building.parts.description import Description
     from mascarin.building.parts.envelope.surface import Surface
 
@@ -44,6 +48,9 @@ class HeatLoss:
         Of each surface that loses heat. [W/(m2 K)]
     capacity : float
         Heat that is stored for a degree of the zones, in the steady state. Latent heat is left out. [Wh/K]
+    apertures : dict of str to float
+        Solar heat of the zones for an irradiance of 1 W/m2 on all outer surfaces: through ``windows`` at
+        normal incidence, and of ``opaque`` surfaces, which absorb it outside. Shading is left out. [m2]
 
     Examples
     --------
@@ -54,6 +61,7 @@ class HeatLoss:
     destinations: dict[str, float]
     u_values: dict[str, float]
     capacity: float
+    apertures: dict[str, float] = field(default_factory=dict)
 
     @property
     def total(self) -> float:
@@ -66,13 +74,15 @@ class HeatLoss:
         return self.capacity / self.total if self.total > 0.0 else float("inf")
 
 
-def heat_loss(building: Description) -> HeatLoss:
-    """Compute heat loss coefficient and effective heat capacity from a description.
+def heat_loss(building: Description, ratings: Mapping[str, WindowRating] | None = None) -> HeatLoss:
+    """Compute heat loss coefficient, solar apertures and effective heat capacity from a description.
 
     Parameters
     ----------
     building : Building
         The building. Pressure tests, ventilation and openings are left out: they depend on the weather.
+    ratings : mapping of str to WindowRating, optional
+        Rated values of the glass of its windows, where they are known already.
 
     Returns
     -------
@@ -81,6 +91,7 @@ def heat_loss(building: Description) -> HeatLoss:
     References
     ----------
     ISO 13789:2017 (heat transfer coefficients of transmission and ventilation).
+    ISO 52016-1:2017 (solar heat of windows and opaque surfaces).
 
     Examples
     --------
@@ -116,7 +127,31 @@ def heat_loss(building: Description) -> HeatLoss:
         for bridge in zone.thermal_bridges.values():
             if bridge.zone is None:
                 destinations["thermal bridges"] += bridge.conductance
-    return HeatLoss({k: v for k, v in destinations.items() if v > 0.0}, u_values, capacity)
+    lost = {destination: value for destination, value in destinations.items() if value > 0.0}
+    return HeatLoss(lost, u_values, capacity, _apertures(building, u_values, ratings))
+
+
+def _apertures(
+    building: Description, u_values: Mapping[str, float], ratings: Mapping[str, WindowRating] | None
+) -> dict[str, float]:
+    """Solar apertures of windows and opaque surfaces (as in ISO 52016-1:2017). [m2]"""
+    apertures: dict[str, float] = defaultdict(float)
+    for name, rating in (window_ratings(building) if ratings is None else ratings).items():
+        window = building.windows[name]
+        if building.surfaces[window.surface].outside.outdoors:
+            glass = 1.0 - (float(window.frame.fraction) if window.frame is not None else 0.0)
+            apertures["windows"] += rating.solar_heat_gain * glass * float(window.area or 0.0)
+    for name, u_value in u_values.items():
+        surface = building.surfaces[name]
+        side = surface.outside
+        if not (side.outdoors and side.sunlit) or side.absorptance is None:
+            continue
+        windows = building.connections.windows_in(name)
+        glazed = sum(float(building.windows[window].area or 0.0) for window in windows)
+        opaque = max(float(surface.area or 0.0) - glazed, 0.0)
+        film, _ = described_films(building, surface)
+        apertures["opaque"] += float(side.absorptance) * u_value * film * opaque
+    return {part: value for part, value in apertures.items() if value > 0.0}
 
 
 def _window(building: Description, name: str) -> float:

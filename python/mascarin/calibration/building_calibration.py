@@ -22,6 +22,7 @@ from mascarin.calibration.errors.stated_errors import (
     depth_paths,
     only_scatter,
     reason_not_to_estimate,
+    require_errors,
     require_supported,
     with_sensor_errors,
 )
@@ -185,6 +186,7 @@ def calibrate(
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
     errors, not_estimated = _estimates_errors(simulation, named, method, cost, begin)
+    _require_sampled(options, errors, not_estimated)
     observation = observe(simulation, measurements, named, begin)
     all_samples = np.ones(len(observation.times), dtype=np.bool_)
     fit = solve(
@@ -238,6 +240,12 @@ def _estimates_errors(
         return False, []
     reason = reason_not_to_estimate(method, cost, hours)
     return reason is None, [] if reason is None else [counted_as_scatter(reason)]
+
+
+def _require_sampled(options: SearchOptions | None, errors: bool, not_estimated: Sequence[str]) -> None:
+    """Refuse to sample a posterior where errors of sensors are not estimated."""
+    reason = None if errors else (*not_estimated, "all sensors state that they have none")[0]
+    require_errors("linearized" if options is None else options.posterior, reason, "options: posterior")
 
 
 def _require_types(measurements: object, sensors: object, vary: object, record: object) -> None:

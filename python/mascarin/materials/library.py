@@ -6,6 +6,7 @@ the user had given it.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -59,6 +60,14 @@ class Curve:
             if f0 <= fraction <= f1 and f1 > f0:
                 return t0 + (fraction - f0) / (f1 - f0) * (t1 - t0)
         raise ValueError(f"liquid fraction {fraction:g} is outside the curve")
+
+
+#: Largest difference of the heat of a delivered product from its data sheet, by maker, and its source. [-]
+_STATED: Final[Mapping[str, tuple[float, str]]] = {
+    "Rubitherm GmbH": (0.075, "heat storage capacity within 7.5 % (data sheets of Rubitherm)"),
+}
+#: The same between calorimeters, at other rates and with other limits of integration: a judgement. [-]
+_CALORIMETERS: Final = 0.1
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,6 +128,17 @@ class Product:
         """A single number, such as the latent heat, or None where it is not known."""
         raw = self.raw.get(key)
         return None if raw is None else _bare(raw)
+
+    @property
+    def heat_tolerance(self) -> tuple[float, str] | None:
+        """Relative half-width of the range of the heat of melting and its reason, where the maker states one.
+
+        What the maker states of delivered products and what calorimeters differ by are independent.
+        """
+        if self.maker not in _STATED:
+            return None
+        stated, reason = _STATED[self.maker]
+        return math.hypot(stated, _CALORIMETERS), f"{reason}, and 10 % between calorimeters (judgement)"
 
     @property
     def melting_range(self) -> tuple[float, float] | None:

@@ -10,8 +10,14 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mascarin._io import atomic
+from mascarin.calibration.errors.posterior_checks import NOT_STATED, Contradiction
 from mascarin.sensitivity.files import save_all
+from mascarin.study.carried.bands import carried_bands
+from mascarin.study.carried.calibrated_building import FILE
+from mascarin.study.carried.validation import Validation
 from mascarin.study.context.storage import Workspace
 from mascarin.study.file.description import SensitivityPlan
 from mascarin.study.results.document.comparison import comparison
@@ -20,7 +26,7 @@ from mascarin.study.results.document.estimates import estimates, prediction_entr
 from mascarin.study.results.document.header import header
 from mascarin.study.results.document.sensitivity import analyzed_hours, importance
 from mascarin.study.results.document.whole import ESTIMATES
-from mascarin.study.results.files import fit_figures
+from mascarin.study.results.files import chains_file, fit_figures
 from mascarin.study.results.tables import (
     criteria_table,
     estimates_table,
@@ -29,16 +35,18 @@ from mascarin.study.results.tables import (
     validation_series,
     write_tables,
 )
-from mascarin.study.steps.calibration_result import calibrated
+from mascarin.study.steps.calibration_result import building_with_posterior, calibrated
 from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_table, interval_words
 from mascarin.study.steps.predictive_checks import statements
+from mascarin.study.steps.residuals import DRIVERS
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
+    from mascarin.study.carried.bands import Bands
     from mascarin.study.context.context import StudyContext
     from mascarin.study.steps.findings import ModelRun
 
@@ -139,11 +147,14 @@ def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = Tr
             "calibration_criteria": criteria_table(verdicts),
             "quality": quality_table(study.quality),
         }
-        _write(workspace, "calibration", content, tables, fit_figures(fit, profiles, out / "figures"))
+        calibrated_file = out / FILE
+        building_with_posterior(study, fitted, fit, intervals, found.combination).to_yaml(calibrated_file)
+        further = [calibrated_file, *chains_file(fit, out), *fit_figures(fit, profiles, out / "figures")]
+        _write(workspace, "calibration", content, tables, further)
     return content
 
 
-def validation(study: StudyContext, out: Path | None) -> dict[str, Any]:
+def validation(study: StudyContext, out: Path | None) -> Validation:
     """Comparison of the uncalibrated model with the measurements.
 
     Parameters
@@ -155,20 +166,20 @@ def validation(study: StudyContext, out: Path | None) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        What validation.json holds.
+    Validation
+        What validation.json and series.csv hold.
     """
     if out is None:
         return _validated(study)[0]
     with Workspace(out, study.identity()) as workspace:  # raises before the run if the folder cannot be used
-        content, tables, run = _validated(study)
+        validated, tables = _validated(study)
         series = out / "series.csv"
-        atomic.write(series, validation_series(study, run).to_csv(index=False, lineterminator="\n"))
-        _write(workspace, "validation", content, tables, [series])
-    return content
+        atomic.write(series, validated.to_dataframe().to_csv(index=False, lineterminator="\n"))
+        _write(workspace, "validation", validated.to_dict(), tables, [series])
+    return validated
 
 
-def _validated(study: StudyContext) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
+def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]]:
     run = nominal(study)
     verdicts = judged(study, run)
     tables = {
@@ -176,12 +187,42 @@ def _validated(study: StudyContext) -> tuple[dict[str, Any], dict[str, pd.DataFr
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
+    bands, words = _carried(study, run)
     content = {
-        "contradictions": [one.to_dict() for one in statements(study)],
+        "contradictions": [one.to_dict() for one in (*words, *statements(study))],
         **header(study, "validate"),
         **comparison({"nominal": run}, verdicts),
     }
-    return content, tables, run
+    series = validation_series(study, run)
+    if bands is not None:
+        units = [output.unit for output in run.results.outputs]
+        content["band"] = bands.entries(study.observation, study.used)
+        series = bands.beside(series, study.observation.names, units)
+    return Validation(content, series), tables
+
+
+def _carried(study: StudyContext, run: ModelRun) -> tuple[Bands | None, list[Contradiction]]:
+    """Bands of the posterior that the building has from another study, and where it extrapolates."""
+    posterior = study.building.posterior
+    if posterior is None:
+        return None, []
+    if not posterior.stated:
+        text = f"no bands: those of the study '{posterior.study}' are {NOT_STATED}"
+        return None, [Contradiction("period", "posterior", text)]
+    observation, outputs, stated = study.observation, [], []
+    for s, (name, sensor) in enumerate(study.plan.sensors.items()):
+        output = study.building.output(sensor.output)
+        sizes = sensor.stated_uncertainty(output.unit, name)
+        measured = np.abs(observation.measured[:, s])
+        size = float(np.mean(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
+        outputs.append(output.name)
+        stated.append(float(np.hypot(sizes.absolute, sizes.relative * size)))
+    weather = {
+        channel: observation.sampled(run.results.index, run.simulation.weather(channel))
+        for channel in DRIVERS.values()
+    }
+    bands = carried_bands(run.simulation, observation, posterior, outputs, stated, weather)
+    return bands, [Contradiction("period", "posterior", text) for text in bands.words]
 
 
 def _write(

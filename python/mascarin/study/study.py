@@ -23,10 +23,11 @@ from mascarin.study.file.writing import study_text, write_study
 from mascarin.study.results.document.errors import error_words
 from mascarin.study.results.files import write_all
 from mascarin.study.results.results import StudyResults
+from mascarin.study.single_steps import validation
 from mascarin.study.steps.calibration_result import calibrated
 from mascarin.study.steps.checking import check
 from mascarin.study.steps.days import days
-from mascarin.study.steps.derived_quantities import derived_quantities
+from mascarin.study.steps.derived_quantities import derived_quantities, latent_heat_used
 from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_words, slopes
 from mascarin.study.steps.residuals import error_sources, examined, too_few
@@ -35,6 +36,7 @@ from mascarin.validation.criteria import judge
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
+    from mascarin.study.carried.validation import Validation
     from mascarin.study.file.description import Periods, SensitivityPlan, Sensor, StudyPlan, Variant
     from mascarin.tables.quality import Stretch
     from mascarin.validation.criteria import Criterion
@@ -316,6 +318,31 @@ class Study:
             workspace.drop(NAME)
         return results
 
+    def validate(self, out: str | Path | None = None) -> Validation:
+        """Compare the building as described with the measurements; nothing is calibrated.
+
+        A building that extends the ``calibrated.yaml`` of another study has a posterior: its bands are made
+        with it, and ``remarks`` says where it extrapolates.
+
+        Parameters
+        ----------
+        out : str or Path, optional
+            Folder for validation.json, series.csv and tables. Default: nothing is written.
+
+        Returns
+        -------
+        Validation
+            Metrics, series and bands.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be used.
+        SolverError
+            The run failed.
+        """
+        return validation(self.context, None if out is None else Path(out))
+
     def __repr__(self) -> str:
         return display.text(f"Study '{self.plan.name}'", self._rows())
 
@@ -399,5 +426,12 @@ def all_steps(context: StudyContext, workspace: Workspace, progress: ProgressOpt
         seconds=time.monotonic() - began,
         combination=found.combination,
         contradictions=found.contradictions,
-        derived=kept(workspace, ("derived", at), lambda: derived_quantities(fit, joint)),
+        derived=kept(
+            workspace,
+            ("derived", at),
+            lambda: [
+                *derived_quantities(fit, joint),
+                *latent_heat_used(fitted.simulation, fitted.results, fit, joint),
+            ],
+        ),
     )

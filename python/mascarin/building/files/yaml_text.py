@@ -42,12 +42,14 @@ def text_of(plain: Mapping[str, Any]) -> str:
 def _styled(value: Any, depth: int) -> Any:
     """Choose for each mapping and list whether it is written on one line."""
     from ruamel.yaml.comments import CommentedMap, CommentedSeq
-    from ruamel.yaml.scalarstring import DoubleQuotedScalarString
+    from ruamel.yaml.scalarstring import DoubleQuotedScalarString, LiteralScalarString
 
     if isinstance(value, Mapping):
         styled: Any = CommentedMap((key, _styled(piece, depth + 1)) for key, piece in value.items())
     elif isinstance(value, list | tuple):
         styled = CommentedSeq(_styled(piece, depth + 1) for piece in value)
+    elif isinstance(value, str) and value.count("\n") > 1 and value.endswith("\n"):
+        return LiteralScalarString(value)  # a table, a line for each of its rows
     elif isinstance(value, str) and value[:1].isdigit():
         # Times and dates are texts here; older readers of YAML take them for numbers.
         return DoubleQuotedScalarString(value)

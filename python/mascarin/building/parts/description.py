@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part
@@ -19,6 +19,7 @@ from mascarin.building.parts.envelope.surface import Construction, Sensor, Surfa
 from mascarin.building.parts.materials.material import Material
 from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
+from mascarin.building.parts.posterior import Posterior
 from mascarin.building.parts.site import Site
 from mascarin.building.parts.zone_surfaces import Connections
 
@@ -64,6 +65,9 @@ class Description(Part):
         default_factory=dict,
         description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "
         "common factor, or by a common value",
+    )
+    posterior: Annotated[Posterior | None, WithJsonSchema({"type": "object"})] = Field(
+        None, description="What a calibration found, as a study has written it; for bands of a comparison"
     )
 
     @cached_property

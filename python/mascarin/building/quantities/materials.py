@@ -36,7 +36,7 @@ LatentHeat = Annotated[
     Quantity(
         "J/kg",
         "Latent heat of melting",
-        Percent(10, "calorimetry between laboratories and the integration limits chosen"),
+        Percent(10, "judgement: calorimetry between laboratories and the integration limits chosen"),
         Limits(at_least=0, at_most=1e6),
     ),
 ]
@@ -45,7 +45,7 @@ MeltingTemperature = Annotated[
     Quantity(
         "degC",
         "Melting temperature: half is liquid, or (triangle, gumbel) the capacity has its peak",
-        Within(1, "calorimeters at another rate and sample mass than in the wall"),
+        Within(1, "judgement: batches, and calorimeters at another rate and sample mass than in the wall"),
         TEMPERATURE,
     ),
 ]
@@ -89,7 +89,7 @@ FreezingTemperature = Annotated[
     Quantity(
         "degC",
         "Temperature about which the material freezes, where hysteresis gives it a cooling curve",
-        Within(1, "calorimeters at another rate and sample mass than in the wall"),
+        Within(1, "judgement: batches, and calorimeters at another rate and sample mass than in the wall"),
         TEMPERATURE,
     ),
 ]
@@ -192,13 +192,18 @@ TemperatureShift = Annotated[
     Quantity(
         "K",
         "Shift of the enthalpy curve towards higher temperatures",
-        Within(1, "calorimeters at another rate and sample mass than in the wall"),
+        Within(1, "judgement: batches, and calorimeters at another rate and sample mass than in the wall"),
         Limits(at_least=-100, at_most=100),
     ),
 ]
 EnthalpyScale = Annotated[
     Number,
-    Quantity("-", "Factor on the enthalpy curve", Within(0.1, "calorimetry between laboratories"), POSITIVE),
+    Quantity(
+        "-",
+        "Factor on the enthalpy curve",
+        Within(0.1, "judgement: calorimetry between laboratories"),
+        POSITIVE,
+    ),
 ]
 Thickness = Annotated[
     Number,

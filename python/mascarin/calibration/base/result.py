@@ -15,6 +15,7 @@ from mascarin.calibration.base.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.base.evaluations import Trace
 from mascarin.calibration.base.problem import CalibrationProblem
 from mascarin.calibration.base.uncertainty import METHOD, Uncertainty
+from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 
@@ -103,6 +104,8 @@ class Calibration:
         How the intervals were computed.
     samples : ndarray, shape (n, P), optional
         Posterior sample of the method ``emcee``. [unit of each parameter]
+    posterior : PosteriorSample, optional
+        Chains with their convergence, where the posterior was sampled; ``to_netcdf`` writes them for ArviZ.
     nominal_building : Building, optional
         The building before the calibration; None for a problem on arrays.
     times : pandas.DatetimeIndex, optional
@@ -149,6 +152,7 @@ class Calibration:
     samples: Floats | None = None
     nominal_building: Building | None = None
     times: pd.DatetimeIndex | None = None
+    posterior: PosteriorSample | None = None
 
     @property
     def values(self) -> dict[str, float]:

@@ -19,6 +19,9 @@ WITH_SQUARES: Final = ("least-squares", "emcee")
 MAX_REDUCTIONS: Final = 24
 """Largest number of halvings with which the points of a pattern search are exact binary numbers."""
 
+PosteriorName = Literal["linearized", "sampled"]
+POSTERIORS: Final[tuple[PosteriorName, ...]] = ("linearized", "sampled")
+
 SlopesName = Literal["differences", "exact"]
 SLOPES: Final[tuple[SlopesName, ...]] = ("differences", "exact")
 
@@ -66,6 +69,11 @@ class SearchOptions:
         emcee: number of walkers, an even number; twice the parameters, at least 32, when absent. [-]
     moves : int
         emcee: number of moves of each walker; the first fifth is discarded. [-]
+    posterior : str
+        Parameters with errors of sensors and model: ``linearized``, their distribution about the estimates in
+        closed form, or ``sampled`` with the model itself.
+    chains, draws, warmup : int
+        Sampled posterior: number of chains, draws of each, and draws before them. [-]
 
     Raises
     ------
@@ -93,10 +101,15 @@ class SearchOptions:
     generations: int = 30
     walkers: int | None = None
     moves: int = 500
+    posterior: PosteriorName = "linearized"
+    chains: int = 16
+    draws: int = 500
+    warmup: int = 200
 
     def __post_init__(self) -> None:
         least = {"starts": 1, "sequences": 1, "reductions": 1, "together": 1, "agree": 1}
         least |= {"evaluations": 1, "particles": 4, "generations": 2, "walkers": 4, "moves": 50}
+        least |= {"chains": 2, "draws": 50, "warmup": 50}
         for name, smallest in least.items():
             option = getattr(self, name)
             if option is not None and option < smallest:
@@ -104,6 +117,9 @@ class SearchOptions:
                 raise InputError(msg)
         if self.slopes not in SLOPES:
             msg = f"slopes: found '{self.slopes}', expected {' or '.join(SLOPES)}"
+            raise InputError(msg)
+        if self.posterior not in POSTERIORS:
+            msg = f"posterior: found '{self.posterior}', expected {' or '.join(POSTERIORS)}"
             raise InputError(msg)
         if self.reductions > MAX_REDUCTIONS:
             msg = f"reductions: found {self.reductions}, expected at most {MAX_REDUCTIONS}"

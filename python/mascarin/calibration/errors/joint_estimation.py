@@ -29,6 +29,7 @@ from mascarin.calibration.errors.joint_posterior import (
 )
 from mascarin.calibration.errors.sensor_errors import sensor_columns
 from mascarin.calibration.methods.least_squares import residuals_and_derivatives
+from mascarin.calibration.sampled_posterior import ChainLengths
 
 Floats = NDArray[np.float64]
 Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]
@@ -40,6 +41,12 @@ METHOD: Final = (
     "linearized at the estimates, within the ranges, over the sizes of the errors that the days allow"
 )
 """How the intervals are computed, for reports."""
+
+SAMPLED: Final = (
+    "the parameters and errors of sensors sampled with the model itself (NUTS with delayed acceptance), in "
+    "place of the linearization"
+)
+"""What sampling changes, for reports."""
 
 _MAX_STEPS: Final = 8
 _MAX_HALVINGS: Final = 3
@@ -66,7 +73,7 @@ def estimate_jointly(
     stated : ErrorStatement
         What is known of the errors.
     options : SearchOptions
-        Kind of derivatives.
+        Kind of derivatives, and whether the posterior is sampled with the model itself.
     further : callable, optional
         From parameter values (P,) to the effects (T, S, K) of numbers that are not estimated, for one
         standard uncertainty of each. They are computed where all else is linearized. [unit]
@@ -100,7 +107,17 @@ def estimate_jointly(
     linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
     if further is not None:
         linearization = replace(linearization, further=further(problem.values(linearization.z[None])[0]))
-    distribution = joint_posterior(problem, linearization, stated)
+
+    def simulate(z: Floats) -> Floats:
+        measured = np.where(problem.mask, problem.measured, 0.0)
+        return evaluator.residuals(problem.values(z)) + measured
+
+    lengths = None
+    if options.posterior == "sampled":
+        lengths = ChainLengths(options.chains, options.draws, options.warmup, fit.seed)
+    distribution = joint_posterior(
+        problem, linearization, stated, simulate=simulate if lengths else None, lengths=lengths
+    )
     return _reported(fit, problem, linearization, distribution, stated), distribution
 
 
@@ -157,6 +174,10 @@ def _reported(
     columns = distribution.effects(linearization.jacobian, error_columns, stated.hours)
     expected, _ = distribution.predicted(columns, linearization.z)
     remaining = np.where(problem.mask, residuals + expected, 0.0)
+    chains, said = (
+        distribution.chains,
+        tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian)),
+    )
     cost = Cost(problem, fit.cost_name)
     each = cost.of_sensors(residuals[None])
     return replace(
@@ -170,8 +191,9 @@ def _reported(
         residuals=np.where(problem.mask, residuals, np.nan),
         uncertainty=uncertainty,
         on_bound=on_bounds(problem, z, _outward(z, distribution), uncertainty),
-        warnings=tuple(warnings(problem, z, uncertainty, remaining, linearization.jacobian)),
-        uncertainty_method=METHOD,
+        warnings=said if chains is None else (*said, *chains.warnings),
+        uncertainty_method=METHOD if chains is None else f"{METHOD}; {SAMPLED}",
+        posterior=chains,
         reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
     )
 

@@ -36,7 +36,9 @@ from mascarin.calibration.errors.discrepancy import (
     hour_basis,
 )
 from mascarin.calibration.errors.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.errors.truncated_normal import within_bounds
+from mascarin.calibration.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
+from mascarin.calibration.sampling.posterior_sample import PosteriorSample
+from mascarin.calibration.sampling.truncated_normal import within_bounds
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -142,6 +144,8 @@ class JointPosterior:
         if the model of the errors is right; NaN where nothing was measured. [-]
     left_out, left_out_sd : ndarray, shape (D, H, S)
         The same difference, and its standard deviation given the sizes of the errors. [unit]
+    chains : PosteriorSample, optional
+        Chains of the parameters and errors of sensors, where the model itself was sampled.
     """
 
     z: Floats
@@ -158,6 +162,7 @@ class JointPosterior:
     whitened: Floats
     left_out: Floats
     left_out_sd: Floats
+    chains: PosteriorSample | None = None
 
     def quantile(self, confidence: float) -> float:
         """Half-width of an interval on other days, in standard deviations: Student's.
@@ -248,6 +253,9 @@ def joint_posterior(
     linear: Linear,
     stated: ErrorStatement,
     covariances: Discrepancy | None = None,
+    *,
+    simulate: Simulate | None = None,
+    lengths: ChainLengths | None = None,
 ) -> JointPosterior:
     """Estimate parameters and errors together from one linearization.
 
@@ -261,6 +269,11 @@ def joint_posterior(
         What is known of the errors.
     covariances : Discrepancy, optional
         Sizes of the errors of the model; drawn from their distribution when absent.
+    simulate : callable, optional
+        The model itself, from positions (M, P) to series (M, T, S). With it parameters and errors of sensors
+        are sampled by `mascarin.calibration.sampled_posterior`, in place of the linear model within bounds.
+    lengths : ChainLengths, optional
+        How long is sampled.
 
     Returns
     -------
@@ -290,30 +303,37 @@ def joint_posterior(
     bounded_sample = within_bounds(
         mean[:, limited], covariance[:, limited, limited], low[limited], high[limited]
     )
+    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
+    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
+    chains = None
+    if simulate is not None:
+        chains = chains_of(
+            problem, data, draws.covariances, bounded_sample, (low[limited], high[limited]), _priors(problem),
+            of_sensors, _departure(linear, simulate), lengths or ChainLengths(),
+        )  # fmt: skip
+        bounded_sample = coefficients_of(problem, chains)
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
     bounded_mean, bounded = moments_within(middle, together, bounded_sample)
     sample = bounded_sample[:, :count]
-    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
-    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
     z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
     whitened = gaussian.whitened(data.error).reshape(data.grid.days, data.grid.slots, data.sensors)
     return JointPosterior(
-        z,
-        bounded_mean,
-        bounded,
-        sample,
-        draws.typical,
-        names,
-        gaussian.left_out(data.error),
-        gaussian.log_density(data.error),
-        scale[:count],
-        beyond,
-        unlimited,
-        whitened,
-        *gaussian.days_left_out(data.error, data.sensors),
-    )
+        z, bounded_mean, bounded, sample, draws.typical, names, gaussian.left_out(data.error),
+        gaussian.log_density(data.error), scale[:count], beyond, unlimited, whitened,
+        *gaussian.days_left_out(data.error, data.sensors), chains=chains,
+    )  # fmt: skip
+
+
+def _departure(linear: Linear, simulate: Simulate) -> Simulate:
+    """From positions (M, P) to the difference of the model from the linear one (M, T, S). [unit]"""
+
+    def departure(z: Floats) -> Floats:
+        along = np.einsum("tsp,mp->mts", linear.jacobian, z - linear.z, optimize=True)
+        return np.asarray(simulate(z) - linear.simulated - along)
+
+    return departure
 
 
 def numbered(count: int, names: tuple[str, ...]) -> tuple[str, ...]:

@@ -177,6 +177,34 @@ def counted_as_scatter(reason: str) -> str:
     )
 
 
+def require_errors(posterior: str, reason: str | None, where: str) -> None:
+    """Refuse to sample a posterior without errors of sensors and model.
+
+    Parameters
+    ----------
+    posterior : str
+        ``linearized`` or ``sampled``.
+    reason : str or None
+        Why these errors are not estimated; None if they are.
+    where : str
+        Name of the option.
+
+    Raises
+    ------
+    InputError
+        It is to be sampled, and the errors are not estimated.
+
+    Examples
+    --------
+    >>> require_errors("linearized", "the method emcee does not sample them", "posterior")
+    """
+    if posterior == "sampled" and reason is not None:
+        raise InputError(
+            f"{where}: found sampled, expected linearized, because errors of sensors and model are not "
+            f"estimated here: {reason}. Leave it out, or correct that"
+        )
+
+
 def require_supported(method: str, cost: str, hours: float) -> None:
     """Refuse a calibration that cannot estimate errors of sensors.
 

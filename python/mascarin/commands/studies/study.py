@@ -161,8 +161,9 @@ def validate(
 ) -> int:
     """Compare the uncalibrated model with measurements.
 
-    Only the first step of a study: nothing is calibrated. Exits with 1 when a criterion is missed, or the run
-    is not sound.
+    Only the first step of a study: nothing is calibrated. A building that extends the calibrated.yaml of
+    another study has bands from its posterior; where it extrapolates, a warning says so. Exits with 1 when a
+    criterion is missed, or the run is not sound.
 
     Parameters
     ----------
@@ -174,7 +175,7 @@ def validate(
     """
     from mascarin.study import single_steps
 
-    content = single_steps.validation(_open(file, allow_outside).context, out)
+    content = single_steps.validation(_open(file, allow_outside).context, out).to_dict()
     _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
     if as_json:
         print_json(content)

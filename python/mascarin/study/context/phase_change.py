@@ -13,6 +13,7 @@ from mascarin.building.parts.materials.phases import PhaseDensities, Phases, Pha
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    import pandas as pd
 
     from mascarin.building import Building
     from mascarin.simulation.results import Results
@@ -93,6 +94,40 @@ def _pair(value: Phases | float) -> tuple[float, float]:
 def solid_density(material: PhaseChangeMaterial) -> float:
     """Density that enthalpies per volume are divided by. [kg/m3]"""
     return _pair(material.density)[0]
+
+
+def latent_heat_of(building: Building, layer: MeltingLayer) -> float:
+    """Latent heat of a whole layer; NaN where its material does not state it. [J]"""
+    material, surface = layer.of(building), building.surfaces[layer.surface]
+    layers = building.constructions[surface.construction].layers
+    thickness = next(float(part.thickness or 0.0) for part in layers if str(part.name) == layer.layer)
+    if material.latent_heat is None:
+        return float("nan")
+    # The latent heat of a volume is that of its liquid, as in `law_curve`.
+    volume = thickness * float(surface.area or 0.0)
+    return volume * _pair(material.density)[1] * float(material.latent_heat)
+
+
+def day_of(index: pd.DatetimeIndex) -> npt.NDArray[np.int64] | None:
+    """Number of the local day of each record, -1 on days that are not whole; None without a whole day."""
+    number = np.asarray((index.tz_localize(None).normalize() - index[0].tz_localize(None).normalize()).days)
+    count = np.bincount(number)
+    whole_days = count >= count.max()
+    if count.size < 2 or not whole_days.any():
+        return None
+    return np.where(whole_days[number], number, -1).astype(np.int64)
+
+
+def daily_range(values: Array, days: npt.NDArray[np.int64]) -> Array:
+    """Mean over all days of what values (..., rows) range over on a day.
+
+    Examples
+    --------
+    >>> daily_range(np.array([[0.0, 1.0, 5.0, 2.0]]), np.array([0, 0, 1, 1])).tolist()
+    [2.0]
+    """
+    ranges = [np.ptp(values[..., days == day], axis=-1) for day in np.unique(days[days >= 0])]
+    return np.asarray(np.mean(ranges, axis=0))
 
 
 def path(results: Results, building: Building, layer: MeltingLayer) -> tuple[Array, Array]:

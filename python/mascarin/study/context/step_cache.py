@@ -40,6 +40,7 @@ CLASSES: Final[Mapping[str, tuple[str, ...]]] = {
     "mascarin.calibration.errors.joint_posterior": ("JointPosterior",),
     "mascarin.calibration.base.problem": ("FitParameter",),
     "mascarin.calibration.base.result": ("Calibration", "Minimum"),
+    "mascarin.calibration.sampling.posterior_sample": ("PosteriorSample",),
     "mascarin.calibration.base.uncertainty": ("Uncertainty",),
     "mascarin.diagnosis.error_sources": ("Correction", "ErrorSources"),
     "mascarin.diagnosis.hypotheses": ("Cause", "Diagnosis"),

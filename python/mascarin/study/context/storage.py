@@ -39,7 +39,10 @@ RUN: Final = "run.json"
 #: Files of the result folder itself.
 WRITTEN: Final = ("study.json", RUN, REPORT)
 #: Files that single steps write into the result folder.
-OF_STEPS: Final = ("sensitivity.json", "calibration.json", "validation.json", "series.csv")
+OF_STEPS: Final = (
+    "sensitivity.json", "calibration.json", "validation.json", "series.csv", "calibrated.yaml",
+    "posterior.nc",
+)  # fmt: skip
 #: Names of results in the folder of a study.
 _RESULT: Final = re.compile(
     r"(tables/[^/]+\.csv|figures/[^/]+\.(svg|pdf|png)|"

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
-from mascarin.calibration.base.search_options import WITH_SQUARES, SlopesName
+from mascarin.calibration.base.search_options import WITH_SQUARES, PosteriorName, SlopesName
 from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.base.factors import DistributionName
@@ -214,6 +214,12 @@ class IdentificationPlan(Part):
         "same hour of every day and one that changes from day to day; on, with its defaults, unless all "
         "sensors state `offset: 0` or only a `repeatability`",
     )
+    posterior: PosteriorName = Field(
+        "linearized",
+        description="Distribution of parameters and errors: linearized about the estimates, or sampled with "
+        "the model itself (see docs/calibration.md)",
+    )
+    draws: int = Field(500, ge=50, description="Draws of each of the 16 chains of a sampled posterior")
     independent: Duration | None = Field(
         None,
         description="Time after which residuals are considered independent; samples closer together share "

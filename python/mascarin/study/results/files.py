@@ -16,11 +16,13 @@ from mascarin.figures.files import save
 from mascarin.pages.study.data.folder import read_folder
 from mascarin.pages.study.figures.figure_files import Once, write_figures
 from mascarin.sensitivity.files import save_all
+from mascarin.study.carried.calibrated_building import FILE
 from mascarin.study.context.step_cache import written_once
 from mascarin.study.context.storage import RUN, WRITTEN
 from mascarin.study.results.document.sensitivity import analyzed_hours
 from mascarin.study.results.document.whole import document
 from mascarin.study.results.tables import tables_of, write_tables
+from mascarin.study.steps.calibration_result import building_with_posterior
 from mascarin.study.steps.comfort import comfort_figures, comfort_table, rated
 from mascarin.validation.days import EXTRAPOLATION_RATIO
 
@@ -56,12 +58,27 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
+    calibrated = building_with_posterior(
+        findings.context,
+        findings.fitted,
+        findings.calibration,
+        findings.prediction_intervals,
+        findings.combination,
+    )
+    calibrated.to_yaml(out / FILE)
     return [
+        out / FILE,
+        *chains_file(findings.calibration, out),
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,
         *(out / name for name in WRITTEN),
     ]
+
+
+def chains_file(fit: Calibration, out: Path) -> list[Path]:
+    """Write the chains of a sampled posterior, for ArviZ; none of a linearized one."""
+    return [] if fit.posterior is None else [fit.posterior.to_netcdf(out / "posterior.nc")]
 
 
 def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:

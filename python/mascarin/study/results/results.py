@@ -14,10 +14,13 @@ from mascarin.pages.study.data.folder import read_series
 from mascarin.study.results.document.whole import document
 from mascarin.study.results.files import run_facts
 from mascarin.study.results.tables import metrics_table, tables_of
+from mascarin.study.steps.calibration_result import building_with_posterior
 from mascarin.study.steps.findings import Findings
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from mascarin.building import Building
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,6 +131,13 @@ class StudyResults(Findings):
             Ready for JSON.
         """
         return document(self)
+
+    @property
+    def building(self) -> Building:
+        """The calibrated building with its posterior; ``to_yaml`` writes it for other buildings to extend."""
+        return building_with_posterior(
+            self.context, self.fitted, self.calibration, self.prediction_intervals, self.combination
+        )
 
     def report(self, path: str | Path = "report.html") -> Path:
         """Write the report: one HTML file that needs no network.

@@ -5,13 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mascarin.linear_algebra import one_thread
+from mascarin.study.carried.bands import daily_means, day_numbers
+from mascarin.study.carried.calibrated_building import OtherNumbers, SensorRecord, with_posterior
 from mascarin.study.context.step_cache import kept
+from mascarin.study.file.description import DiscrepancyPlan
 from mascarin.study.steps.model_averaging import combined_intervals, estimates_of
 from mascarin.study.steps.prediction_intervals import prediction_intervals, slopes
 from mascarin.study.steps.predictive_checks import contradictions, with_doubt
+from mascarin.study.steps.residuals import DRIVERS
 
 if TYPE_CHECKING:
+    from mascarin.building import Building
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.errors.posterior_checks import Contradiction
     from mascarin.study.context.context import StudyContext
@@ -88,3 +95,87 @@ def calibrated(study: StudyContext, runs: ModelRuns) -> Calibrated:
         note += f"with {100.0 * found.weights[0]:.0f} % of the weight by days left out of the identification"
     run = replace(best.run, label="fitted", fit=fit, note=note)
     return Calibrated.judged(study, run, fit, intervals, runs.profiled(runs.plain()), found)
+
+
+def building_with_posterior(
+    study: StudyContext,
+    run: ModelRun,
+    fit: Calibration,
+    intervals: PredictionIntervals,
+    combination: Combination | None,
+) -> Building:
+    """The calibrated building with its posterior, for calibrated.yaml.
+
+    Parameters
+    ----------
+    study : StudyContext
+        The study.
+    run, fit, intervals, combination
+        As for `Calibrated`.
+    """
+    observation, days = study.observation, day_numbers(study.observation.times)
+    used = study.during["identification"]
+    weather = {}
+    for channel in DRIVERS.values():
+        values = observation.sampled(run.results.index, run.simulation.weather(channel))
+        if np.ptp(values[np.isfinite(values)]) > 0.0:
+            means = daily_means(np.where(used, values, np.nan), days)
+            weather[channel] = means[np.isfinite(means)]
+    joint, numbers = None, None
+    if combination is not None:
+        joint, unknown = combination.forms[0].joint, combination.forms[0].unknown
+        numbers = OtherNumbers(
+            tuple(number.path for number in unknown.numbers),
+            np.array([number.uncertainty for number in unknown.numbers]),
+            unknown.directions,
+        )
+    return with_posterior(
+        fit,
+        joint,
+        numbers,
+        _sensor_records(study, run, fit, intervals, combination),
+        weather,
+        study=study.plan.name,
+        days=int(np.unique(days[used]).size),
+        stated=intervals.stated,
+    )
+
+
+def _sensor_records(
+    study: StudyContext,
+    run: ModelRun,
+    fit: Calibration,
+    intervals: PredictionIntervals,
+    combination: Combination | None,
+) -> list[SensorRecord]:
+    """Sensors of the identification with the errors of the model, as wide as the bands of the report."""
+    observation, used = study.observation, study.used["identification"]
+    simulated = observation.simulated(run.results.index, run.results.records)
+    limit = (study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()).limit
+    wider = intervals.factor if intervals.stated else 1.0
+    records = []
+    for k, sensor in enumerate(fit.problem.sensors):
+        s = observation.names.index(sensor.name)
+        squares = np.array([0.0, intervals.error[s] ** 2, 0.0])
+        if combination is not None:
+            joint = combination.forms[0].joint
+            errors, factor = joint.error_covariances, wider * joint.days_left_out(fit.confidence)[k]
+            independent = errors.independent[k]
+            squares = np.array([errors.hour[k, k], errors.new_day[k] - independent, independent])
+            squares = factor**2 * np.maximum(squares, 0.0)
+        repeating, daily, independent = np.sqrt(squares).tolist()
+        output = study.building.output(study.plan.sensors[sensor.name].output)
+        series = simulated[used[:, s], s]
+        records.append(
+            SensorRecord(
+                sensor.name,
+                output.name,
+                output.unit,
+                series,
+                limit * sensor.span,
+                repeating,
+                daily,
+                independent,
+            )
+        )
+    return records

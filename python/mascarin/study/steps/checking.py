@@ -10,8 +10,9 @@ import numpy as np
 from mascarin._io.durations import seconds_of
 from mascarin._io.limits import above, below
 from mascarin.calibration.building_calibration import CONSTANT, MAX_CONSTANT_SHARE
+from mascarin.calibration.errors.stated_errors import require_errors
 from mascarin.errors import InputError
-from mascarin.study.context.error_rule import states_errors
+from mascarin.study.context.error_rule import reason_of, states_errors
 from mascarin.study.context.periods import overlap
 from mascarin.study.steps.comfort import require_rooms
 from mascarin.validation.observation import require_comparable
@@ -47,6 +48,7 @@ def check(study: StudyContext) -> None:
     with study.places.blame("periods"):
         _ = study.models.nominal
     _errors(study)
+    _sampled(study)
     require_rooms(study)
     _working(study)
     _runs(study)
@@ -152,6 +154,16 @@ def _errors(study: StudyContext) -> None:
                     "alternatives, which are weighed with these errors; move it there, or leave candidate out"
                 )
     _ = study.variants.forms
+
+
+def _sampled(study: StudyContext) -> None:
+    """Refuse to sample a posterior without errors of sensors and model."""
+    plan = study.plan.identification
+    if plan is None or study.estimates_errors:
+        return
+    reason = reason_of(study.plan, study.hours) or "all sensors state that they have none"
+    with study.places.blame("identification", "posterior"):
+        require_errors(plan.posterior, reason, "posterior")
 
 
 def _persistence(study: StudyContext, hours: float) -> None:

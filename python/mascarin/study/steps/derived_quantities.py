@@ -11,20 +11,28 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.heat_loss import heat_loss
 from mascarin.errors import InputError
+from mascarin.study.context.phase_change import daily_range, day_of, latent_heat_of, melting_layers
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy.typing as npt
 
     from mascarin.building import Building
+    from mascarin.building.engine_input.ratings import WindowRating
     from mascarin.calibration import Calibration
     from mascarin.calibration.errors.joint_posterior import JointPosterior
+    from mascarin.simulation.results import Results
+    from mascarin.simulation.simulation import Simulation
 
     Array = npt.NDArray[np.float64]
 
-#: Buildings that are computed, at most.
+#: Buildings that are computed, at most; and runs of the model.
 _MOST: Final = 100
+_FEW_RUNS: Final = 32
 _SEED: Final = 17
 #: Title of the table of the report.
 TITLE: Final = "Heat loss and storage of the calibrated building"
@@ -62,7 +70,7 @@ class DerivedQuantity:
 
 
 def derived_quantities(fit: Calibration, joint: JointPosterior | None = None) -> list[DerivedQuantity]:
-    """Compute heat loss, capacity, time constant and U values with their intervals.
+    """Compute heat loss, capacity, time constant, solar apertures and U values with their intervals.
 
     Parameters
     ----------
@@ -79,12 +87,16 @@ def derived_quantities(fit: Calibration, joint: JointPosterior | None = None) ->
     building = fit.nominal_building
     if building is None or not building.zones:
         return []
-    center = _numbers(building, dict(zip(fit.problem.paths, fit.x.tolist(), strict=True)))
+    estimates = dict(zip(fit.problem.paths, fit.x.tolist(), strict=True))
+    # The engine rates the glass; it does so again only where glass itself is calibrated.
+    glass = any(path.startswith(("glazings.", "windows.")) for path in fit.problem.paths)
+    ratings = None if glass else window_ratings(building)
+    center = _numbers(building, estimates, ratings)
     found: list[dict[tuple[str, str], float]] = []
     for row in _sample(fit, joint):
         values = {p.path: p.value(z) for p, z in zip(fit.problem.parameters, row, strict=True)}
         try:
-            found.append(_numbers(building, values))
+            found.append(_numbers(building, values, ratings))
         except InputError:
             continue  # a value of the sample that its part does not allow
     quantities = []
@@ -110,16 +122,66 @@ def _sample(fit: Calibration, joint: JointPosterior | None) -> Array:
     return np.asarray(np.clip(center + rng.standard_normal((_MOST, center.size)) @ root.T, 0.0, 1.0))
 
 
-def _numbers(building: Building, values: dict[str, float]) -> dict[tuple[str, str], float]:
+def _numbers(
+    building: Building, values: dict[str, float], ratings: Mapping[str, WindowRating] | None
+) -> dict[tuple[str, str], float]:
     """All quantities of a building with other values, by name and unit."""
-    found = heat_loss(building.replace(values))
+    found = heat_loss(building.replace(values), ratings)
     numbers = {("heat loss coefficient", "W/K"): found.total}
     numbers |= {(f"heat loss, {place}", "W/K"): value for place, value in found.destinations.items()}
     numbers[("effective heat capacity", "Wh/K")] = found.capacity
     if np.isfinite(found.time_constant):
         numbers[("time constant", "h")] = found.time_constant
+    numbers |= {(f"solar aperture, {part}", "m2"): value for part, value in found.apertures.items()}
     numbers |= {(f"U value, {name}", "W/(m2 K)"): value for name, value in found.u_values.items()}
     return {key: value for key, value in numbers.items() if np.isfinite(value)}
+
+
+def latent_heat_used(
+    simulation: Simulation, results: Results, fit: Calibration, joint: JointPosterior | None = None
+) -> list[DerivedQuantity]:
+    """Compute the latent heat that phase-change layers take up on a day, with its interval.
+
+    On a day it is the range of the mean liquid fraction times the latent heat of the layer; the mean of all
+    whole days of the record is given.
+
+    Parameters
+    ----------
+    simulation, results
+        The calibrated model over the record and its run, with the liquid fractions.
+    fit, joint
+        As for `derived_quantities`.
+
+    Returns
+    -------
+    list of DerivedQuantity
+        One for each layer whose material states its latent heat.
+    """
+    layers = melting_layers(simulation.building)
+    names = [output.name for output in results.outputs]
+    days = day_of(results.index)
+    if not layers or days is None:
+        return []
+    rows = _sample(fit, joint)[:_FEW_RUNS]
+    paths, problem = fit.problem.paths, fit.problem
+    values = np.concatenate([fit.x[None], problem.values(rows)])
+    base = simulation.vector(fit.values)
+    records, _, _ = simulation.ensemble(simulation.varied(list(paths), values, base))
+    quantities, tail = [], 0.5 * (1.0 - fit.confidence)
+    for layer in layers:
+        ranges = daily_range(records[..., names.index(layer.liquid_fraction)], days)
+        heats = []
+        for value, part in zip(values, ranges, strict=True):
+            building = simulation.building.replace(dict(zip(paths, value.tolist(), strict=True)))
+            heats.append(float(part) * latent_heat_of(building, layer) / 3600.0)
+        if not np.isfinite(heats).all() or not any(heats):
+            continue
+        low, high = np.quantile(heats[1:], [tail, 1.0 - tail])
+        name = f"latent heat used per day, {layer.surface}"
+        quantities.append(
+            DerivedQuantity(name, "Wh", heats[0], min(float(low), heats[0]), max(float(high), heats[0]))
+        )
+    return quantities
 
 
 def derived_table(found: list[DerivedQuantity]) -> dict[str, Any]:
@@ -129,8 +191,9 @@ def derived_table(found: list[DerivedQuantity]) -> dict[str, Any]:
         "caption": (
             "From the description with the estimates: laws by wind at 4 m/s, correlations of surfaces as in "
             "ISO 6946, infiltration at 4 m/s and 10 K; pressure tests, ventilation and latent heat are left "
-            "out. "
-            "The intervals are those of the calibration with the correlations of its parameters; numbers "
+            "out. Solar apertures are those of windows at normal incidence and of opaque outer surfaces, "
+            "without shading; latent heat is the daily range of the liquid fraction, mean of all days. The "
+            "intervals are those of the calibration with the correlations of its parameters; numbers "
             "that are not calibrated count as known."
         ),
         "columns": ["quantity", "value", "95 % low", "95 % high", "unit"],

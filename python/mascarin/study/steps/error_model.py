@@ -178,7 +178,8 @@ def with_errors(
     def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
         return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
 
-    rules = SearchOptions(slopes=study.inputs.calibration_plan.slopes)
+    plan = study.inputs.calibration_plan
+    rules = SearchOptions(slopes=plan.slopes, posterior=plan.posterior, draws=plan.draws)
     found, joint = estimate_jointly(fit, statement(study, fit), rules, further, keep=keep)
     return found, joint, Unknowns(tuple(every), basis[0])
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.calibration.errors.joint_estimation import METHOD
 from mascarin.calibration.errors.pseudo_bma_weights import weighted_quantiles
 from mascarin.study.context.forms import comparable
 from mascarin.study.steps.error_model import (
@@ -56,7 +55,7 @@ def estimates_of(study: StudyContext, found: Combination) -> Calibration:
                 weights.append(weight)
         ends = weighted_quantiles(samples, np.array(weights), np.array([tail, 1.0 - tail]))
         low[i], high[i] = min(ends[0], fit.x[i]), max(ends[1], fit.x[i])
-    method = METHOD
+    method = fit.uncertainty_method
     if len(found.kept) > 1:
         method += f"; {len(found.kept)} forms of the model, weighed by days left out of the identification"
     return replace(fit, low=low, high=high, uncertainty_method=method)

@@ -68,7 +68,7 @@ def _with_hysteresis(expanded: dict[str, Any], stated: Mapping[str, Any], item: 
     hysteresis = _cooling_fractions(stated["hysteresis"], law, item)
     numbers = _melting(item)
     if _is_fractions(law):
-        numbers = {"latent_heat": _latent_heat(item, law)}
+        numbers = {"latent_heat": _with_tolerance(_latent_heat(item, law), item)}
     return numbers | expanded | {"law": law, "hysteresis": hysteresis}
 
 
@@ -246,7 +246,29 @@ def _table(item: Product, curve: Curve, name: str) -> dict[str, Any]:
         "curve": name,
         "temperatures": _noted(list(curve.temperatures), item),
         "enthalpies": _noted(list(enthalpies), item),
+        **_scale(item),
     }
+
+
+def _scale(one: Product) -> dict[str, Number]:
+    """Factor on the curve with the tolerance of the maker; none for a maker that states none."""
+    if one.heat_tolerance is None:
+        return {}
+    half, reason = one.heat_tolerance
+    span = (1.0 - half, 1.0 + half)
+    return {
+        "enthalpy_scale": Number(1.0, range=span, source=f"the curve as measured; {reason}", derived=True)
+    }
+
+
+def _with_tolerance(heat: Number, one: Product) -> Number:
+    """A latent heat with the tolerance of the maker as its range, unless the product has one."""
+    if one.heat_tolerance is None or heat.range is not None:
+        return heat
+    half, reason = one.heat_tolerance
+    span = (float(heat) * (1.0 - half), float(heat) * (1.0 + half))
+    source = f"{heat.source}; {reason}"
+    return Number(float(heat), range=span, source=source, assumed=heat.assumed, derived=True)
 
 
 def _by_melting_temperature(law: Any) -> bool:
@@ -258,8 +280,11 @@ def _by_melting_temperature(law: Any) -> bool:
 def _melting(item: Product) -> dict[str, Any]:
     names = {"latent_heat": item.number("latent_heat"), "melting_temperature": item.melting_temperature}
     half = f"half of the heating curve; {item.source}"
-    return {
+    numbers = {
         key: _noted(item.raw.get(key, value), item, half if key not in item.raw else None)
         for key, value in names.items()
         if value is not None
     }
+    if "latent_heat" in numbers:
+        numbers["latent_heat"] = _with_tolerance(numbers["latent_heat"], item)
+    return numbers

@@ -1,0 +1,1 @@
+"""Samplers of distributions, and whether their chains have converged. They know nothing of buildings."""

@@ -1,0 +1,47 @@
+"""The comparison of a building with measurements, without a calibration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """What ``mascarin validate`` finds.
+
+    Attributes
+    ----------
+    content : dict
+        The content of ``validation.json``.
+    series : pandas.DataFrame
+        The content of ``series.csv``.
+    """
+
+    content: dict[str, Any]
+    series: pd.DataFrame
+
+    @property
+    def remarks(self) -> list[str]:
+        """Where the posterior extrapolates, and what contradicts the study; read them first."""
+        return [str(entry["text"]) for entry in self.content["contradictions"]]
+
+    @property
+    def bands(self) -> dict[str, Any]:
+        """Half-width of the bands of each sensor, and the part of the values inside, by period.
+
+        Empty for a building without a posterior.
+        """
+        bands: dict[str, Any] = self.content.get("band", {})
+        return bands
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for a JSON file."""
+        return self.content
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return measured and predicted series, with their bands."""
+        return self.series
