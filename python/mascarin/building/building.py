@@ -32,6 +32,7 @@ from mascarin.building.parameters.sources import sources
 from mascarin.building.parameters.ties import spread, spread_ranges, with_tied
 from mascarin.building.parts.defaults import DERIVED
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.weather import unstated
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -302,9 +303,10 @@ class Building(Description):
         'brunt'
         """
         changes = spread(self, mapping_of("values", values, "values or parts by path"))
+        if stated := unstated(self.weather, changes):
+            return self.replace(stated).replace(values)
         places = {self._place(path, value): without_parts(value) for path, value in changes.items()}
-        structural = any(self._is_structural(path) for path in places)
-        plain = self.written(keep_derived=not structural)
+        plain = self.written(keep_derived=not any(self._is_structural(path) for path in places))
         for path, value in places.items():
             put(plain, self, path.split("."), value)
         return self._read(plain, self.name)
