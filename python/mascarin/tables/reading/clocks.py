@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.reading.iso_stamps import iso_stamps
 from mascarin.tables.timezones import YEARS, localize, zone_name
 
 if TYPE_CHECKING:
@@ -130,6 +131,8 @@ def _plain_iso(text: pd.Series[Any]) -> pd.DatetimeIndex | None:
 
     if not len(text) or not isinstance(text.iloc[0], str) or not _ISO_TEXT.fullmatch(text.iloc[0]):
         return None
+    if (times := iso_stamps(text)) is not None:
+        return pd.DatetimeIndex(times)
     try:
         index = pd.DatetimeIndex(pd.to_datetime(text, format="ISO8601"))
     except (ValueError, TypeError):  # an offset, 24:00, another order: read with care

@@ -35,9 +35,20 @@ def file_hash(path: Path) -> str:
     InputError
         There is no such file, or it is a pipe or a device.
     """
+    return hashlib.sha256(content_of(path)).hexdigest()
+
+
+def content_of(path: Path) -> bytes:
+    """Bytes of a file.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is a pipe or a device.
+    """
     require_regular(path)
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return path.read_bytes()
     except FileNotFoundError as error:
         raise InputError(f"{path}: no such file; give the path from the folder you work in.") from error
     except OSError as error:
@@ -100,13 +111,17 @@ class Read:
         return {name: getattr(self, name) for name in names}
 
 
-def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
+def read_frame(
+    path: Path, content: bytes, separator: str | None, decimal: str | None, skip_lines: int | None
+) -> Read:
     """Read a CSV or Parquet file, or a spreadsheet, without changing it.
 
     Parameters
     ----------
     path : Path
         The file; its ending shows whether it is Parquet or a spreadsheet.
+    content : bytes
+        What is in it.
     separator, decimal : str or None
         Between entries of a CSV file, and its decimal mark; None: found.
     skip_lines : int or None
@@ -147,14 +162,14 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
         # Numbers of cells have no marks that could be read in two ways.
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
     else:
-        text, encoding = decoded(path.read_bytes(), path.name)
+        text, encoding = decoded(content, path.name)
     body = _large_body(text, path.name, separator, decimal, skip_lines) or _body(
         text, path.name, separator, decimal, skip_lines
     )
     del text  # a large table is in memory once, as far as that is possible
     layout, rows = body.layout, body.rows
     notes = (*sheet, *_notes(layout, encoding, body.head, path.name), *body.notes)
-    frame = _parsed(body.text, rows, layout, path.name, doubt=decimal is None)
+    frame = _parsed(body.content, rows, layout, path.name, doubt=decimal is None)
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     if layout.trailing:
         frame = frame.iloc[:, :-1]
@@ -177,7 +192,7 @@ class _Body:
     """The rows of a text file below a line with the names."""
 
     layout: Layout
-    text: str
+    content: bytes
     rows: Lines
     head: Sequence[str]
     last: str
@@ -203,7 +218,7 @@ def _body(text: str, where: str, separator: str | None, decimal: str | None, ski
                   "were left out.",)  # fmt: skip
     data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
     body = "\n".join([_names_line(lines, layout), *data])
-    return _Body(layout, body, rows, lines[: layout.first], last, count, notes)
+    return _Body(layout, body.encode(), rows, lines[: layout.first], last, count, notes)
 
 
 def _names_line(lines: Sequence[str], layout: Layout) -> str:
@@ -233,7 +248,9 @@ def _large_body(
     last = text[text.rfind("\n") + 1 :]
     count = text.count("\n", first) + bool(last)
     rows = layout.first + np.arange(count, dtype=np.int64)
-    body = f"{_names_line(lines, layout)}\n{text[first:]}"
+    # The head may have letters of several bytes; the rows are not copied before they are put together.
+    rest = memoryview(text.encode())[len(text[:first].encode()) :]
+    body = b"".join([f"{_names_line(lines, layout)}\n".encode(), rest])
     return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
 
 
@@ -264,7 +281,7 @@ def _is_head_again(line: str, lines: Sequence[str], layout: Layout) -> bool:
     return line[:5] == first[:5] and line.count(layout.separator) == first.count(layout.separator)
 
 
-def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
+def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
     import pandas as pd
 
     options: dict[str, Any] = {
@@ -275,7 +292,7 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(BytesIO(body.encode()), **options)
+            frame = read_csv(BytesIO(body), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
             f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
@@ -296,7 +313,7 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(BytesIO(body.encode()), dtype=str, **options)
+        texts = read_csv(BytesIO(body), dtype=str, **options)
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
     return frame

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,7 +18,7 @@ from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
-from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
+from mascarin.tables.reading.files import Read, content_of, read_frame, with_time_column
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
     has_words,
@@ -242,8 +243,10 @@ def read_table(
     else:
         path = Path(source)
         where = path.name
-        digest = file_hash(path)
-        read = read_frame(path, separator, decimal, skip_lines)
+        content = content_of(path)
+        digest = hashlib.sha256(content).hexdigest()
+        read = read_frame(path, content, separator, decimal, skip_lines)
+        del content
         frame, said = read.frame, read.notes
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
@@ -351,9 +354,7 @@ def _regular(
     seconds = epoch_seconds(index)
     gaps = np.round(np.diff(seconds), 6)
     _ordered(gaps, index, lines, where, zone)
-    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
-    commonest = np.lexsort((place, -counts))[0]  # the earlier of two that are equally common
-    interval = expected if expected is not None else float(lengths[commonest])
+    interval = expected if expected is not None else _commonest(gaps)
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
     moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
@@ -397,6 +398,14 @@ def _regular(
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
 
 
+def _commonest(gaps: Array) -> float:
+    """The commonest step, of two that are equally common the earlier one. [s]"""
+    if (gaps == gaps[0]).all():
+        return float(gaps[0])
+    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
+    return float(lengths[np.lexsort((place, -counts))[0]])
+
+
 def _without_jitter(
     seconds: Array, expected: float | None, interval: float, tolerance: float | None
 ) -> tuple[Array, float, str] | None:
@@ -416,6 +425,8 @@ def _without_jitter(
 
 def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[str]:
     """Sentences on the changes of the clock inside a record."""
+    if zone.utcoffset(None) is not None:  # a clock that never changes
+        return []
     naive = index.tz_localize(None).to_numpy()
     offset = (naive - index.tz_convert("UTC").tz_localize(None).to_numpy()) / np.timedelta64(60, "s")
     changes = [int(k) for k in np.flatnonzero(np.diff(offset))]

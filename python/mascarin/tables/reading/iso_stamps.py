@@ -1,0 +1,117 @@
+"""Stamps of one width, such as 2024-09-04 00:15:00, read all at once: long records have millions of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.tables.arrays import Lines
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    Bytes = npt.NDArray[np.uint8]
+
+#: Places of the marks between the digits, and the marks.
+_MARKS: Final = ((4, "-"), (7, "-"), (13, ":"), (16, ":"))
+_WIDTHS: Final = (16, 19)
+#: Rows that are worked out together, so that little memory is used beside the result.
+_BLOCK: Final = 2**18
+
+
+def iso_stamps(text: pd.Series[Any]) -> npt.NDArray[np.datetime64] | None:
+    """Stamps of which each is ISO 8601 to the minute or to the second, without an offset.
+
+    Parameters
+    ----------
+    text : pandas.Series
+        As read.
+
+    Returns
+    -------
+    ndarray, shape (n,), or None
+        Times without a zone; None where one is of another form, or no time of the calendar.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> iso_stamps(pd.Series(["2024-02-29 23:59", "2024-03-01 00:00"]))[0]
+    np.datetime64('2024-02-29T23:59:00.000000')
+    >>> iso_stamps(pd.Series(["2023-02-29 23:59"])) is None
+    True
+    """
+    letters = _letters(text)
+    if letters is None or letters.shape[1] not in _WIDTHS:
+        return None
+    times = np.empty(len(letters), dtype="datetime64[us]")
+    for row in range(0, len(letters), _BLOCK):
+        block = _times(letters[row : row + _BLOCK])
+        if block is None:
+            return None
+        times[row : row + _BLOCK] = block
+    return times
+
+
+def _letters(text: pd.Series[Any]) -> Bytes | None:
+    """The bytes of texts of one width, shape (n, width); None where widths differ or one is missing."""
+    width = len(str(text.iloc[0]))
+    try:
+        import pyarrow as pa
+
+        column = pa.array(text.array, type=pa.large_string())
+        column = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
+        if column.null_count or len(column) != len(text):
+            return None
+        _, ends, content = column.buffers()
+        places = np.frombuffer(ends, dtype=np.int64)[column.offset : column.offset + len(column) + 1]
+        if not (np.diff(places) == width).all():
+            return None
+        raw = np.frombuffer(content, dtype=np.uint8)[places[0] : places[-1]]
+    except ImportError:
+        try:
+            joined = "".join(text.tolist())
+        except TypeError:  # a missing value is no text
+            return None
+        if len(joined) != width * len(text) or not joined.isascii():
+            return None
+        if not all(len(entry) == width for entry in text.tolist()):
+            return None
+        raw = np.frombuffer(joined.encode(), dtype=np.uint8)
+    except (TypeError, ValueError):
+        return None
+    return raw.reshape(len(text), width)
+
+
+def _times(letters: Bytes) -> npt.NDArray[np.datetime64] | None:
+    width = letters.shape[1]
+    marks = [(at, mark) for at, mark in _MARKS if at < width]
+    if any((letters[:, at] != ord(mark)).any() for at, mark in marks):
+        return None
+    if not np.isin(letters[:, 10], [ord(" "), ord("T")]).all():
+        return None
+    between = {at for at, _ in marks} | {10}
+    digits = [at for at in range(width) if at not in between]
+    if any(((letters[:, at] < ord("0")) | (letters[:, at] > ord("9"))).any() for at in digits):
+        return None
+
+    def number(first: int, count: int) -> Lines:
+        total = np.zeros(len(letters), dtype=np.int64)
+        for at in range(first, first + count):
+            total = 10 * total + (letters[:, at] - ord("0"))
+        return total
+
+    hour, minute = number(11, 2), number(14, 2)
+    second = number(17, 2) if width > 16 else np.zeros_like(hour)
+    if (hour > 23).any() or (minute > 59).any() or (second > 59).any():
+        return None
+    month, day = number(5, 2), number(8, 2)
+    if ((month < 1) | (month > 12) | (day < 1)).any():
+        return None
+    months = ((number(0, 4) - 1970) * 12 + month - 1).astype("datetime64[M]")
+    dates = months.astype("datetime64[D]") + (day - 1).astype("timedelta64[D]")
+    if (dates.astype("datetime64[M]") != months).any():
+        return None
+    seconds = 3600 * hour + 60 * minute + second
+    return np.asarray(dates.astype("datetime64[us]") + seconds.astype("timedelta64[s]"))
