@@ -67,17 +67,13 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "logger.csv"
         write(path, options.rows)
+        quiet = {**os.environ, "MASCARIN_CACHE": "off"}
         best: dict[str, tuple[float, float]] = {}
         for _ in range(options.times):
             for how in ("pandas", "mascarin"):
                 call = [sys.executable, __file__, "--one", str(path), how]
-                text = subprocess.run(
-                    call,
-                    capture_output=True,
-                    text=True,
-                    check=True,
-                    env={**os.environ, "MASCARIN_CACHE": "off"},
-                ).stdout
+                process = subprocess.run(call, capture_output=True, text=True, check=True, env=quiet)  # noqa: S603
+                text = process.stdout
                 seconds, memory = map(float, text.split())
                 best[how] = min(best.get(how, (1e9, 0.0)), (seconds, memory))
     ratio = best["mascarin"][0] / best["pandas"][0]

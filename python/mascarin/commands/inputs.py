@@ -201,10 +201,10 @@ def read_weather(file: Path, *, check_sun: bool = True, shift: str | None = None
     match file.suffix.lower():
         case ".epw":
             return Climate.from_epw(file, check_sun=check_sun, shift=shift)
-        case ".csv":
+        case ".csv" | ".tm2":
             return Climate.from_tmy(file, check_sun=check_sun, shift=shift)
         case suffix:
             raise InputError(
-                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "
-                "another table with --column), .parquet (with --column), .yaml or shipped:NAME"
+                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .tm2, .csv (TMY3, "
+                "or another table with --column), .parquet (with --column), .yaml or shipped:NAME"
             )

@@ -17,6 +17,7 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
+from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked
 from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
 from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
@@ -156,8 +157,15 @@ def read_frame(
             ) from error
         except (ValueError, OSError) as error:
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
+    named, content = unpacked(path, content)
+    if is_bsrn(content):
+        frame = read_bsrn(path, content)
+        said = (f"{path.name}: a station-to-archive file of BSRN, record 0100, minutes in UTC.",)
+        units = dict(frame.attrs["units"])
+        rows = 1 + np.arange(len(frame), dtype=np.int64)
+        return Read(with_time_column(frame), rows, said, units)
     sheet: tuple[str, ...] = ()
-    if path.suffix.lower() in ENDINGS:
+    if named.suffix.lower() in ENDINGS:
         text, sheet = sheet_text(path)
         # Numbers of cells have no marks that could be read in two ways.
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
@@ -173,6 +181,10 @@ def read_frame(
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     if layout.trailing:
         frame = frame.iloc[:, :-1]
+    if is_meteo_france(frame):
+        frame, known = of_one_station(frame, path.name)
+        note = f"{path.name}: hourly data of Meteo-France: UTC, units by its description."
+        return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=("UTC", 1))
     _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
     preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))

@@ -26,6 +26,7 @@ from mascarin.tables.reading.rows import (
     rows_with_values,
     time_text,
     without_entries,
+    without_units,
 )
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
@@ -248,6 +249,7 @@ def read_table(
         read = read_frame(path, content, separator, decimal, skip_lines)
         del content
         frame, said = read.frame, read.notes
+    frame, of_entries = without_units(frame)
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
@@ -274,7 +276,8 @@ def read_table(
     if of_pvgis:
         note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
-    return table if read is None else replace(table, **read.said_of_itself)
+    table = table if read is None else replace(table, **read.said_of_itself)
+    return replace(table, units={**table.units, **of_entries}) if of_entries else table
 
 
 def _empty_rows(frame: pd.DataFrame) -> Flags:
