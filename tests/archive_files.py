@@ -104,7 +104,7 @@ def dwd() -> list[File]:
         ]
 
     good = made(None)
-    options = {"time": "MESS_DATUM", "columns": ["TT_10", "RF_10"]}
+    options: dict[str, Any] = {"time": "MESS_DATUM", "columns": ["TT_10", "RF_10"]}
     return [
         text("produkt_zehn_min.txt", good, "TT_10", **options),
         text("produkt_gap.txt", made(17), "TT_10", missing=[-999], **options),

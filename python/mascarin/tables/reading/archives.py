@@ -110,16 +110,16 @@ def read_bsrn(path: Path, content: bytes) -> pd.DataFrame:
             "minute: the file is cut or damaged; get it again."
         )
     try:
-        frame, _ = read(path)
+        frame: pd.DataFrame = read(path)[0]
     except (ValueError, KeyError, IndexError, TypeError) as error:
         raise InputError(
             f"{path.name}: found a station-to-archive file that cannot be read ({error}), expected one of "
             "BSRN; get it again."
         ) from error
-    frame = frame[list(_BSRN_UNITS)].astype("float64")
-    frame.index.name = "time"
-    frame.attrs["units"] = dict(_BSRN_UNITS)
-    return frame
+    basic: pd.DataFrame = frame[list(_BSRN_UNITS)].astype("float64")
+    basic.index.name = "time"
+    basic.attrs["units"] = dict(_BSRN_UNITS)
+    return basic
 
 
 def is_meteo_france(frame: pd.DataFrame) -> bool:

@@ -156,7 +156,9 @@ def read_frame(
                 f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
             ) from error
         except (ValueError, OSError) as error:
-            raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
+            raise InputError(
+                f"{path.name}: cannot be read as Parquet ({error}), expected a whole file; write it again."
+            ) from error
     named, content = unpacked(path, content)
     if is_bsrn(content):
         frame = read_bsrn(path, content)
@@ -307,14 +309,19 @@ def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool
             frame = read_csv(BytesIO(body), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
-            f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
-            f"column, or, if {layout.separator!r} is also the decimal mark, write the table with another "
-            "separator."
+            f"{where}:{layout.first + 1}: the row has more entries than the header has names, expected as "
+            f"many; name every column, or, if {layout.separator!r} is also the decimal mark, write the table "
+            "with another separator."
         ) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
-        said = re.sub(r"(?<=line )\d+", lambda found: str(int(rows[int(found[0]) - 2]) + 1), str(error))
+        said = re.sub(
+            r"(?<=line )\d+",
+            lambda found: str(int(rows[int(found[0]) - 2]) + 1),
+            " ".join(str(error).split()),
+        )
         raise InputError(
-            f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}".strip()
+            f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}; expected the "
+            "same number of entries in each line: repair the line, or state another separator."
         ) from error
     doubtful = [
         k
@@ -353,6 +360,6 @@ def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -
     count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(
-            f"{where}:{line}: the last line has {count} of {fields} entries and no line end: the file "
-            "is cut; get the whole file, or remove that line."
+            f"{where}:{line}: the last line, {last.strip()[:40]!r}, has {count} entries and no line end, "
+            f"expected {fields}: the file is cut; get the whole file, or remove that line."
         )

@@ -77,7 +77,8 @@ def parse_numbers(
     infinite = np.flatnonzero(np.isinf(values))
     if len(infinite):
         raise InputError(
-            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number."
+            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number; "
+            "repair it, or name it in missing: ['inf', '-inf']."
         )
     return values
 

@@ -43,7 +43,10 @@ def time_text(
     for name in names:
         if name not in frame.columns:
             hint = did_you_mean(str(name), [str(column) for column in frame.columns])
-            raise InputError(f"{where}: no time column {name!r}. {hint}".rstrip())
+            raise InputError(
+                f"{where}: no time column {name!r}. {hint} Expected the name of a column of the file, or "
+                "several in a list."
+            )
     if len(names) == 1:
         return frame[names[0]], names
     joined = frame[names[0]].astype(str)

@@ -164,7 +164,10 @@ class Table:
         if column not in self.frame.columns:
             names = [str(name) for name in self.frame.columns]
             hint = did_you_mean(column, names) or f"Columns: {', '.join(names[:40])}."
-            raise InputError(f"{self.where}: no column {column!r} (wanted for {what}). {hint}")
+            raise InputError(
+                f"{self.where}: no column {column!r} (wanted for {what}). {hint} Expected the name of a "
+                "column of the file."
+            )
         place = f"{self.where}: column {column!r}"
         entries = self.frame[column]
         return parse_numbers(
@@ -254,7 +257,9 @@ def read_table(
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
-        raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
+        raise InputError(
+            f"{where}: found {len(frame)} rows, expected at least two to know the step: get the whole file."
+        )
     if time is None and time_format is None and (parts := parts_of_time(frame)):
         time, time_format = parts
     text, used = time_text(frame, time, where)
