@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -51,10 +52,10 @@ def frame(late: str = "0min", names: tuple[str, ...] = NAMES[:1], gain: float = 
 
 
 def climate(table: pd.DataFrame, **options: object) -> mc.Climate:
-    return mc.Climate.from_table(table, columns={name: name for name in table}, **options)  # type: ignore[arg-type]
+    return mc.Climate.from_table(table, columns={str(n): str(n) for n in table}, **options)  # type: ignore[arg-type]
 
 
-def building(**columns: dict[str, object]) -> Building:
+def building(**columns: Mapping[str, object]) -> Building:
     place = {"site.latitude": 45.0, "site.longitude": 5.0, "site.altitude": 200.0, "site.timezone": "UTC"}
     return box().replace({**place, "weather": {"columns": columns}} if columns else place)
 
@@ -81,7 +82,7 @@ def test_a_gain_is_that_of_the_table() -> None:
 def test_a_clock_is_the_shift_of_the_table(names: tuple[str, ...]) -> None:
     """A clock of the whole weather is what `shift` does, also for a shift that is no whole step."""
     late = frame("25min", names)
-    moved = late.set_index(late.index - pd.Timedelta("25min"))
+    moved = late.set_index(pd.DatetimeIndex(late.index) - pd.Timedelta("25min"))
     wanted = mc.Simulation(building(), climate(moved, check_sun=False), **PERIOD)  # type: ignore[arg-type]
     corrected = building().replace({"weather": {"clock": -1500.0}})
     got = mc.Simulation(corrected, climate(late), **PERIOD)  # type: ignore[arg-type]
@@ -190,7 +191,7 @@ def test_irradiances_have_one_clock() -> None:
 
 def test_a_channel_that_is_absent_has_no_error() -> None:
     table = frame().drop(columns="wind_speed")
-    weather = mc.Climate.from_table(table, columns={name: name for name in table}, absent=["wind_speed"])
+    weather = mc.Climate.from_table(table, columns={str(n): str(n) for n in table}, absent=["wind_speed"])
     with pytest.raises(InputError, match="has no measured wind_speed"):
         mc.Simulation(building(wind_speed={"gain": 0.8}), weather, **PERIOD)  # type: ignore[arg-type]
 
@@ -219,8 +220,8 @@ def folder(tmp_path: Path) -> Path:
     table = weather.assign(**{name: weather[name] / 1.08 for name in NAMES}).round(4)
     noise = 0.02 * np.random.default_rng(2).normal(size=len(run.index))
     table["room"] = pd.Series(run.records[:, 0] + noise, index=run.index)
-    table.index = table.index.tz_localize(None)
-    table.loc["2024-03-02":"2024-03-10"].to_csv(tmp_path / "logger.csv", index_label="time")  # type: ignore[misc]
+    table.index = pd.DatetimeIndex(table.index).tz_localize(None)
+    table.loc["2024-03-02":"2024-03-10"].to_csv(tmp_path / "logger.csv", index_label="time")
     building().to_yaml(tmp_path / "box.yaml")
     columns = {name: name for name in weather}
     (tmp_path / "study.yaml").write_text(

@@ -129,7 +129,7 @@ def input_errors(setup: Setup, simulation: Simulation, vector: Array) -> Iterato
             before.gain * error.gain, before.offset * error.gain + error.offset, before.clock + error.clock
         )
         without = corrected.at(forcing, known, {**known, column: after}, (clock, clock))
-        yield InputFault(what, subject, without, scale, unit)
+        yield InputFault(what, subject, np.asarray(without), scale, unit)
 
 
 def _candidates(setup: Setup, simulation: Simulation, forcing: Array) -> Iterator[Candidate]:

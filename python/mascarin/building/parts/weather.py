@@ -61,7 +61,7 @@ def unstated(weather: Weather | None, paths: Iterable[str]) -> dict[str, Mapping
     """
     numbers = [path.split(".") for path in paths if path.startswith("weather.")]
     stated = {} if weather is None else weather.columns
-    columns = {
+    columns: dict[str, Mapping[str, object]] = {
         ".".join(steps[:3]): {}
         for steps in numbers
         if len(steps) == 4 and steps[1] == "columns" and steps[2] not in stated

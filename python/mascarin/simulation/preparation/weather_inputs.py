@@ -90,7 +90,7 @@ class WeatherInputs:
         if np.array_equal(values, self.base):
             return forcing
         before, after = (self.errors(row) for row in (self.base, values))
-        return self.corrected.at(forcing, before[0], after[0], (before[1], after[1]))
+        return np.asarray(self.corrected.at(forcing, before[0], after[0], (before[1], after[1])))
 
     def groups(self, vectors: Array) -> Iterator[tuple[npt.NDArray[np.int64], Array]]:
         """Members with the same weather: their rows, and the first of their vectors."""

@@ -29,6 +29,8 @@ _BSRN_UNITS: Final = {
 }  # fmt: skip
 _STATION: Final = "NUM_POSTE"
 _HOUR: Final = "AAAAMMJJHH"
+#: Departements overseas begin here; the first digits of a station are its departement.
+_OVERSEAS: Final = 97
 _ABOUT: Final = (_STATION, "NOM_USUEL", "LAT", "LON", "ALTI")
 _METEO_FRANCE: Final = {
     "T": "degC", "TD": "degC", "TN": "degC", "TX": "degC", "T10": "degC", "T20": "degC", "T50": "degC",
@@ -127,8 +129,11 @@ def is_meteo_france(frame: pd.DataFrame) -> bool:
     return _STATION in frame.columns and _HOUR in frame.columns
 
 
-def of_one_station(frame: pd.DataFrame, where: str) -> tuple[pd.DataFrame, dict[str, str]]:
-    """The measurements of a table of Meteo-France, and their units; codes of quality are left out.
+def of_one_station(frame: pd.DataFrame, where: str) -> tuple[pd.DataFrame, dict[str, str], str]:
+    """The measurements of a table of Meteo-France, their units and their clock, without codes of quality.
+
+    Hours are UTC in mainland France and Corsica. Overseas they are those of the place, whose zone the user
+    states.
 
     Parameters
     ----------
@@ -154,4 +159,6 @@ def of_one_station(frame: pd.DataFrame, where: str) -> tuple[pd.DataFrame, dict[
     codes = {name for name in names if name.startswith("Q") and name[1:] in names}
     columns = [name for name in names if name not in codes and name not in _ABOUT and name != _HOUR]
     # The hour first: it is the time.
-    return frame[[_HOUR, *columns]], {n: _METEO_FRANCE[n] for n in columns if n in _METEO_FRANCE}
+    overseas = int(stations[0]) // 1_000_000 >= _OVERSEAS
+    units = {name: _METEO_FRANCE[name] for name in columns if name in _METEO_FRANCE}
+    return frame[[_HOUR, *columns]], units, "" if overseas else "UTC"

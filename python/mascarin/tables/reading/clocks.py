@@ -314,8 +314,8 @@ def _of_dates(
             f"{found[name][0]:%Y-%m-%d %H:%M} ({_FORMATS[name]})" for name in (best, rivals[0])
         )
         raise InputError(
-            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; expected "
-            f"one reading: state time_format: {_written_format(written.iloc[0], best)!r} or "
+            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; "
+            f"expected one reading: state time_format: {_written_format(written.iloc[0], best)!r} or "
             f"{_written_format(written.iloc[0], rivals[0])!r}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
@@ -381,7 +381,8 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
         raise InputError(
             f"{where}:{lines[row]}: with time_format {time_format!r} the time after "
             f"{index[row - 1]:%Y-%m-%d %H:%M} is {index[row]:%Y-%m-%d %H:%M}; expected one "
-            f"step: with day and month exchanged all are {steps[1][0]} s. State time_format: {swapped!r}, or "
+            f"step: with day and month exchanged all steps are {steps[1][0]} s. "
+            f"State time_format: {swapped!r}, or "
             "repair the stamps."
         )
 

@@ -184,9 +184,11 @@ def read_frame(
     if layout.trailing:
         frame = frame.iloc[:, :-1]
     if is_meteo_france(frame):
-        frame, known = of_one_station(frame, path.name)
-        note = f"{path.name}: hourly data of Meteo-France: UTC, units by its description."
-        return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=("UTC", 1))
+        frame, known, clock = of_one_station(frame, path.name)
+        note = (
+            f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units by its description."
+        )
+        return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=(clock, 1))
     _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
     preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
@@ -360,6 +362,6 @@ def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -
     count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(
-            f"{where}:{line}: the last line, {last.strip()[:40]!r}, has {count} entries and no line end, "
-            f"expected {fields}: the file is cut; get the whole file, or remove that line."
+            f"{where}:{line}: the last line has {count} of {fields} entries, "
+            f"{last.strip()[:40]!r}, and no line end, expected all: the file is cut; get the whole file, or remove that line."
         )
