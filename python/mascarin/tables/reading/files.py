@@ -185,9 +185,7 @@ def read_frame(
         frame = frame.iloc[:, :-1]
     if is_meteo_france(frame):
         frame, known, clock = of_one_station(frame, path.name)
-        note = (
-            f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units by its description."
-        )
+        note = f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units as described."
         return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=(clock, 1))
     _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
     preamble = body.head[: layout.header]
@@ -363,5 +361,6 @@ def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -
     if last.strip() and count < fields:
         raise InputError(
             f"{where}:{line}: the last line has {count} of {fields} entries, "
-            f"{last.strip()[:40]!r}, and no line end, expected all: the file is cut; get the whole file, or remove that line."
+            f"{last.strip()[:40]!r}, and no line end, expected all: the file is cut; get the whole file, or "
+            "remove that line."
         )
