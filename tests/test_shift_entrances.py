@@ -37,7 +37,7 @@ def folder(tmp_path: Path) -> Path:
     stamps = pd.to_datetime(record.grid.start + 1800.0 * np.arange(record.grid.count), unit="s")
     frame = pd.DataFrame(
         {
-            "air_temperature": 12.0 + np.sin(stamps.hour / 4.0).to_numpy(), "dew_point": 3.0, "wind_speed": 2.0,
+            "air_temperature": 12.0 + np.sin(np.asarray(stamps.hour) / 4.0), "dew_point": 3.0, "wind_speed": 2.0,
             "wind_direction": 0.0, "global_horizontal": record.columns["global_horizontal"].round(1), "room": 20.0,
         },
         index=pd.Index(stamps.strftime("%Y-%m-%d %H:%M"), name="time"),

@@ -74,6 +74,17 @@ Shift = Annotated[
         "--shift=-30min.",
     ),
 ]
+Compared = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--compare",
+        negative="",
+        help="Output and the measured column that it is compared with, as OUTPUT=COLUMN, such as "
+        "room.air_temperature=T_room; the column is in the table of --measurements, or of --weather. Where "
+        "the weather represents any year, the run covers the whole days of that table. Can be given several "
+        "times.",
+    ),
+]
 Stamps = Annotated[
     Literal["start", "end"],
     Parameter(help="Which end of its interval a stamp of a measured table marks."),
