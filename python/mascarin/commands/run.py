@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.results import Results
     from mascarin.simulation.run_summary import Finished
     from mascarin.simulation.simulation import Simulation
+    from mascarin.validation.comparison import Metrics
     from mascarin.weather import Climate
 
 #: Shadows that take longer are announced [s].
@@ -116,8 +117,8 @@ def run(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
             allow_outside=allow_outside, check_sun=check_sun, shift=shift,
         )  # fmt: skip
-        table = measurements or weather
-        sensors, readings = compared_columns(compared, table, described, timezone, stamps, shift)
+        source = (measurements or weather, described, timezone, stamps, shift)
+        sensors, readings = compared_columns(compared, *source)
         start, end = period_of(climate, readings, start, end)
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
@@ -135,13 +136,24 @@ def run(
         if out is not None:
             _write(results, out)
     if as_json:
-        shown = {"comparison": {name: asdict(each) for name, each in metrics.items()}} if metrics else {}
-        print_json(_summary(results) | shown)
-    elif out is None:
-        _print(results)
-    if not as_json:
-        print_comparison(metrics, sensors)
+        print_json(_summary(results) | _plain(metrics))
+    else:
+        _print_all(results, metrics, sensors, summary=out is None)
     return exit_code(sound=results.sound)
+
+
+def _plain(metrics: Mapping[str, Metrics]) -> dict[str, Any]:
+    """Metrics of a comparison for JSON; nothing where there is none."""
+    return {"comparison": {name: asdict(each) for name, each in metrics.items()}} if metrics else {}
+
+
+def _print_all(
+    results: Results, metrics: Mapping[str, Metrics], sensors: Mapping[str, str], *, summary: bool
+) -> None:
+    """The summary, where no file was written, and lines of a comparison."""
+    if summary:
+        _print(results)
+    print_comparison(metrics, sensors)
 
 
 def _start(temperature: float | None) -> float | Literal["repeat"]:

@@ -148,17 +148,7 @@ def read_frame(
         said = (f"{path.name}: read by {name_of(reader)}.",)
         return Read(frame, 1 + np.arange(len(frame), dtype=np.int64), said, units)
     if path.suffix.lower() in {".parquet", ".pq"}:
-        try:
-            frame = with_time_column(pd.read_parquet(path))
-            return Read(frame, 1 + np.arange(len(frame), dtype=np.int64))
-        except ImportError as error:
-            raise InputError(
-                f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
-            ) from error
-        except (ValueError, OSError) as error:
-            raise InputError(
-                f"{path.name}: cannot be read as Parquet ({error}), expected a whole file; write it again."
-            ) from error
+        return _parquet(path)
     named, content = unpacked(path, content)
     if is_bsrn(content):
         frame = read_bsrn(path, content)
@@ -199,6 +189,20 @@ def read_frame(
         frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated,
         layout.evident, said_units, (words, line + 1),
     )  # fmt: skip
+
+
+def _parquet(path: Path) -> Read:
+    import pandas as pd
+
+    try:
+        frame = with_time_column(pd.read_parquet(path))
+        return Read(frame, 1 + np.arange(len(frame), dtype=np.int64))
+    except ImportError as error:
+        raise InputError(f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet].") from error
+    except (ValueError, OSError) as error:
+        raise InputError(
+            f"{path.name}: cannot be read as Parquet ({error}), expected a whole file; write it again."
+        ) from error
 
 
 @dataclass(frozen=True)

@@ -271,18 +271,26 @@ def read_table(
     zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
     said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
-    if shift is not None and (moved := shift_of(shift, f"{where}: shift")):
-        frame.index = stamps_of(epoch_seconds(pd.DatetimeIndex(frame.index)) + moved, zone)
-        said = (*said, f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift).")
+    frame.index, said = _shifted(pd.DatetimeIndex(frame.index), shift, zone, where, said)
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
-    of_pvgis = bool(_PVGIS.fullmatch(str(text.iloc[0])))
-    if of_pvgis:
+    if _PVGIS.fullmatch(str(text.iloc[0])):
         note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     table = table if read is None else replace(table, **read.said_of_itself)
     return replace(table, units={**table.units, **of_entries}) if of_entries else table
+
+
+def _shifted(
+    index: pd.DatetimeIndex, shift: str | float | None, zone: tzinfo, where: str, said: tuple[str, ...]
+) -> tuple[pd.DatetimeIndex, tuple[str, ...]]:
+    """Stamps of a clock that the user corrects, and the notes with that."""
+    moved = 0.0 if shift is None else shift_of(shift, f"{where}: shift")
+    if not moved:
+        return index, said
+    note = f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift)."
+    return stamps_of(epoch_seconds(index) + moved, zone), (*said, note)
 
 
 def _empty_rows(frame: pd.DataFrame) -> Flags:
