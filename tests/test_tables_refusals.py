@@ -181,7 +181,7 @@ def test_a_refusal_names_what_it_is_about_and_its_remedy_works(kind: str, tmp_pa
 ELSEWHERE = {
     ("archives.py", "unpacked"): "test_tables_archives.py",
     ("files.py", "content_of"): "test_weather_table.py",
-    ("files.py", "read_frame"): "test_tables_formats.py",
+    ("files.py", "_parquet"): "test_tables_formats.py",
     ("layout.py", "decoded"): "test_weather_layout.py",
     ("own_readers.py", "register_reader"): "test_tables_formats.py",
     ("own_readers.py", "reader_of"): "test_tables_formats.py",
