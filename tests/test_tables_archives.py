@@ -14,6 +14,7 @@ from archive_files import ALL, STATION, bsrn, meteo_france
 from logger_files import TIMES, TRUE, File, write
 from mascarin import Climate, Measurements
 from mascarin.errors import InputError
+from mascarin.tables.reading.iso_stamps import iso_stamps
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather.clock_shift import shifts_of
 from test_tables_formats import read_or_refused
@@ -121,3 +122,19 @@ def test_a_real_file_of_meteo_france(data_dir: Path) -> None:
     assert "degC" in read.record.origins["T"].line
     with pytest.raises(InputError, match="no column 'QT'"):
         Measurements.from_table(path, timezone="Indian/Reunion", columns=["QT"])
+
+
+@pytest.mark.parametrize("form", ["%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M:%S"])
+def test_stamps_read_at_once_are_those_of_pandas(form: str) -> None:
+    text = pd.Series(pd.date_range("1999-12-31 23:00", periods=3000, freq="7h13min").strftime(form))
+    times = iso_stamps(text)
+    assert times is not None
+    assert (times == pd.to_datetime(text, format=form).to_numpy()).all()
+    for wrong in (
+        "2023-02-30 00:00",
+        "2023-13-01 00:00",
+        "2023-01-01 24:00",
+        "2023-01-01 0x:00",
+        "2023-01-01",
+    ):
+        assert iso_stamps(pd.concat([text, pd.Series([wrong])])) is None

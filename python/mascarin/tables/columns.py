@@ -191,6 +191,8 @@ class Column:
                     f"{unit}; expected one of {', '.join(units_of(unit))}, or give scale and offset instead."
                 )
             values = values * found[0] + found[1]
+        if self.scale == 1.0 and self.offset == 0.0:
+            return values
         return values * self.scale + self.offset
 
     def line(

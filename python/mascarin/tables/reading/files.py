@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import hashlib
 import re
 import warnings
@@ -161,9 +162,11 @@ def read_frame(
         text, sheet = sheet_text(path)
         # Numbers of cells have no marks that could be read in two ways.
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
+        content = b""  # a large sheet is put together from its text
     else:
         text, encoding = decoded(content, path.name)
-    body = _large_body(text, path.name, separator, decimal, skip_lines) or _body(
+    raw = content.removeprefix(codecs.BOM_UTF8) if encoding == "utf-8-sig" else b""
+    body = _large_body(text, raw, path.name, separator, decimal, skip_lines) or _body(
         text, path.name, separator, decimal, skip_lines
     )
     del text  # a large table is in memory once, as far as that is possible
@@ -245,7 +248,7 @@ def _names_line(lines: Sequence[str], layout: Layout) -> str:
 
 
 def _large_body(
-    text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
+    text: str, raw: bytes, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
 ) -> _Body | None:
     """A large file without a loop over its lines; None where it is small, repeats heads or has remarks."""
     if len(text) < _LARGE or "\n" not in text[:_HEAD] or (skip_lines or 0) > _HEAD_LINES:
@@ -267,7 +270,7 @@ def _large_body(
     count = text.count("\n", first) + bool(last)
     rows = layout.first + np.arange(count, dtype=np.int64)
     # The head may have letters of several bytes; the rows are not copied before they are put together.
-    rest = memoryview(text.encode())[len(text[:first].encode()) :]
+    rest = memoryview(raw or text.encode())[len(text[:first].encode()) :]
     body = b"".join([f"{_names_line(lines, layout)}\n".encode(), rest])
     return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
 

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.tables.arrays import Lines
-
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
@@ -85,31 +83,30 @@ def _letters(text: pd.Series[Any]) -> Bytes | None:
 
 
 def _times(letters: Bytes) -> npt.NDArray[np.datetime64] | None:
-    width = letters.shape[1]
+    columns = np.ascontiguousarray(letters.T)  # by place in the text, each a row in memory
+    width = len(columns)
     marks = [(at, mark) for at, mark in _MARKS if at < width]
-    if any((letters[:, at] != ord(mark)).any() for at, mark in marks):
+    if any((columns[at] != ord(mark)).any() for at, mark in marks):
         return None
-    if not np.isin(letters[:, 10], [ord(" "), ord("T")]).all():
+    if ((columns[10] != ord(" ")) & (columns[10] != ord("T"))).any():
         return None
     between = {at for at, _ in marks} | {10}
-    digits = [at for at in range(width) if at not in between]
-    if any(((letters[:, at] < ord("0")) | (letters[:, at] > ord("9"))).any() for at in digits):
+    digits = columns - np.uint8(ord("0"))  # of what is below "0" a number above 9
+    if any((digits[at] > 9).any() for at in range(width) if at not in between):
         return None
 
-    def number(first: int, count: int) -> Lines:
-        total = np.zeros(len(letters), dtype=np.int64)
-        for at in range(first, first + count):
-            total = 10 * total + (letters[:, at] - ord("0"))
-        return total
+    def number(first: int) -> npt.NDArray[np.int32]:
+        return np.asarray(digits[first] * np.int32(10) + digits[first + 1], dtype=np.int32)
 
-    hour, minute = number(11, 2), number(14, 2)
-    second = number(17, 2) if width > 16 else np.zeros_like(hour)
-    if (hour > 23).any() or (minute > 59).any() or (second > 59).any():
+    hour, minute = number(11), number(14)
+    second = number(17) if width > _WIDTHS[0] else np.zeros_like(hour)
+    month, day = number(5), number(8)
+    if (hour > 23).any() or (minute > 59).any() or (second > 59).any() or (month > 12).any():
         return None
-    month, day = number(5, 2), number(8, 2)
-    if ((month < 1) | (month > 12) | (day < 1)).any():
+    if (month < 1).any() or (day < 1).any():
         return None
-    months = ((number(0, 4) - 1970) * 12 + month - 1).astype("datetime64[M]")
+    year = 100 * number(0) + number(2)
+    months = ((year - 1970) * 12 + month - 1).astype("datetime64[M]")
     dates = months.astype("datetime64[D]") + (day - 1).astype("timedelta64[D]")
     if (dates.astype("datetime64[M]") != months).any():
         return None

@@ -230,11 +230,15 @@ def without_units(frame: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     units : mapping of str to str
         The units, by column.
     """
+    import pandas as pd
+
     units: dict[str, str] = {}
     if not frame.columns.is_unique:
         return frame, units
     columns = {}
     for name in frame.columns:
+        if pd.api.types.is_numeric_dtype(frame[name].dtype):
+            continue
         entries = frame[name].dropna()
         if not len(entries) or not isinstance(entries.iloc[0], str):
             continue
@@ -247,6 +251,8 @@ def without_units(frame: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
         empty = frame[name].isna() | frame[name].astype(str).str.strip().str.lower().isin(EMPTY)
         if (there | empty).all() and (written[there] == first[2]).all():
             columns[name], units[str(name)] = numbers, first[2]
+    if not columns:
+        return frame, units
     return frame.assign(**{str(name): column for name, column in columns.items()}), units
 
 
@@ -258,6 +264,10 @@ def has_words(series: pd.Series[Any]) -> bool:
     series : pandas.Series
         As read.
     """
+    import pandas as pd
+
+    if pd.api.types.is_numeric_dtype(series.dtype):
+        return False
     entries = series.dropna()
     if not len(entries):
         return False

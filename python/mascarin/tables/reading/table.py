@@ -114,7 +114,8 @@ class Table:
     @property
     def numeric(self) -> list[str]:
         """All other columns."""
-        return [name for name in self.names if name not in self.words]
+        words = set(self.words)
+        return [name for name in self.names if name not in words]
 
     def stated_unit(self, column: str) -> StatedUnit | None:
         """Unit of a column by the row of units or by its name; None where there is none.
