@@ -22,7 +22,7 @@ from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
 from mascarin.examples import box, box_climate
 from mascarin.examples.small import BOX
-from mascarin.simulation.preparation.engine_run import Failure
+from mascarin.simulation.preparation.run_results import Failure
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate, Measurements

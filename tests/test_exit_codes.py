@@ -15,7 +15,8 @@ import pytest
 
 from crossing_entrances import COMMANDS, WITHOUT_BUILDING, Bench, enter
 from crossing_features import VARIED, description
-from mascarin.simulation.preparation.engine_run import CompiledRun, EnsembleRun, Failure
+from mascarin.simulation.preparation.engine_run import CompiledRun
+from mascarin.simulation.preparation.run_results import EnsembleRun, Failure
 
 #: Commands that end with 1 where a run is unsound.
 JUDGED: Final = (

@@ -14,7 +14,8 @@ from mascarin import cli
 from mascarin.ensemble import sweep_into
 from mascarin.examples import box, box_climate
 from mascarin.simulation.checks.judgement import Judgement, ensemble_warnings
-from mascarin.simulation.preparation.engine_run import CompiledRun, EnsembleRun
+from mascarin.simulation.preparation.engine_run import CompiledRun
+from mascarin.simulation.preparation.run_results import EnsembleRun
 
 #: What the engine says of a run: step, place, temperature, bound and range of the causes.
 OUTLIER = (5, "surface roof (inside)", -41.3, -2.0, 22.0)

@@ -48,7 +48,7 @@ def test_real_hourly_record(data_dir: Path) -> None:
     for said in (
         "9172 rows of 1 h",
         "the end of its interval",
-        "J/cm2 (as stated) converted to W/m2",
+        "J/cm2 (the file) converted to W/m2",
         "Erbs",
         "Kimball 1928",
     ):

@@ -32,6 +32,7 @@ from mascarin.building.parameters.sources import sources
 from mascarin.building.parameters.ties import spread, spread_ranges, with_tied
 from mascarin.building.parts.defaults import DERIVED
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.weather import unstated
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -302,6 +303,8 @@ class Building(Description):
         'brunt'
         """
         changes = spread(self, mapping_of("values", values, "values or parts by path"))
+        if stated := unstated(self.weather, changes):
+            return self.replace(stated).replace(values)
         values_by_path = {
             self._resolved(path, value): without_parts(value) for path, value in changes.items()
         }

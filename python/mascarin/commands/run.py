@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -16,6 +17,7 @@ from mascarin.commands.options.inputs import (
     AsJson,
     CheckSun,
     Columns,
+    Compared,
     MeasuredTable,
     Outside,
     Settings,
@@ -30,7 +32,7 @@ from mascarin.commands.options.inputs import (
 )
 from mascarin.commands.options.output import print_json, print_table
 from mascarin.commands.options.places import lines_named
-from mascarin.commands.options.tables import run_inputs
+from mascarin.commands.options.tables import compared_columns, period_of, print_comparison, run_inputs
 from mascarin.commands.view import require_html
 from mascarin.errors import InputError
 
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.results import Results
     from mascarin.simulation.run_summary import Finished
     from mascarin.simulation.simulation import Simulation
+    from mascarin.validation.comparison import Metrics
     from mascarin.weather import Climate
 
 #: Shadows that take longer are announced [s].
@@ -68,6 +71,7 @@ def run(
     allow_outside: Outside = False,
     check_sun: CheckSun = True,
     shift: Shift = None,
+    compared: Compared = None,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -102,6 +106,7 @@ def run(
         periodic, which takes long in heavy buildings.
     """
     from mascarin.simulation.records.files import require_ending
+    from mascarin.validation.first_comparison import first_comparison
 
     described = read_building(building, settings)
     if out is not None:
@@ -112,25 +117,43 @@ def run(
             described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
             allow_outside=allow_outside, check_sun=check_sun, shift=shift,
         )  # fmt: skip
+        source = (measurements or weather, described, timezone, stamps, shift)
+        sensors, readings = compared_columns(compared, *source)
+        start, end = period_of(climate, readings, start, end)
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
             scheme=scheme, initial=_start(initial), more=report is not None,
         )  # fmt: skip
-        if out is not None and report is None and interval is None and not as_json:
+        if out is not None and report is None and interval is None and not (as_json or sensors):
             return exit_code(sound=_stored(simulation, out).sound)
         results = _simulated(simulation)
         if report is not None:
             _write_report(report, simulation, results, {"Building": building, "Weather": weather})
             results = _only(results, matching_outputs(described, outputs))
+        metrics = {} if readings is None else first_comparison(results, readings, sensors)
         if interval is not None:
             results = results.every(interval)
         if out is not None:
             _write(results, out)
     if as_json:
-        print_json(_summary(results))
-    elif out is None:
-        _print(results)
+        print_json(_summary(results) | _plain(metrics))
+    else:
+        _print_all(results, metrics, sensors, summary=out is None)
     return exit_code(sound=results.sound)
+
+
+def _plain(metrics: Mapping[str, Metrics]) -> dict[str, Any]:
+    """Metrics of a comparison for JSON; nothing where there is none."""
+    return {"comparison": {name: asdict(each) for name, each in metrics.items()}} if metrics else {}
+
+
+def _print_all(
+    results: Results, metrics: Mapping[str, Metrics], sensors: Mapping[str, str], *, summary: bool
+) -> None:
+    """The summary, where no file was written, and lines of a comparison."""
+    if summary:
+        _print(results)
+    print_comparison(metrics, sensors)
 
 
 def _start(temperature: float | None) -> float | Literal["repeat"]:

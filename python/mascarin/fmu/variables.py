@@ -10,6 +10,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.simulation.preparation.weather_inputs import is_of_weather
 
 if TYPE_CHECKING:
     from mascarin.fmu.inputs import Channel
@@ -107,7 +108,8 @@ def _outputs(simulation: Simulation) -> list[Variable]:
 
 def _parameters(simulation: Simulation, patterns: Sequence[str] | None) -> list[Variable]:
     compiled = simulation.compiled
-    paths = compiled.paths
+    # Gain, offset and clock of the weather are in the forcing that the unit carries.
+    paths = [path for path in compiled.paths if not is_of_weather(path)]
     for pattern in patterns or ():
         if not any(fnmatchcase(path, pattern) for path in paths):
             raise InputError(
@@ -117,6 +119,8 @@ def _parameters(simulation: Simulation, patterns: Sequence[str] | None) -> list[
     by_path = {parameter.path: parameter for parameter in simulation.building.parameters()}
     variables = []
     for position, (path, value) in enumerate(zip(paths, compiled.values.tolist(), strict=True)):
+        if is_of_weather(path):
+            continue
         if patterns is not None and not any(fnmatchcase(path, pattern) for pattern in patterns):
             continue
         parameter = by_path[path]

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity.methods import Plan
-    from mascarin.simulation.preparation.engine_run import EnsembleRun
     from mascarin.simulation.preparation.initial import Initial
     from mascarin.simulation.preparation.options import Precision, Scheme, TimeLike
+    from mascarin.simulation.preparation.run_results import EnsembleRun
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]

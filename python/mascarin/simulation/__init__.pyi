@@ -4,12 +4,12 @@ from .derivatives import jacobian as jacobian
 from .linear_model import StateSpace as StateSpace
 from .linear_model import state_space as state_space
 from .preparation.engine_run import CompiledRun as CompiledRun
-from .preparation.engine_run import Failure as Failure
 from .preparation.initial import MeasuredStart as MeasuredStart
 from .preparation.objectives import Gradient as Gradient
 from .preparation.objectives import Mean as Mean
 from .preparation.objectives import SquaredResiduals as SquaredResiduals
 from .preparation.options import RunOptions as RunOptions
+from .preparation.run_results import Failure as Failure
 from .records.provenance import Provenance as Provenance
 from .results import Results as Results
 from .run import simulate as simulate

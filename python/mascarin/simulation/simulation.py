@@ -23,6 +23,7 @@ from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
 from mascarin.simulation.preparation.options import RunOptions, described
 from mascarin.simulation.preparation.parameter_vectors import VectorRuns
 from mascarin.simulation.preparation.slopes import gradient_of, labelled_slopes
+from mascarin.simulation.preparation.weather_inputs import warnings_of_sun
 from mascarin.simulation.records import files
 from mascarin.simulation.records.blocks import InMemory, Watch
 from mascarin.simulation.records.provenance import Provenance
@@ -32,7 +33,6 @@ from mascarin.simulation.results import Results
 from mascarin.simulation.run_summary import Finished, StoredRun, start_note
 from mascarin.tables.timezones import zone_name
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
-from mascarin.weather.checks.sun_check import sun_warnings
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -140,7 +140,7 @@ class Simulation(VectorRuns):
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
-        forcing = prepare.forcing_of(
+        forcing, inputs = prepare.forcing_of(
             self.building, climate, description, times=self.times, scheme=scheme, measurements=measurements
         )  # fmt: skip
         self.channels = tuple(description.channels)
@@ -157,6 +157,7 @@ class Simulation(VectorRuns):
             readings=Readings.of(self.outputs),
             start=first,
             timezone=zone_name(climate.grid.zone),
+            inputs=inputs,
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
         self._require_possible(self.values[None, :])
@@ -441,8 +442,7 @@ class Simulation(VectorRuns):
         """Warnings that every run has: areas, volumes, materials and mesh of the building, irradiance."""
         from mascarin.building.checks import plausibility  # pydantic, as above
 
-        site = self.building.site
-        sun = sun_warnings(self.climate.record, float(site.latitude), float(site.longitude))
+        sun = warnings_of_sun(self.climate, self.compiled.inputs, self.building.site)
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:

@@ -156,7 +156,7 @@ class Column:
         raise InputError(
             f"{where}: found scale {self.scale:g} and offset {self.offset:g}, but {stated.place} says "
             f"{stated.text!r} for the column {self.column!r}, which is converted by {found[0]:g} and "
-            f"{found[1]:g}; it is not clear whether both hold. Write unit: {stated.unit} where scale and "
+            f"{found[1]:g}; expected one of the two. Write unit: {stated.unit} where scale and "
             "offset are applied after the conversion, or "
             f"{self._forced(target or FACTORS[stated.unit][0])} where the file is wrong."
         )
@@ -191,6 +191,8 @@ class Column:
                     f"{unit}; expected one of {', '.join(units_of(unit))}, or give scale and offset instead."
                 )
             values = values * found[0] + found[1]
+        if self.scale == 1.0 and self.offset == 0.0:
+            return values
         return values * self.scale + self.offset
 
     def line(

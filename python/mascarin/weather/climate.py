@@ -15,9 +15,11 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
 from mascarin.tables.quality import Stretch, find
 from mascarin.tables.quality.gaps import filled
+from mascarin.tables.reading.files import file_hash
 from mascarin.tables.reading.table import Stamps, read_table
 from mascarin.tables.reading.table_cache import cached_record
 from mascarin.tables.steps import Steps
+from mascarin.weather.archives.tmy2 import ENDING, read_tmy2
 from mascarin.weather.checks.brightness import bright_parts, with_findings, with_notes
 from mascarin.weather.checks.missing_infrared import with_whole_infrared
 from mascarin.weather.checks.place_check import require_place
@@ -149,12 +151,12 @@ class Climate(RecordView[WeatherRecord]):
         check_sun: bool = True,
         shift: str | float | None = None,
     ) -> Climate:
-        """Read a TMY3 CSV file.
+        """Read a TMY3 CSV file, or a TMY2 file (.tm2).
 
         Parameters
         ----------
         path : str or Path
-            The file; hourly, one year.
+            The file; hourly, one year. A TMY2 file is always a typical year.
         typical, year, elsewhere, check_sun, shift
             As in `from_epw`.
 
@@ -175,7 +177,14 @@ class Climate(RecordView[WeatherRecord]):
         >>> climate.site.latitude, climate.timezone
         (36.1, 'UTC-5')
         """
-        require_type("path", path, (str, Path), "the path of a TMY3 file")
+        require_type("path", path, (str, Path), "the path of a TMY3 or TMY2 file")
+        if Path(path).suffix.lower() == ENDING:
+            made = record_of_pvlib(
+                read_tmy2(Path(path)), latitude=None, longitude=None, altitude=None, stamps="end",
+                typical=True, timezone=None, absent=(),
+            )  # fmt: skip
+            record = replace(made, file=Path(path).name, sha256=file_hash(Path(path)), elsewhere=elsewhere)
+            return cls(replace(shifted(record, shift), check_sun=check_sun)).completed()
         record = record_of_year(read_tmy3(Path(path)), typical, year, elsewhere)
         return cls(replace(shifted(record, shift), check_sun=check_sun))
 

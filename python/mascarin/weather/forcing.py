@@ -110,17 +110,22 @@ def _fill_at_place(out: Array, completed: WeatherRecord, site: SiteLike, steps: 
     if _LAST and _LAST[0].record is completed and _LAST[0].key == key:
         out[...] = _LAST[0].values
         return
-    reach = 5.0 * completed.grid.interval + 3600.0
-    sun = SunPath.over(latitude, longitude, steps.first - reach, steps.last + reach, steps.first)
+    sun = sun_over(latitude, longitude, completed.grid.interval, steps)
     # In blocks, so that what is worked out on the way takes no memory beside the result.
     for row in range(0, len(steps.stage), _ROWS):
         block = slice(row, row + _ROWS)
         _fill_sun(out[block], sun, steps.stage[block], steps.first, completed.grid)
     for name in SOURCE_CHANNELS[:7]:
-        out[..., CHANNELS.index(name)] = _weather(completed, name, steps)
-    _fill_radiation(out, completed, sun, steps)
+        out[..., CHANNELS.index(name)] = channel_values(completed, name, steps)
+    fill_radiation(out, completed, sun, steps)
     if out.nbytes <= _MOST_KEPT:
         _LAST[:] = [_Kept(completed, key, out.copy())]
+
+
+def sun_over(latitude: float, longitude: float, interval: float, steps: Steps) -> SunPath:
+    """The sun over a period and what lies around it of a record with intervals of a length. [deg, s]"""
+    reach = 5.0 * interval + 3600.0
+    return SunPath.over(latitude, longitude, steps.first - reach, steps.last + reach, steps.first)
 
 
 @dataclass(frozen=True)
@@ -153,7 +158,23 @@ def _day_of_year(stage: Array, grid: Grid) -> Array:
     return np.asarray((local - year) / np.timedelta64(1, "D"), dtype=np.float64).reshape(stage.shape)
 
 
-def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
+def channel_values(record: WeatherRecord, name: str, steps: Steps) -> Array:
+    """A channel of the weather at the stages of every step, shape (steps, stages). [unit of the channel]
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        The weather.
+    name : str
+        One of the source channels, no short-wave one.
+    steps : Steps
+        The period.
+
+    Raises
+    ------
+    InputError
+        The weather does not have it.
+    """
     if name in record.columns:
         if name != "infrared" or not record.of_year:
             return column_values(record, name, steps)
@@ -280,7 +301,20 @@ def _held(values: Array) -> Array:
     return values[np.where(nearer, good[left], good[right])]
 
 
-def _fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps) -> None:
+def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps) -> None:
+    """Write the short-wave channels at the stages of every step.
+
+    Parameters
+    ----------
+    out : ndarray, shape (steps, stages, channels)
+        Changed in place; its sun is there already. [unit of each channel]
+    record : WeatherRecord
+        With all irradiances.
+    sun : SunPath
+        The sun over the period and five intervals around it, its times counted from the start.
+    steps : Steps
+        The period.
+    """
     origin, edges = steps.first, steps.edges
     basis = record.radiation_basis
     kept = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:], "all": RADIATION}[basis]

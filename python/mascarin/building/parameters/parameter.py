@@ -189,6 +189,12 @@ def resolve(building: Description, path: str, by_path: Mapping[str, Any]) -> str
         )
     path_found = lookup(building, path, by_path)
     if path_found is None:
+        steps = path.split(".")
+        if steps[:2] == ["weather", "columns"] and len(steps) == 4:
+            raise InputError(
+                f"{path}: found no such parameter; expected a column that the building states. Write "
+                f"weather: {{columns: {{{steps[2]}: {{}}}}}} in the building or the study"
+            )
         raise InputError(
             f"{path}: found no such parameter; expected a path as listed by 'mascarin parameters'. "
             f"{did_you_mean(path, by_path)}".rstrip()

@@ -21,6 +21,7 @@ from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
 from mascarin.building.parts.posterior import Posterior
 from mascarin.building.parts.site import Site
+from mascarin.building.parts.weather import Weather
 from mascarin.building.parts.zone_surfaces import Connections
 
 
@@ -29,6 +30,9 @@ class Description(Part):
 
     name: str = Field("building", description="Name of the building, the title of its results")
     site: Site = Field(description="Site of the building")
+    weather: Weather | None = Field(
+        None, description="Gain, offset and clock of columns of the weather; none: as it was read"
+    )
     materials: dict[Name, Material] = Field(default_factory=dict, description="Materials by name")
     constructions: dict[Name, Construction] = Field(
         default_factory=dict, description="Layered constructions by name"

@@ -145,6 +145,7 @@ from mascarin.building.quantities.surfaces import (
     ReferenceTemperature,
     SkyView,
 )
+from mascarin.building.quantities.weather import ColumnClock, ColumnGain, ColumnOffset
 from mascarin.building.quantities.windows import (
     BlindCover,
     BlindRadiation,
@@ -203,7 +204,10 @@ __all__ = [
     "CloudEmissivity",
     "CoilTemperature",
     "ColdestDay",
+    "ColumnClock",
     "ColumnFactor",
+    "ColumnGain",
+    "ColumnOffset",
     "Conductivity",
     "ContentFactor",
     "Continuity",

@@ -74,6 +74,17 @@ Shift = Annotated[
         "--shift=-30min.",
     ),
 ]
+Compared = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--compare",
+        negative="",
+        help="Output and the measured column that it is compared with, as OUTPUT=COLUMN, such as "
+        "room.air_temperature=T_room; the column is in the table of --measurements, or of --weather. Where "
+        "the weather represents any year, the run covers the whole days of that table. Can be given several "
+        "times.",
+    ),
+]
 Stamps = Annotated[
     Literal["start", "end"],
     Parameter(help="Which end of its interval a stamp of a measured table marks."),
@@ -201,10 +212,10 @@ def read_weather(file: Path, *, check_sun: bool = True, shift: str | None = None
     match file.suffix.lower():
         case ".epw":
             return Climate.from_epw(file, check_sun=check_sun, shift=shift)
-        case ".csv":
+        case ".csv" | ".tm2":
             return Climate.from_tmy(file, check_sun=check_sun, shift=shift)
         case suffix:
             raise InputError(
-                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "
-                "another table with --column), .parquet (with --column), .yaml or shipped:NAME"
+                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .tm2, .csv (TMY3, "
+                "or another table with --column), .parquet (with --column), .yaml or shipped:NAME"
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -14,6 +14,7 @@ from mascarin.errors import InputError
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.tables.reading.table import Stamps
+    from mascarin.validation.comparison import Metrics
     from mascarin.weather import Climate, Column, Measurements
 
 _YAML: Final = (".yaml", ".yml")
@@ -107,6 +108,65 @@ def run_inputs(
         )
     show_columns(climate, measured)
     return climate, measured
+
+
+def compared_columns(
+    texts: Sequence[str] | None,
+    table: Path,
+    building: Building,
+    timezone: str | None,
+    stamps: Stamps,
+    shift: str | None,
+) -> tuple[dict[str, str], Measurements | None]:
+    """Outputs and columns of ``--compare``, and the table with these columns.
+
+    Raises
+    ------
+    InputError
+        A text is not OUTPUT=COLUMN, or the table is none.
+    """
+    from mascarin.weather import Measurements
+
+    pairs: dict[str, str] = {}
+    for text in texts or ():
+        output, equals, column = (part.strip() for part in text.partition("="))
+        if not (output and equals and column):
+            raise InputError(
+                f"--compare: found '{text}'; expected OUTPUT=COLUMN, such as room.air_temperature=T_room"
+            )
+        pairs[output] = column
+    if not pairs:
+        return {}, None
+    if table.suffix.lower() in (*_YAML, ".epw", ".tm2") or str(table).startswith("shipped:"):
+        raise InputError(
+            f"--compare: found '{table}' as the table of the columns; expected a measured one: name it with "
+            "--measurements"
+        )
+    zone = timezone or str(building.site.timezone)
+    columns = list(dict.fromkeys(pairs.values()))
+    measured = Measurements.from_table(table, columns=columns, timezone=zone, stamps=stamps, shift=shift)
+    for name in columns:
+        print(f"{measured.file}: {measured.record.origins[name].line}", file=sys.stderr)
+    return pairs, measured
+
+
+def period_of(
+    climate: Climate, measured: Measurements | None, start: str | None, end: str | None
+) -> tuple[str | None, str | None]:
+    """Start and end of a run; with weather of any year those of the table it is compared with."""
+    if measured is None or not climate.grid.periodic:
+        return start, end
+    index = measured.index
+    return start or str(index[0].ceil("D")), end or str(index[-1].floor("D"))
+
+
+def print_comparison(metrics: Mapping[str, Metrics], columns: Mapping[str, str]) -> None:
+    """A line for each output that is compared with a column."""
+    for name, each in metrics.items():
+        print(
+            f"{name} beside {columns[name]}: simulated minus measured {each.bias:+.2f}, standard deviation "
+            f"{each.sd:.2f}, largest {each.max_error:+.2f} {each.unit.replace('degC', 'K')} ({each.n} values)"
+        )
 
 
 def show_columns(

@@ -10,6 +10,7 @@ import numpy as np
 from mascarin.building.reading import files_of
 from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
+from mascarin.simulation.preparation.weather_inputs import is_of_weather
 from mascarin.study import Study
 from mascarin.study.file.inputs import Beside, find
 from mascarin.tables.times import epoch_seconds
@@ -69,6 +70,12 @@ def compile_study(study: Study) -> Case:
             "differ in a GenOpt project: lower the heating set point or raise the cooling set point"
         )
     for path in problem.paths:
+        if is_of_weather(path):
+            raise InputError(
+                f"{path}: found a correction of the weather, expected parameters of the building in a GenOpt "
+                "project, whose weather is the same in all evaluations; leave it out here, or identify it "
+                "with `mascarin study`"
+            )
         if simulation.building.parameter(path).members:
             raise InputError(
                 f"{path}: found a tied parameter, expected parameters of one number in a GenOpt project; "

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,7 +15,9 @@ import numpy as np
 from mascarin import _engine
 from mascarin._io import memory
 from mascarin.engine_errors import plan_of, translated
+from mascarin.errors import SolverError
 from mascarin.simulation.preparation.options import require_precision
+from mascarin.simulation.preparation.run_results import EnsembleRun, Failure, Trajectory
 from mascarin.simulation.records.blocks import InMemory, rows_of
 from mascarin.simulation.records.recorded_outputs import Readings
 from mascarin.tables.timezones import parse_timezone
@@ -25,67 +27,15 @@ if TYPE_CHECKING:
 
     from mascarin.progress import Report
     from mascarin.simulation.preparation.options import Precision
+    from mascarin.simulation.preparation.weather_inputs import WeatherInputs
 
     Array = npt.NDArray[np.float64]
 
 #: Memory that a run with derivatives in reverse may keep before it calculates parts again. [B]
 MEMORY: Final = 256 * 2**20
 
-
-@dataclass(frozen=True)
-class Failure:
-    """A member of an ensemble that did not finish.
-
-    Parameters
-    ----------
-    member : int
-        Its row.
-    reason : str
-        Message of the engine.
-
-    Examples
-    --------
-    >>> Failure(2, "step 4 did not converge").member
-    2
-    """
-
-    member: int
-    reason: str
-
-
-@dataclass(frozen=True, eq=False)
-class EnsembleRun:
-    """Results of an ensemble. ``records, residuals, failures = run`` takes the first three.
-
-    Parameters
-    ----------
-    records : ndarray, shape (M, rows, outputs)
-        NaN for a member that failed.
-    residuals : ndarray, shape (M,)
-        Relative energy-balance residual of each member. [-]
-    failures : list of Failure
-        Members that failed, and why.
-    outside : ndarray, shape (M,)
-        How far temperatures of each member are outside of their causes, see `Judgement`; NaN for one that
-        failed. [K]
-
-    Examples
-    --------
-    >>> records, residuals, failures = EnsembleRun(np.zeros((1, 2, 1)), np.zeros(1), [], np.zeros(1))
-    >>> failures
-    []
-    """
-
-    records: Array
-    residuals: Array
-    failures: list[Failure]
-    outside: Array
-
-    def __iter__(self) -> Iterator[Any]:
-        return iter((self.records, self.residuals, self.failures))
-
-    def __getitem__(self, index: int) -> Any:
-        return (self.records, self.residuals, self.failures)[index]
+#: Change between two repetitions of the first period where two runs are compared for a derivative. [K]
+_REPEATED_WITHIN: Final = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +62,8 @@ class CompiledRun:
         Start, in seconds since 1970-01-01 UTC. [s]
     timezone : str
         Time zone of the climate, for messages.
+    inputs : WeatherInputs or None
+        Parameters that act by the forcing: gain, offset and clock of the weather.
 
     Examples
     --------
@@ -133,6 +85,7 @@ class CompiledRun:
     readings: Readings
     start: float
     timezone: str
+    inputs: WeatherInputs | None = None
 
     @cached_property
     def plan(self) -> _engine.Plan:
@@ -146,6 +99,10 @@ class CompiledRun:
     def hash(self) -> str:
         """SHA-256 of the description."""
         return hashlib.sha256(self.description.encode()).hexdigest()
+
+    def forcing_at(self, vector: Array) -> Array:
+        """The forcing for a parameter vector, whose gains, offsets and clocks of the weather may differ."""
+        return self.forcing if self.inputs is None else self.inputs.forcing(vector, self.forcing)
 
     def options(
         self, readings: Readings | None = None, record_from: int = 0, record_every: int = 1
@@ -231,13 +188,13 @@ class CompiledRun:
         SolverError
             A step or the repeated first period did not converge.
         """
-        recorded = readings or self.readings
+        recorded, forcing = readings or self.readings, self.forcing_at(vector)
         with translated(self.dated):
             if progress is not None:
                 progress(0, len(self.forcing))  # the time left counts from here
             raw: dict[str, Any] = self.plan.simulate_into(
                 vector,
-                self.forcing,
+                forcing,
                 self.options(recorded),
                 rows_of(len(recorded.columns), keeps_rows=keeps_rows),
                 lambda rows: take(recorded.values(rows)),
@@ -284,12 +241,40 @@ class CompiledRun:
         # Weather, sun and shadows of each stage are kept for all members.
         stages = float(np.prod(self.forcing.shape[:2])) * self.plan.stage_bytes
         self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
+        if self.inputs is not None and (vectors[:, self.inputs.positions] != self.inputs.base).any():
+            return self._by_weather(self.inputs, vectors, record_from, record_every, precision, progress)
         with translated(self.dated):
             raw, residuals, outside, failed = self.plan.ensemble(
                 vectors, self.forcing, options, _of_total(progress, len(vectors)), precision == "single"
             )
         failures = [Failure(member, self.dated(reason)) for member, reason in failed]
         return EnsembleRun(self.readings.values(raw), residuals, failures, outside)
+
+    def _by_weather(
+        self,
+        inputs: WeatherInputs,
+        vectors: Array,
+        record_from: int,
+        record_every: int,
+        precision: Precision,
+        progress: Report | None,
+    ) -> EnsembleRun:
+        """The same for members with different weather: those with the same weather at a time."""
+        count, done = len(vectors), 0
+        records = np.empty((count, self._rows(record_from, record_every), len(self.readings.columns)))
+        residuals, outside, failures = np.empty(count), np.empty(count), []
+        for rows, vector in inputs.groups(vectors):
+            alone = replace(self, forcing=self.forcing_at(vector), inputs=None)
+            part = alone.ensemble(
+                np.ascontiguousarray(vectors[rows]),
+                record_from=record_from, record_every=record_every, precision=precision,
+            )  # fmt: skip
+            records[rows], residuals[rows], outside[rows] = part.records, part.residuals, part.outside
+            failures += [replace(failure, member=int(rows[failure.member])) for failure in part.failures]
+            done += len(rows)
+            if progress is not None:
+                progress(done, count)
+        return EnsembleRun(records, residuals, sorted(failures, key=lambda f: f.member), outside)
 
     def jacobian(
         self,
@@ -330,11 +315,44 @@ class CompiledRun:
         report = _of_total(progress, len(directions))
         rows, lanes = self._rows(record_from, record_every), len(directions) + 1
         self._require_room(lanes, rows, f"derivatives by {len(directions)} parameters", "take fewer")
-        with translated(self.dated):
-            raw, slopes = self.plan.jacobian(
-                vector, [list(direction) for direction in directions], self.forcing, options, report
-            )
-        return self.readings.values(raw), self.readings.values(slopes)
+        ways, inputs = [list(direction) for direction in directions], self.inputs
+        by_weather = [] if inputs is None else [k for k, way in enumerate(ways) if inputs.moves(way)]
+        by_engine = [k for k in range(len(ways)) if k not in by_weather]
+        if inputs is not None and not by_engine:
+            first = self.ensemble(vector[None], record_from=record_from, record_every=record_every)
+            records, slopes = first.records[0], np.empty((0, *first.records.shape[1:]))
+        else:
+            exact = [ways[k] for k in by_engine]
+            with translated(self.dated):
+                raw, derived = self.plan.jacobian(vector, exact, self.forcing_at(vector), options, report)
+            records, slopes = self.readings.values(raw), self.readings.values(derived)
+        if inputs is None or not by_weather:
+            return records, slopes
+        both = np.empty((len(ways), *records.shape))
+        both[by_engine] = slopes
+        for k in by_weather:
+            both[k] = self._difference(inputs, ways[k], vector, record_from, record_every)
+        return records, both
+
+    def _difference(
+        self,
+        inputs: WeatherInputs,
+        direction: list[tuple[int, float]],
+        vector: Array,
+        record_from: int,
+        record_every: int,
+    ) -> Array:
+        """Derivative by a direction in which the weather changes, from two runs, shape (rows, outputs)."""
+        half = inputs.difference(direction)
+        pair = np.tile(vector, (2, 1))
+        for position, weight in direction:
+            pair[:, position] += np.array([1.0, -1.0]) * half * weight
+        # Repetitions of the first period that end a little early would be most of such a small difference.
+        exact = replace(self, settings={**self.settings, "warmup_tolerance": _REPEATED_WITHIN})
+        ends = exact.ensemble(pair, record_from=record_from, record_every=record_every)
+        if ends.failures:
+            raise SolverError(ends.failures[0].reason)
+        return np.asarray((ends.records[0] - ends.records[1]) / (2.0 * half))
 
     def trajectory(
         self, vector: Array, *, record_from: int = 0, record_every: int = 1, memory: int = MEMORY
@@ -362,8 +380,17 @@ class CompiledRun:
         """
         options = self.options(None, record_from, record_every)
         with translated(self.dated):
-            run = _engine.Trajectory(self.plan, vector, self.forcing, options, memory)
-        return Trajectory(run, run.run()["records"], self.readings)
+            run = _engine.Trajectory(self.plan, vector, self.forcing_at(vector), options, memory)
+        further: dict[int, Callable[[], Array]] = {}
+        if self.inputs is not None:
+            inputs = self.inputs
+            further = {
+                position: partial(
+                    self._difference, inputs, [(position, 1.0)], vector, record_from, record_every
+                )
+                for position in inputs.positions.tolist()
+            }
+        return Trajectory(run, run.run()["records"], self.readings, further)
 
     def _rows(self, record_from: int, record_every: int) -> int:
         return max(len(self.forcing) - record_from, 0) // max(record_every, 1) + 1
@@ -432,37 +459,6 @@ class CompiledRun:
             start=header["start"],
             timezone=header["timezone"],
         )
-
-
-class Trajectory:
-    """A run that keeps what its derivatives in reverse mode need; see `CompiledRun.trajectory`.
-
-    Attributes
-    ----------
-    records : ndarray, shape (rows, outputs)
-        Outputs of the run.
-    """
-
-    def __init__(self, run: _engine.Trajectory, raw: Array, readings: Readings) -> None:
-        self._run = run
-        self._raw = raw
-        self._readings = readings
-        self.records = readings.values(raw)
-
-    def pull(self, weights: Array) -> Array:
-        """Derivatives of a quantity by all parameters, from its derivatives by all records.
-
-        Parameters
-        ----------
-        weights : ndarray, shape (rows, outputs)
-            Derivative of the quantity by each record.
-
-        Returns
-        -------
-        ndarray, shape (P,)
-            Derivative of the quantity by each parameter, in the order of the parameter vector.
-        """
-        return self._run.pull(np.ascontiguousarray(self._readings.weights(self._raw, weights)))
 
 
 def _of_total(progress: Report | None, total: int) -> Callable[[int], object] | None:

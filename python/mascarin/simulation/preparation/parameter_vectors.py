@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.simulation.checks.formula_laws import require_laws
-from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun, EnsembleRun, Trajectory
+from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
 from mascarin.simulation.preparation.limits import Limits, require_control_times, require_set_points_apart
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import Report
     from mascarin.simulation.preparation.options import Precision
+    from mascarin.simulation.preparation.run_results import EnsembleRun, Trajectory
     from mascarin.simulation.records.times import Times
 
     Array = npt.NDArray[np.float64]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,6 +22,7 @@ from mascarin.simulation.preparation.initial import read as read_initial
 from mascarin.simulation.preparation.initial_state import Ambient, GivenStart
 from mascarin.simulation.preparation.limits import require_scheme
 from mascarin.simulation.preparation.sky import with_sky_of
+from mascarin.simulation.preparation.weather_inputs import with_weather_inputs
 from mascarin.simulation.records.times import Times
 from mascarin.tables.times import stamps_of
 from mascarin.tables.timezones import seconds_at
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     from mascarin.building import EngineDescription, Output
     from mascarin.simulation.preparation.initial_state import Profile
     from mascarin.simulation.preparation.options import Scheme, TimeLike
+    from mascarin.simulation.preparation.weather_inputs import WeatherInputs
 
     Array = npt.NDArray[np.float64]
 
@@ -192,8 +195,8 @@ def forcing_of(
     times: Times,
     scheme: Scheme,
     measurements: Measurements | None,
-) -> Array:
-    """Climate, measured columns and schedules at every stage, shape (steps, stages, channels).
+) -> tuple[Array, WeatherInputs | None]:
+    """Climate, measured columns and schedules at every stage, and what of the weather is a parameter.
 
     Raises
     ------
@@ -202,8 +205,10 @@ def forcing_of(
     """
     require_scheme(building, scheme)
     names = description.schedules
+    # Radiation whose clock the building corrects is compared with the sun when it is corrected.
+    unchecked = climate if building.weather is None else Climate(replace(climate.record, check_sun=False))
     columns = description.channels[: len(description.channels) - len(names)]
-    weather = climate.forcing(
+    weather = unchecked.forcing(
         building.site,
         times.start,
         times.end,
@@ -230,7 +235,9 @@ def forcing_of(
     _require_numbers(forcing, description.channels, building)
     require_balanced_flows(building, forcing, description.channels, (times.start, times.step))
     require_wind(building, climate, forcing)
-    return forcing
+    return with_weather_inputs(
+        building, climate, description, forcing, times=times, scheme=scheme, measurements=measurements
+    )
 
 
 def start_of(

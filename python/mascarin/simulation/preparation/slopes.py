@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mascarin.building import Output, Parameter
-    from mascarin.simulation.preparation.engine_run import Trajectory
     from mascarin.simulation.preparation.objectives import Objective
+    from mascarin.simulation.preparation.run_results import Trajectory
 
     Array = npt.NDArray[np.float64]
 

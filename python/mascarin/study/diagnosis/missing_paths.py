@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from mascarin.weather.records.channels import CHANNELS, RADIATION, UNITS
+from mascarin.building.engine_input.series_users import courses
+from mascarin.simulation.preparation.weather_inputs import corrected_forcing
+from mascarin.weather.instruments.column_errors import RIGHT, SUN, ColumnError
+from mascarin.weather.records.channels import CHANNELS, RADIATION
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
     from mascarin.study.context.context import StudyContext
 
     Array = npt.NDArray[np.float64]
+    Candidate = tuple[Literal["gain", "offset", "clock"], str, str, ColumnError, float, str]
 
 #: Sizes of missing heat flows: an air change [1/h], and a thermal bridge per area of the zone [W/(m2 K)].
 _AIR_CHANGE: Final = 0.5
@@ -90,8 +94,10 @@ def missing_paths(building: Building) -> Iterator[tuple[str, str, dict[str, Any]
             )
 
 
-def input_errors(setup: StudyContext, simulation: Simulation) -> Iterator[InputFault]:
+def input_errors(setup: StudyContext, simulation: Simulation, vector: Array) -> Iterator[InputFault]:
     """Errors of measured inputs, one at a time: radiation, outdoor air, wind, temperatures of boundaries.
+
+    They are the errors that a building may state under ``weather``, beside those that it states.
 
     Parameters
     ----------
@@ -99,56 +105,58 @@ def input_errors(setup: StudyContext, simulation: Simulation) -> Iterator[InputF
         Its measurements tell which channels were measured.
     simulation : Simulation
         The model.
+    vector : ndarray, shape (P,)
+        Its parameter vector. [unit of each]
 
     Yields
     ------
     InputFault
         Only of inputs that are not constant.
     """
-    forcing = simulation.compiled.forcing
-    sun = [CHANNELS.index(name) for name in RADIATION]
-    if np.any(forcing[:, :, sun]):
-        scaled = forcing.copy()
-        scaled[:, :, sun] /= 1.0 + _RADIATION
-        yield InputFault("gain", "solar radiation", scaled, 100.0 * _RADIATION, "%")
-        yield InputFault("clock", "solar radiation", _earlier(forcing, sun, simulation), _CLOCK / 60.0, "min")
-    air = CHANNELS.index("air_temperature")
-    yield InputFault("offset", "air_temperature", _added(forcing, air), _OFFSET, "K")
-    yield InputFault("clock", "air_temperature", _earlier(forcing, [air], simulation), _CLOCK / 60.0, "min")
-    wind = CHANNELS.index("wind_speed")
-    if np.ptp(forcing[:, :, wind]) > 0.0:
-        scaled = forcing.copy()
-        scaled[:, :, wind] /= 1.0 + _WIND
-        yield InputFault("gain", "wind_speed", scaled, 100.0 * _WIND, "%")
+    forcing = simulation.compiled.forcing_at(vector)
+    inputs = simulation.compiled.inputs
+    known, clock = ({}, 0.0) if inputs is None else inputs.errors(vector[inputs.positions])
+    candidates = list(_candidates(setup, simulation, forcing))
+    schedules = len(courses(simulation.building))
+    corrected = corrected_forcing(
+        simulation.building, setup.climate, simulation.channels[: len(simulation.channels) - schedules],
+        [*dict.fromkeys((*known, *(column for _, _, column, _, _, _ in candidates)))],
+        times=simulation.times, scheme=simulation.scheme, measurements=setup.inputs.driving,
+    )  # fmt: skip
+    for what, subject, column, error, scale, unit in candidates:
+        before = known.get(column, RIGHT)
+        after = ColumnError(
+            before.gain * error.gain, before.offset * error.gain + error.offset, before.clock + error.clock
+        )
+        without = corrected.at(forcing, known, {**known, column: after}, (clock, clock))
+        yield InputFault(what, subject, np.asarray(without), scale, unit)
+
+
+def _candidates(setup: StudyContext, simulation: Simulation, forcing: Array) -> Iterator[Candidate]:
+    """What may be wrong, and what would make it right: fault, subject, column, error, size and its unit."""
+    late = ColumnError(clock=-_CLOCK)
+    if np.any(forcing[:, :, [CHANNELS.index(name) for name in RADIATION]]):
+        gain = ColumnError(gain=1.0 / (1.0 + _RADIATION))
+        yield "gain", "solar radiation", SUN, gain, 100.0 * _RADIATION, "%"
+        yield "clock", "solar radiation", SUN, late, _CLOCK / 60.0, "min"
+    warm = ColumnError(offset=-_OFFSET)
+    yield "offset", "air_temperature", "air_temperature", warm, _OFFSET, "K"
+    yield "clock", "air_temperature", "air_temperature", late, _CLOCK / 60.0, "min"
+    if np.ptp(forcing[:, :, CHANNELS.index("wind_speed")]) > 0.0:
+        gain = ColumnError(gain=1.0 / (1.0 + _WIND))
+        yield "gain", "wind_speed", "wind_speed", gain, 100.0 * _WIND, "%"
     temperatures = _boundaries(simulation.building)
-    for k, channel in enumerate(simulation.channels, start=len(UNITS)):
+    for channel in simulation.channels:
         if channel in temperatures and channel in setup.inputs.driving.data:
-            yield InputFault("offset", channel, _added(forcing, k), _OFFSET, "K")
+            yield "offset", channel, channel, warm, _OFFSET, "K"
 
 
 def simulated_with(setup: StudyContext, simulation: Simulation, forcing: Array, vector: Array) -> Array:
     """Series with another forcing, shape (n, S); NaN where the model cannot be run. [unit of each sensor]"""
     sensors = len(setup.observation.names)
-    run = replace(simulation.compiled, forcing=forcing)
+    run = replace(simulation.compiled, forcing=forcing, inputs=None)
     records = run.ensemble(vector[None]).records[0]
     return np.asarray(setup.observation.simulated(simulation.index, records[:, :sensors]))
-
-
-def _added(forcing: Array, channel: int) -> Array:
-    changed = forcing.copy()
-    changed[:, :, channel] -= _OFFSET
-    return changed
-
-
-def _earlier(forcing: Array, channels: list[int], simulation: Simulation) -> Array:
-    """Forcing whose channels come earlier: what a clock that is late has delayed."""
-    changed = forcing.copy()
-    steps = np.arange(len(forcing), dtype=np.float64)
-    moved = np.clip(steps + _CLOCK / simulation.step_seconds, 0.0, len(forcing) - 1.0)
-    for channel in channels:
-        for stage in range(forcing.shape[1]):
-            changed[:, stage, channel] = np.interp(moved, steps, forcing[:, stage, channel])
-    return changed
 
 
 def _boundaries(building: Building) -> set[str]:

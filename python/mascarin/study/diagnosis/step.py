@@ -253,7 +253,7 @@ def _inputs(
     setup: StudyContext, model: Model, series: Series, vector: Array, simulated: Array
 ) -> Iterator[Candidate]:
     """Errors of measured inputs of the model."""
-    for error in input_errors(setup, model.simulation):
+    for error in input_errors(setup, model.simulation, vector):
 
         def make(forcing: Array = error.forcing) -> Array:
             return model.averaged(simulated_with(setup, model.simulation, forcing, vector))

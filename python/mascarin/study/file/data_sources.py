@@ -114,7 +114,7 @@ class ClimateSource(Part):
     """Source of the weather data; exactly one kind."""
 
     epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
-    tmy: str | None = Field(None, description="TMY3 file")
+    tmy: str | None = Field(None, description="TMY3 file, or TMY2 (.tm2)")
     measured: MeasuredWeather | None = Field(None, description="A measured table")
     check_sun: bool = Field(True, description="Refuse radiation that does not follow the sun of the place")
     shift: Shift | None = Field(

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
+from mascarin.building.parts.weather import Weather
 from mascarin.calibration.base.search_options import WITH_SQUARES, PosteriorName, SlopesName
 from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
@@ -356,6 +357,10 @@ class StudyPlan(Part):
     )
     observed_note: str = Field("", description="What readers of the report must know about the data")
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
+    weather: Weather | None = Field(
+        None,
+        description="Gain, offset and clock of columns of the weather, in place of those of the building",
+    )
     step: Duration = Field("15min", description="Time step")
     scheme: Literal["sdirk2", "linearly-implicit", "backward-euler", "apparent-capacity"] = Field(
         "sdirk2", description="Time integration scheme"

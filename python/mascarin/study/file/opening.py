@@ -75,6 +75,7 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
     as_described = load(described)
     with places.blame("set"):
         building = as_described.replace(file.set)
+    building = _with_weather(building, file, places)
     building = tied_building(file, building, places)
     file = written_out(file, building, places)
     check_names(file, building, places, faults)
@@ -98,6 +99,14 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
         "climate": climate.sha256 or "",
     }
     return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path)
+
+
+def _with_weather(building: Building, plan: StudyPlan, places: Places) -> Building:
+    """Take the errors of the weather that the study states."""
+    if plan.weather is None:
+        return building
+    with places.blame("weather"):
+        return building.replace({"weather": plan.weather})
 
 
 def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building:
@@ -138,7 +147,7 @@ def from_objects(
     except ValidationError as error:
         raise explained(error, plain, "study") from None
     places, faults = Places(), Faults()
-    building = tied_building(checked, building, places)
+    building = tied_building(checked, _with_weather(building, checked, places), places)
     checked = written_out(checked, building, places)
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)

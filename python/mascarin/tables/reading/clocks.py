@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.reading.iso_stamps import iso_stamps
 from mascarin.tables.timezones import YEARS, localize, zone_name
 
 if TYPE_CHECKING:
@@ -130,6 +131,8 @@ def _plain_iso(text: pd.Series[Any]) -> pd.DatetimeIndex | None:
 
     if not len(text) or not isinstance(text.iloc[0], str) or not _ISO_TEXT.fullmatch(text.iloc[0]):
         return None
+    if (times := iso_stamps(text)) is not None:
+        return pd.DatetimeIndex(times)
     try:
         index = pd.DatetimeIndex(pd.to_datetime(text, format="ISO8601"))
     except (ValueError, TypeError):  # an offset, 24:00, another order: read with care
@@ -311,8 +314,8 @@ def _of_dates(
             f"{found[name][0]:%Y-%m-%d %H:%M} ({_FORMATS[name]})" for name in (best, rivals[0])
         )
         raise InputError(
-            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; state "
-            f"time_format: {_written_format(written.iloc[0], best)!r} or "
+            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; "
+            f"expected one reading: state time_format: {_written_format(written.iloc[0], best)!r} or "
             f"{_written_format(written.iloc[0], rivals[0])!r}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
@@ -377,8 +380,10 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
         row = int(np.argmax(steps[0] != steps[1])) + 1
         raise InputError(
             f"{where}:{lines[row]}: with time_format {time_format!r} the time after "
-            f"{index[row - 1]:%Y-%m-%d %H:%M} is {index[row]:%Y-%m-%d %H:%M}; with day and month exchanged "
-            f"all steps are {steps[1][0]} s. State time_format: {swapped!r}, or repair the stamps."
+            f"{index[row - 1]:%Y-%m-%d %H:%M} is {index[row]:%Y-%m-%d %H:%M}; expected one "
+            f"step: with day and month exchanged all steps are {steps[1][0]} s. "
+            f"State time_format: {swapped!r}, or "
+            "repair the stamps."
         )
 
 

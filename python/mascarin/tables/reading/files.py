@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import hashlib
 import re
 import warnings
@@ -17,6 +18,7 @@ from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
+from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked
 from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
 from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
@@ -35,9 +37,20 @@ def file_hash(path: Path) -> str:
     InputError
         There is no such file, or it is a pipe or a device.
     """
+    return hashlib.sha256(content_of(path)).hexdigest()
+
+
+def content_of(path: Path) -> bytes:
+    """Bytes of a file.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is a pipe or a device.
+    """
     require_regular(path)
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return path.read_bytes()
     except FileNotFoundError as error:
         raise InputError(f"{path}: no such file; give the path from the folder you work in.") from error
     except OSError as error:
@@ -100,13 +113,17 @@ class Read:
         return {name: getattr(self, name) for name in names}
 
 
-def read_frame(path: Path, separator: str | None, decimal: str | None, skip_lines: int | None) -> Read:
+def read_frame(
+    path: Path, content: bytes, separator: str | None, decimal: str | None, skip_lines: int | None
+) -> Read:
     """Read a CSV or Parquet file, or a spreadsheet, without changing it.
 
     Parameters
     ----------
     path : Path
         The file; its ending shows whether it is Parquet or a spreadsheet.
+    content : bytes
+        What is in it.
     separator, decimal : str or None
         Between entries of a CSV file, and its decimal mark; None: found.
     skip_lines : int or None
@@ -132,32 +149,37 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
         said = (f"{path.name}: read by {name_of(reader)}.",)
         return Read(frame, 1 + np.arange(len(frame), dtype=np.int64), said, units)
     if path.suffix.lower() in {".parquet", ".pq"}:
-        try:
-            frame = with_time_column(pd.read_parquet(path))
-            return Read(frame, 1 + np.arange(len(frame), dtype=np.int64))
-        except ImportError as error:
-            raise InputError(
-                f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
-            ) from error
-        except (ValueError, OSError) as error:
-            raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
+        return _parquet(path)
+    named, content = unpacked(path, content)
+    if is_bsrn(content):
+        frame = read_bsrn(path, content)
+        said = (f"{path.name}: a station-to-archive file of BSRN, record 0100, minutes in UTC.",)
+        units = dict(frame.attrs["units"])
+        rows = 1 + np.arange(len(frame), dtype=np.int64)
+        return Read(with_time_column(frame), rows, said, units)
     sheet: tuple[str, ...] = ()
-    if path.suffix.lower() in ENDINGS:
+    if named.suffix.lower() in ENDINGS:
         text, sheet = sheet_text(path)
         # Numbers of cells have no marks that could be read in two ways.
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
+        content = b""  # a large sheet is put together from its text
     else:
-        text, encoding = decoded(path.read_bytes(), path.name)
-    body = _large_body(text, path.name, separator, decimal, skip_lines) or _body(
+        text, encoding = decoded(content, path.name)
+    raw = content.removeprefix(codecs.BOM_UTF8) if encoding == "utf-8-sig" else b""
+    body = _large_body(text, raw, path.name, separator, decimal, skip_lines) or _body(
         text, path.name, separator, decimal, skip_lines
     )
     del text  # a large table is in memory once, as far as that is possible
     layout, rows = body.layout, body.rows
     notes = (*sheet, *_notes(layout, encoding, body.head, path.name), *body.notes)
-    frame = _parsed(body.text, rows, layout, path.name, doubt=decimal is None)
+    frame = _parsed(body.content, rows, layout, path.name, doubt=decimal is None)
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     if layout.trailing:
         frame = frame.iloc[:, :-1]
+    if is_meteo_france(frame):
+        frame, known, clock = of_one_station(frame, path.name)
+        note = f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units as described."
+        return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=(clock, 1))
     _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
     preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
@@ -172,12 +194,26 @@ def read_frame(path: Path, separator: str | None, decimal: str | None, skip_line
     )  # fmt: skip
 
 
+def _parquet(path: Path) -> Read:
+    import pandas as pd
+
+    try:
+        frame = with_time_column(pd.read_parquet(path))
+        return Read(frame, 1 + np.arange(len(frame), dtype=np.int64))
+    except ImportError as error:
+        raise InputError(f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet].") from error
+    except (ValueError, OSError) as error:
+        raise InputError(
+            f"{path.name}: cannot be read as Parquet ({error}), expected a whole file; write it again."
+        ) from error
+
+
 @dataclass(frozen=True)
 class _Body:
     """The rows of a text file below a line with the names."""
 
     layout: Layout
-    text: str
+    content: bytes
     rows: Lines
     head: Sequence[str]
     last: str
@@ -203,7 +239,7 @@ def _body(text: str, where: str, separator: str | None, decimal: str | None, ski
                   "were left out.",)  # fmt: skip
     data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
     body = "\n".join([_names_line(lines, layout), *data])
-    return _Body(layout, body, rows, lines[: layout.first], last, count, notes)
+    return _Body(layout, body.encode(), rows, lines[: layout.first], last, count, notes)
 
 
 def _names_line(lines: Sequence[str], layout: Layout) -> str:
@@ -212,7 +248,7 @@ def _names_line(lines: Sequence[str], layout: Layout) -> str:
 
 
 def _large_body(
-    text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
+    text: str, raw: bytes, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
 ) -> _Body | None:
     """A large file without a loop over its lines; None where it is small, repeats heads or has remarks."""
     if len(text) < _LARGE or "\n" not in text[:_HEAD] or (skip_lines or 0) > _HEAD_LINES:
@@ -233,7 +269,9 @@ def _large_body(
     last = text[text.rfind("\n") + 1 :]
     count = text.count("\n", first) + bool(last)
     rows = layout.first + np.arange(count, dtype=np.int64)
-    body = f"{_names_line(lines, layout)}\n{text[first:]}"
+    # The head may have letters of several bytes; the rows are not copied before they are put together.
+    rest = memoryview(raw or text.encode())[len(text[:first].encode()) :]
+    body = b"".join([f"{_names_line(lines, layout)}\n".encode(), rest])
     return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
 
 
@@ -264,7 +302,7 @@ def _is_head_again(line: str, lines: Sequence[str], layout: Layout) -> bool:
     return line[:5] == first[:5] and line.count(layout.separator) == first.count(layout.separator)
 
 
-def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
+def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
     import pandas as pd
 
     options: dict[str, Any] = {
@@ -275,17 +313,22 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(BytesIO(body.encode()), **options)
+            frame = read_csv(BytesIO(body), **options)
     except pd.errors.ParserWarning as error:
         raise InputError(
-            f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
-            f"column, or, if {layout.separator!r} is also the decimal mark, write the table with another "
-            "separator."
+            f"{where}:{layout.first + 1}: the row has more entries than the header has names, expected as "
+            f"many; name every column, or, if {layout.separator!r} is also the decimal mark, write the table "
+            "with another separator."
         ) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
-        said = re.sub(r"(?<=line )\d+", lambda found: str(int(rows[int(found[0]) - 2]) + 1), str(error))
+        said = re.sub(
+            r"(?<=line )\d+",
+            lambda found: str(int(rows[int(found[0]) - 2]) + 1),
+            " ".join(str(error).split()),
+        )
         raise InputError(
-            f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}".strip()
+            f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}; expected the "
+            "same number of entries in each line: repair the line, or state another separator."
         ) from error
     doubtful = [
         k
@@ -296,7 +339,7 @@ def _parsed(body: str, rows: Lines, layout: Layout, where: str, *, doubt: bool) 
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(BytesIO(body.encode()), dtype=str, **options)
+        texts = read_csv(BytesIO(body), dtype=str, **options)
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
     return frame
@@ -324,6 +367,7 @@ def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -
     count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(
-            f"{where}:{line}: the last line has {count} of {fields} entries and no line end: the file "
-            "is cut; get the whole file, or remove that line."
+            f"{where}:{line}: the last line has {count} of {fields} entries, "
+            f"{last.strip()[:40]!r}, and no line end, expected all: the file is cut; get the whole file, or "
+            "remove that line."
         )

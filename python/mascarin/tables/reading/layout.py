@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 from collections.abc import Sequence
@@ -93,7 +94,9 @@ def decoded(raw: bytes, where: str) -> tuple[str, str]:
             guesses = ["utf-16-le" if zeros[1] > zeros[0] else "utf-16-be"]
     for name in guesses:
         try:
-            text = raw.decode(name)
+            # The codec with a mark copies its text piece by piece.
+            marked = name == "utf-8-sig" and raw.startswith(codecs.BOM_UTF8)
+            text = raw[3 * marked :].decode("utf-8" if name == "utf-8-sig" else name)
         except UnicodeDecodeError:
             continue
         if "\x00" in text:

@@ -77,7 +77,8 @@ def parse_numbers(
     infinite = np.flatnonzero(np.isinf(values))
     if len(infinite):
         raise InputError(
-            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number."
+            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number; "
+            "repair it, or name it in missing: ['inf', '-inf']."
         )
     return values
 
@@ -306,6 +307,8 @@ def suspicious_decimals(values: Array) -> bool:
     >>> suspicious_decimals(np.array([998.0, 1.5, 1.523])), suspicious_decimals(np.array([0.5, 3.0]))
     (True, False)
     """
+    if not np.any(np.abs(values) >= 100.0):
+        return False
     # Some entries are enough to show that a long column could not.
     if len(values) > _SAMPLE and not _could_be_groups(values[:_SAMPLE]):
         return False

@@ -167,12 +167,14 @@ def _netcdf(path: Path) -> pd.DataFrame:
         with xr.open_dataset(path) as opened:
             data = opened.load().squeeze()
     except (OSError, ValueError, RuntimeError) as error:
-        raise InputError(f"{path.name}: cannot be read as NetCDF: {error}") from error
+        raise InputError(
+            f"{path.name}: cannot be read as NetCDF ({error}), expected a whole file; get it again"
+        ) from error
     times = [name for name, index in data.indexes.items() if index.dtype.kind == "M"]
     if len(times) != 1:
         raise InputError(
             f"{path.name}: found {len(times)} coordinates of time ({', '.join(map(str, data.dims))}); "
-            f"expected one"
+            "expected one: select the others first, such as data.isel(step=0)"
         )
     names = [str(name) for name in data.data_vars if data[name].dims == (times[0],)]
     if not names:

@@ -52,7 +52,8 @@ def record_of_columns(
     for name in mean:
         if name not in kinds:
             raise InputError(
-                f"{table.where}: mean: {name!r} is not read. {did_you_mean(name, kinds)}".rstrip()
+                f"{table.where}: mean: {name!r} is not read, expected a column that is. "
+                f"{did_you_mean(name, kinds)}".rstrip()
             )
         kinds[name] = "mean"
     values, origins = {}, {}

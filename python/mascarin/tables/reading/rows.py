@@ -11,6 +11,7 @@ import numpy as np
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.numbers import EMPTY
+from mascarin.tables.units import parse_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +43,10 @@ def time_text(
     for name in names:
         if name not in frame.columns:
             hint = did_you_mean(str(name), [str(column) for column in frame.columns])
-            raise InputError(f"{where}: no time column {name!r}. {hint}".rstrip())
+            raise InputError(
+                f"{where}: no time column {name!r}. {hint} Expected the name of a column of the file, or "
+                "several in a list."
+            )
     if len(names) == 1:
         return frame[names[0]], names
     joined = frame[names[0]].astype(str)
@@ -205,6 +209,53 @@ def without_entries(frame: pd.DataFrame, missing: Sequence[str | float]) -> pd.D
     return frame.mask(frame.isin(values))
 
 
+#: A date with a time of day: a second clock beside that of the rows.
+_STAMP: Final = r"\s*\d{1,4}[./-]\d{1,2}[./-]\d{1,4}[ T]+\d{1,2}:\d{2}"
+#: A number, and what is written behind it.
+_WITH_UNIT: Final = r"^\s*([-+\u2212]?\d[\d.,' ]*?)\s*([^\d\s.,'+-].*?)\s*$"
+
+
+def without_units(frame: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Columns whose entries all have the same known unit behind the number, without it.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        As read.
+
+    Returns
+    -------
+    frame : pandas.DataFrame
+        Numbers as texts, where there were units.
+    units : mapping of str to str
+        The units, by column.
+    """
+    import pandas as pd
+
+    units: dict[str, str] = {}
+    if not frame.columns.is_unique:
+        return frame, units
+    columns = {}
+    for name in frame.columns:
+        if pd.api.types.is_numeric_dtype(frame[name].dtype):
+            continue
+        entries = frame[name].dropna()
+        if not len(entries) or not isinstance(entries.iloc[0], str):
+            continue
+        first = re.match(_WITH_UNIT, entries.iloc[0])
+        if first is None or parse_unit(first[2]) is None:
+            continue
+        parts = frame[name].astype(str).str.extract(_WITH_UNIT)
+        numbers, written = parts[0], parts[1]
+        there = numbers.notna()
+        empty = frame[name].isna() | frame[name].astype(str).str.strip().str.lower().isin(EMPTY)
+        if (there | empty).all() and (written[there] == first[2]).all():
+            columns[name], units[str(name)] = numbers, first[2]
+    if not columns:
+        return frame, units
+    return frame.assign(**{str(name): column for name, column in columns.items()}), units
+
+
 def has_words(series: pd.Series[Any]) -> bool:
     """Whether a column has entries, and all of them are words that mean something.
 
@@ -213,7 +264,15 @@ def has_words(series: pd.Series[Any]) -> bool:
     series : pandas.Series
         As read.
     """
+    import pandas as pd
+
+    if pd.api.types.is_numeric_dtype(series.dtype):
+        return False
     entries = series.dropna()
-    if not len(entries) or has_numbers(series):
+    if not len(entries):
+        return False
+    if isinstance(entries.iloc[0], str) and re.match(_STAMP, entries.iloc[0]):
+        return bool(entries.astype(str).str.match(_STAMP).all())
+    if has_numbers(series):
         return False
     return not bool(entries.astype(str).str.strip().str.lower().isin(EMPTY).all())

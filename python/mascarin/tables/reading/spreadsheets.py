@@ -65,7 +65,8 @@ def sheet_text(path: Path) -> tuple[str, tuple[str, ...]]:
                 return out.getvalue(), (said,) if others else ()
     except (BadZipFile, KeyError, ValueError, OSError, TypeError) as error:
         raise InputError(
-            f"{path.name}: cannot be read as a spreadsheet ({error}); save the sheet as CSV."
+            f"{path.name}: cannot be read as a spreadsheet ({error}), expected a whole workbook; save the "
+            "sheet as CSV."
         ) from error
     raise InputError(f"{path.name}: found no cell with content; expected a table in one of its sheets.")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,7 +18,7 @@ from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
-from mascarin.tables.reading.files import Read, file_hash, read_frame, with_time_column
+from mascarin.tables.reading.files import Read, content_of, read_frame, with_time_column
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.rows import (
     has_words,
@@ -25,6 +26,7 @@ from mascarin.tables.reading.rows import (
     rows_with_values,
     time_text,
     without_entries,
+    without_units,
 )
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
@@ -112,7 +114,8 @@ class Table:
     @property
     def numeric(self) -> list[str]:
         """All other columns."""
-        return [name for name in self.names if name not in self.words]
+        words = set(self.words)
+        return [name for name in self.names if name not in words]
 
     def stated_unit(self, column: str) -> StatedUnit | None:
         """Unit of a column by the row of units or by its name; None where there is none.
@@ -162,7 +165,10 @@ class Table:
         if column not in self.frame.columns:
             names = [str(name) for name in self.frame.columns]
             hint = did_you_mean(column, names) or f"Columns: {', '.join(names[:40])}."
-            raise InputError(f"{self.where}: no column {column!r} (wanted for {what}). {hint}")
+            raise InputError(
+                f"{self.where}: no column {column!r} (wanted for {what}). {hint} Expected the name of a "
+                "column of the file."
+            )
         place = f"{self.where}: column {column!r}"
         entries = self.frame[column]
         return parse_numbers(
@@ -242,14 +248,19 @@ def read_table(
     else:
         path = Path(source)
         where = path.name
-        digest = file_hash(path)
-        read = read_frame(path, separator, decimal, skip_lines)
+        content = content_of(path)
+        digest = hashlib.sha256(content).hexdigest()
+        read = read_frame(path, content, separator, decimal, skip_lines)
+        del content
         frame, said = read.frame, read.notes
+    frame, of_entries = without_units(frame)
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
     if len(frame) < 2:
-        raise InputError(f"{where}: found {len(frame)} rows, expected at least two to know the step.")
+        raise InputError(
+            f"{where}: found {len(frame)} rows, expected at least two to know the step: get the whole file."
+        )
     if time is None and time_format is None and (parts := parts_of_time(frame)):
         time, time_format = parts
     text, used = time_text(frame, time, where)
@@ -261,17 +272,26 @@ def read_table(
     zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
     said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
-    if shift is not None and (moved := shift_of(shift, f"{where}: shift")):
-        frame.index = stamps_of(epoch_seconds(pd.DatetimeIndex(frame.index)) + moved, zone)
-        said = (*said, f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift).")
+    frame.index, said = _shifted(pd.DatetimeIndex(frame.index), shift, zone, where, said)
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
     table = _regular(frame, zone, where, digest, lines, length, allowed, said)
-    of_pvgis = bool(_PVGIS.fullmatch(str(text.iloc[0])))
-    if of_pvgis:
+    if _PVGIS.fullmatch(str(text.iloc[0])):
         note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
-    return table if read is None else replace(table, **read.said_of_itself)
+    table = table if read is None else replace(table, **read.said_of_itself)
+    return replace(table, units={**table.units, **of_entries}) if of_entries else table
+
+
+def _shifted(
+    index: pd.DatetimeIndex, shift: str | float | None, zone: tzinfo, where: str, said: tuple[str, ...]
+) -> tuple[pd.DatetimeIndex, tuple[str, ...]]:
+    """Stamps of a clock that the user corrects, and the notes with that."""
+    moved = 0.0 if shift is None else shift_of(shift, f"{where}: shift")
+    if not moved:
+        return index, said
+    note = f"{where}: {moved / 60.0:+g} min were added to every stamp, as stated (shift)."
+    return stamps_of(epoch_seconds(index) + moved, zone), (*said, note)
 
 
 def _empty_rows(frame: pd.DataFrame) -> Flags:
@@ -351,9 +371,7 @@ def _regular(
     seconds = epoch_seconds(index)
     gaps = np.round(np.diff(seconds), 6)
     _ordered(gaps, index, lines, where, zone)
-    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
-    commonest = np.lexsort((place, -counts))[0]  # the earlier of two that are equally common
-    interval = expected if expected is not None else float(lengths[commonest])
+    interval = expected if expected is not None else _commonest(gaps)
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
     moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
@@ -397,6 +415,14 @@ def _regular(
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
 
 
+def _commonest(gaps: Array) -> float:
+    """The commonest step, of two that are equally common the earlier one. [s]"""
+    if (gaps == gaps[0]).all():
+        return float(gaps[0])
+    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
+    return float(lengths[np.lexsort((place, -counts))[0]])
+
+
 def _without_jitter(
     seconds: Array, expected: float | None, interval: float, tolerance: float | None
 ) -> tuple[Array, float, str] | None:
@@ -416,6 +442,8 @@ def _without_jitter(
 
 def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[str]:
     """Sentences on the changes of the clock inside a record."""
+    if zone.utcoffset(None) is not None:  # a clock that never changes
+        return []
     naive = index.tz_localize(None).to_numpy()
     offset = (naive - index.tz_convert("UTC").tz_localize(None).to_numpy()) / np.timedelta64(60, "s")
     changes = [int(k) for k in np.flatnonzero(np.diff(offset))]

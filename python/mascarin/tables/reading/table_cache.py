@@ -35,6 +35,8 @@ _CODE: Final = (
     clocks, columns, files, interval_labels, layout, numbers, records, rows, spreadsheets, table, timezones,
     units,
 )  # fmt: skip
+#: Larger files have more numbers than the cache keeps: their hash alone would take time. [B]
+_LARGEST: Final = 48 * 2**20
 _LINES: Final = "lines"
 _KNOTS: Final = "knots"
 
@@ -73,6 +75,8 @@ def cached_record(
     if not isinstance(source, str | Path) or timezone is None or reader_of(Path(source)) is not None:
         return make()
     path = Path(source)
+    if path.is_file() and path.stat().st_size > _LARGEST:
+        return make()
     zone = parse_timezone(timezone, f"{path.name}: timezone")
     # The representation of plain values says all about them.
     key = (kind.__name__, file_hash(path), path.name, timezone, *map(_plain, options))

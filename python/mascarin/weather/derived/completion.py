@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -37,8 +38,7 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
         return record
     grid = record.grid
     kind: Kind = next((record.kinds[name] for name in RADIATION if name in record.kinds), "mean")
-    sun = SunPath.over(latitude, longitude, grid.start, grid.end)
-    up, extra, clear = _sun_means(sun, grid, kind)
+    up, extra, clear = _sun_means(latitude, longitude, grid, kind)
     columns = dict(record.columns)
     notes: list[str] = []
     basis = _fill_radiation(columns, up, extra, clear, record.file, notes)
@@ -86,12 +86,14 @@ def extraterrestrial_horizontal(
         One for each row. [W/m2]
     """
     grid = record.grid
-    up, extra, _ = _sun_means(SunPath.over(latitude, longitude, grid.start, grid.end), grid, kind)
+    up, extra, _ = _sun_means(latitude, longitude, grid, kind)
     return np.asarray(up * extra)
 
 
-def _sun_means(sun: SunPath, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
+@lru_cache(maxsize=2)  # runs that differ in the gain of an irradiance have the same sun
+def _sun_means(latitude: float, longitude: float, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
     """Mean sine of elevation, extraterrestrial and clear beam of each interval, or at its start."""
+    sun = SunPath.over(latitude, longitude, grid.start, grid.end)
     starts = grid.start + grid.interval * np.arange(grid.count)
     if kind == "instant":
         up = np.maximum(sun.vector(starts)[:, 2], 0.0)
