@@ -97,14 +97,6 @@ impl<T> BySurface<T> {
     }
 }
 
-impl<T> BySurface<T> {
-    /// The values, wall by wall.
-    #[inline(always)]
-    pub fn as_slice(&self) -> &[T] {
-        &self.0
-    }
-}
-
 impl<T: Copy> BySurface<T> {
     /// The values of both surfaces of a wall: outside, inside.
     #[inline(always)]

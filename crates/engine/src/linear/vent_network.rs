@@ -2,8 +2,9 @@
 //!
 //! The unknown of a zone is its pressure at the ground, above that of the outdoor air there. Through a part of an opening at a
 //! height h, `dp = (p_a - e_a h) - (p_b - e_b h)` drives the flow from a to b, with `e = (rho - rho_outdoor) g`; outdoors, p is the pressure
-//! of the wind and e is zero. Flows rise with the pressure difference: the balances are those of a minimum of a convex function, and the
-//! solution is unique.
+//! of the wind and e is zero. What flows is the air where it comes from; flows are counted as volumes of air of the density of the site, so that
+//! their balances are those of mass. They rise with the pressure difference: the balances are those of a minimum of a convex function, and
+//! the solution is unique.
 //!
 //! Each iteration solves the sparse symmetric system of the balances as straight lines. Newton's tangents converge fast near the
 //! solution, but jump to and fro about the root of a square root; lines through zero (secants) always approach it, by about half of the
@@ -31,8 +32,8 @@ pub(crate) struct Link<S> {
     pub(crate) from: usize,
     /// None: outdoors.
     pub(crate) to: Option<usize>,
-    /// Volume flow at 1 Pa [m3/s].
-    pub(crate) strength: S,
+    /// Flow at 1 Pa with the air where it comes from, forwards and backwards [m3/s of air of the site].
+    pub(crate) strengths: [S; 2],
     pub(crate) exponent: S,
     /// Pressure difference that wind and stack put on it [Pa].
     pub(crate) drive: S,
@@ -47,7 +48,7 @@ pub(crate) struct VentNetwork<'a, S> {
     laws: Vec<PressureFlow<S>>,
     /// Of each zone [Pa].
     pub(crate) pressures: Vec<S>,
-    /// Flow out of each zone less that into it [m3/s].
+    /// Flow out of each zone less that into it [m3/s of air of the site].
     surplus: Vec<S>,
 }
 
@@ -64,7 +65,7 @@ impl<'a, S: Real> VentNetwork<'a, S> {
         }
     }
 
-    /// The flow of a link at the pressures [m3/s].
+    /// The flow of a link at the pressures [m3/s of air of the site].
     pub(crate) fn flow(&self, link: usize) -> S {
         self.laws[link].flow
     }
@@ -112,7 +113,9 @@ impl<'a, S: Real> VentNetwork<'a, S> {
             if let Some(to) = link.to {
                 difference = difference - self.pressures[to];
             }
-            let law = flow(of(link.strength), of(link.exponent), difference);
+            let [forwards, backwards] = link.strengths;
+            let strength = S::select(difference.lt(S::zero()), backwards, forwards);
+            let law = flow(of(strength), of(link.exponent), difference);
             self.surplus[link.from] += law.flow;
             if let Some(to) = link.to {
                 self.surplus[to] = self.surplus[to] - law.flow;

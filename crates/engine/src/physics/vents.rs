@@ -1,9 +1,9 @@
 //! Openings that pressure drives air through: flow by pressure difference, and the pressure of the wind on a wall.
 //!
-//! - Flow: `V = C_d A sqrt(2/rho) 4^(1/2 - n) |dp|^(n - 1) dp` [m3/s]. With the exponent n = 1/2 this is the orifice; other
+//! - Flow: `V = C_d A sqrt(2/rho) 4^(1/2 - n) |dp|^(n - 1) dp` [m3/s], rho the density of the air that passes. With the exponent n = 1/2 this is the orifice; other
 //!   exponents are those of leaks whose leakage area is given at 4 Pa (ASHRAE Handbook of Fundamentals 2017, ch. 16).
 //! - Near zero the root would have an infinite slope, and Newton's method would not converge (Walton 1989, Airflow network
-//!   models for element-based building airflow modeling, ASHRAE Trans. 95(2), 611-620): `|dp|` is rounded off within 1 mPa, which
+//!   models for element-based building airflow modeling, ASHRAE Trans. 95(2), 611-620): `|dp|` is rounded off within 0.2 mPa, which
 //!   makes the flow linear there, as a laminar flow is.
 //! - A tall opening is two openings of half the area, 2/9 of the height above and below its middle: with equal pressures in the
 //!   middle they exchange `C_d W H/3 sqrt(g H |dT|/T)`, as the whole opening does (Brown & Solvason 1962,
@@ -20,7 +20,7 @@ use crate::input::description;
 use crate::number::real::Real;
 
 /// Pressure differences are rounded off within this [Pa].
-const ROUND_OFF: f64 = 1e-3;
+const ROUND_OFF: f64 = 2e-4;
 /// Pressure that leakage areas are given at [Pa].
 const LEAKAGE_PRESSURE: f64 = 4.0;
 /// Part of the height of an opening that its two halves are above and below its middle [-].

@@ -264,42 +264,20 @@ fn name_impossible<S: Real>(
     impossible(place, format!("{temperature:.1} degC, expected no temperature below -273.15 degC"))
 }
 
-/// Temperatures of a state, in the order of [`name`].
-fn temperatures<S: Real>(state: &State<S>) -> impl Iterator<Item = S> {
-    slices(state).into_iter().flatten().copied()
-}
-
+/// Temperatures of a state.
 #[inline(always)]
-fn slices<S: Real>(state: &State<S>) -> [&[S]; 3] {
-    [&state.cells, state.surfaces.as_slice(), &state.air]
+fn temperatures<S: Real>(state: &State<S>) -> impl Iterator<Item = S> {
+    state.cells.iter().chain(state.surfaces.iter()).chain(&state.air).copied()
 }
 
 #[inline(always)]
 fn lowest<S: Real>(state: &State<S>) -> S {
-    extreme_of(state, S::constant(f64::INFINITY), S::min)
+    temperatures(state).fold(S::constant(f64::INFINITY), S::min)
 }
 
 #[inline(always)]
 fn highest<S: Real>(state: &State<S>) -> S {
-    extreme_of(state, S::constant(f64::NEG_INFINITY), S::max)
-}
-
-/// The extreme of all temperatures: of every eighth one each, which the compiler compares in vectors, then of these.
-#[inline(always)]
-fn extreme_of<S: Real>(state: &State<S>, first: S, further: impl Fn(S, S) -> S) -> S {
-    let mut extremes = [first; 8];
-    for values in slices(state) {
-        let (blocks, rest) = values.as_chunks::<8>();
-        for block in blocks {
-            for (extreme, &value) in extremes.iter_mut().zip(block) {
-                *extreme = further(*extreme, value);
-            }
-        }
-        for &value in rest {
-            extremes[0] = further(extremes[0], value);
-        }
-    }
-    extremes.into_iter().fold(first, &further)
+    temperatures(state).fold(S::constant(f64::NEG_INFINITY), S::max)
 }
 
 /// Lanes where sun, gains or heating warm the building in the last stage of a step, and lanes where it is cooled.

@@ -7,6 +7,7 @@
 //! this ping-pong.) A flow that a temperature difference alone drives grows with the root of it: a flow that is too large for the heat in
 //! the room is followed by one that is too small by less than half of that.
 
+use crate::building::coefficients::vents::OF_DENSITY;
 use crate::building::model::Model;
 use crate::input::forcing::channel;
 use crate::linear::vent_network::{LEAK, Link, VentNetwork};
@@ -82,7 +83,7 @@ fn find_vent_flows<S: Real>(
     }
 }
 
-/// Wind and stack on all parts of openings.
+/// Wind and stack on all parts of openings, and the density of the air on both of their sides.
 #[inline(always)]
 fn drive<S: Real>(
     network: &mut VentNetwork<'_, S>,
@@ -91,21 +92,23 @@ fn drive<S: Real>(
     air: &[S],
 ) {
     let numbers = &model.coefficients.vents;
-    let kelvin = S::constant(KELVIN);
-    let outdoor = numbers.weight / (conditions.outdoor_air + kelvin);
-    // Weight above that of the outdoor air [N/m3].
-    let excess = |zone: usize| numbers.weight / (air[zone] + kelvin) - outdoor;
+    // Densities over that of the site [-].
+    let density = |air: S| S::constant(OF_DENSITY) / (air + S::constant(KELVIN));
+    let outdoor = density(conditions.outdoor_air);
+    let of_zone = |zone: usize| density(air[zone]);
     network.links.clear();
     for (k, vent) in numbers.all.iter().enumerate() {
-        let at_other_end = vent.to.map_or_else(S::zero, excess);
-        let fall = at_other_end - excess(vent.zone);
+        let ends = [of_zone(vent.zone), vent.to.map_or(outdoor, of_zone)];
+        let fall = numbers.weight * (ends[1] - ends[0]);
+        let opened = vent.strength * conditions.vents.open[k];
+        let strengths = ends.map(|density| opened * density.sqrt());
         for &height in &vent.heights {
             network.links.push(Link {
                 from: vent.zone,
                 to: vent.to,
-                strength: vent.strength * conditions.vents.open[k],
+                strengths,
                 exponent: vent.exponent,
-                drive: fall * height - conditions.vents.pressure[k],
+                drive: fall * height - outdoor * conditions.vents.pressure[k],
             });
         }
     }

@@ -11,7 +11,7 @@ use crate::physics::constants::GRAVITY;
 use crate::physics::vents::{self, HALF_PLACE};
 
 /// Temperature that the density of the site belongs to [K]: that of the standard atmosphere at sea level.
-const OF_DENSITY: f64 = 288.15;
+pub(crate) const OF_DENSITY: f64 = 288.15;
 
 /// Round-off of a time that steps add up to [s].
 const SLACK: f64 = 1e-3;
@@ -25,7 +25,7 @@ pub struct Vents<S> {
     pub(crate) controls: Vec<Control<S>>,
     /// Heat capacity of a cubic metre of air [J/(m3 K)].
     pub(crate) heat: S,
-    /// Weight of a cubic metre of air times its temperature [N K/m3].
+    /// Weight of a cubic metre of air of the site [N/m3].
     pub(crate) weight: S,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct VentNumbers<S> {
     pub(crate) to: Option<usize>,
     /// Heights above the ground of the parts that air passes in one direction [m].
     pub(crate) heights: Vec<S>,
-    /// Volume flow of one part at 1 Pa [m3/s].
+    /// Volume flow of one part at 1 Pa with air of the site [m3/s].
     pub(crate) strength: S,
     pub(crate) exponent: S,
     wind: Option<Wind<S>>,
@@ -49,7 +49,7 @@ pub(crate) struct VentNumbers<S> {
 struct Wind<S> {
     coefficients: vents::Coefficients<S>,
     azimuth: S,
-    /// Dynamic pressure where the wind at the mast is 1 m/s [Pa].
+    /// Dynamic pressure of air of the site where the wind at the mast is 1 m/s [Pa].
     dynamic: S,
 }
 
@@ -178,7 +178,7 @@ impl<S: Real> Vents<S> {
             all: description.vents.iter().map(|vent| VentNumbers::new(plan, vent, values, density)).collect(),
             controls: description.controls.iter().map(|control| Control::new(control, values)).collect(),
             heat: air::heat_capacity(plan, values, density),
-            weight: density.scale(GRAVITY * OF_DENSITY),
+            weight: density.scale(GRAVITY),
         }
     }
 

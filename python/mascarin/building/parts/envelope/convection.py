@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Type
 from pydantic import Field, create_model
 
 from mascarin.building.base.number import Number, Remark
-from mascarin.building.base.part import Part, Shorthand
+from mascarin.building.base.part import Part
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.law_table import CONVECTION as ROWS
 from mascarin.building.parts.envelope.law_table import LawNumber, LawRow
+from mascarin.building.parts.envelope.published_laws import LawShorthand
 
 
 class ConvectionLaw(Part):
@@ -141,7 +142,7 @@ else:
     Convection = Annotated[
         functools.reduce(operator.or_, [*_LAWS, Measured, FormulaLaw]),
         Field(discriminator="kind"),
-        Shorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
+        LawShorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
     ]
 
 

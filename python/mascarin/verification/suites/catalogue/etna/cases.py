@@ -37,6 +37,8 @@ _PATHS: Final = {
 _GUARDS: Final = ("Tattic", "Tcellar", "Tnorth", "Teast", "Tsouth", "Twest")
 #: Film outside, and inside of the parts of windows that are not insulated. [W/(m2 K)]
 _OUTSIDE_FILM, _BARE_FILM = 18.0, 12.0
+#: Films by the program: the fan of the heater blows 20.7 air changes an hour from a diffuser at the ceiling.
+_FORCED_AIR: Final = {"kind": "fisher_ceiling_diffuser", "mixing": 20.7}
 #: Height of the air. [m]
 _HEIGHT: Final = 2.565
 #: Cases by the program's own films.
@@ -85,7 +87,7 @@ class Case:
             }
             inside: Tree = {"zone": "cell", "convection": _BARE_FILM if bare else film, "emissivity": 0.9}
             if self.own_films:
-                inside |= {"convection": "tarp", "emissivity": _emissivity(facts, path)}
+                inside |= {"convection": _FORCED_AIR, "emissivity": _emissivity(facts, path)}
             surfaces[path] = {
                 "construction": path,
                 "area": facts["paths"][path]["area_m2"],
