@@ -49,6 +49,6 @@ class Seven:
 
 def seven() -> Seven:
     """Open the shipped study and make the data."""
-    problem = Study(FOLDER / "lgi" / "study.yaml").problem(VARIANT)
+    problem = Study(FOLDER / "lgi" / "study.yaml").context.problem(VARIANT)
     truth = problem.values(TRUTH[None])[0]
     return Seven(problem, truth, np.asarray(problem.model(truth[None]))[0])

@@ -137,7 +137,7 @@ def main() -> None:
     folder = Path(sys.argv[2] if len(sys.argv) > 2 else "pattern_sequences")
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
-    problem = Study(FOLDER / "lgi" / "study.yaml").problem(VARIANT)
+    problem = Study(FOLDER / "lgi" / "study.yaml").context.problem(VARIANT)
     fit = searched(problem, sequences, folder)
     used = resource.getrusage(resource.RUSAGE_SELF)
     print_minima(fit, time.perf_counter() - began, used.ru_utime + used.ru_stime)

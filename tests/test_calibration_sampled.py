@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions
 from mascarin.calibration.errors.discrepancy import Discrepancy
 from mascarin.calibration.errors.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.sampled_posterior import ChainLengths
 from mascarin.calibration.errors.sensor_errors import SensorError
-from mascarin.calibration.sampled_posterior import ChainLengths
 from mascarin.calibration.sampling.convergence import bulk_size, r_hat, tail_size
 from mascarin.calibration.sampling.nuts import StepSize, moved
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample

@@ -110,7 +110,7 @@ def test_a_zone_of_too_many_surfaces_is_refused_with_what_it_would_take() -> Non
 def test_the_weather_of_a_place_is_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
     climate, building = box_climate(), box()
     first = Simulation(building, climate, step="1h").compiled.forcing
-    calls = counted(monkeypatch, forcing, "_fill_radiation")
+    calls = counted(monkeypatch, forcing, "fill_radiation")
     again = Simulation(building.replace({"zones.room.volume": 40.0}), climate, step="1h").compiled.forcing
     assert not calls
     np.testing.assert_array_equal(first, again)

@@ -40,9 +40,9 @@ def test_a_study_that_is_killed_after_every_few_results_ends(
     assert results.error_sources is not None
     write, left = atomic.write, 0
 
-    def counted(path: Path, content: Any) -> Path:
+    def counted(path: Path, content: Any, *kind: str) -> Path:
         nonlocal left
-        written = write(path, content)
+        written = write(path, content, *kind)
         if path.name.startswith(kept.NAME) or path.suffix == ".npy":
             left -= 1
             if left == 0:

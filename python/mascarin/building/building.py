@@ -305,12 +305,9 @@ class Building(Description):
         changes = spread(self, mapping_of("values", values, "values or parts by path"))
         if stated := unstated(self.weather, changes):
             return self.replace(stated).replace(values)
-        values_by_path = {
-            self._resolved(path, value): without_parts(value) for path, value in changes.items()
-        }
-        structural = any(self._is_structural(path) for path in values_by_path)
-        plain = self.written(keep_derived=not structural)
-        for path, value in values_by_path.items():
+        resolved = {self._resolved(path, value): without_parts(value) for path, value in changes.items()}
+        plain = self.written(keep_derived=not any(map(self._is_structural, resolved)))
+        for path, value in resolved.items():
             put(plain, self, path.split("."), value)
         return self._read(plain, self.name)
 

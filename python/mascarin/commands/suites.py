@@ -29,7 +29,7 @@ def suites(
     list_suites: Annotated[bool, Flag, Parameter(name="--list")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Run public test suites and compare with their references and other programs.
+    """Run public test suites beside other programs.
 
     Each number has a verdict: inside, miss, known miss with its cause, ambiguous specification, or not
     expressible. Exits with 1 for a miss that nobody has written down, or for one that has grown. The

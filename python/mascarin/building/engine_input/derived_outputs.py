@@ -13,7 +13,7 @@ def describe_derived(building: Description, ids: Mapping[str, int]) -> list[Json
     """Describe the derived outputs: formula, numbers, and the outputs that each uses."""
     if not building.derived_outputs:
         return []
-    known = {output.name: output for output in outputs(building)}
+    by_name = {output.name: output for output in outputs(building)}
     return [
         {
             "name": name,
@@ -25,9 +25,9 @@ def describe_derived(building: Description, ids: Mapping[str, int]) -> list[Json
                 ],
             },
             "of": [
-                {"name": word, "kind": known[word].kind, "place": known[word].place}
+                {"name": word, "kind": by_name[word].kind, "place": by_name[word].place}
                 for word in derived.used
-                if word in known
+                if word in by_name
             ],
         }
         for name, derived in building.derived_outputs.items()

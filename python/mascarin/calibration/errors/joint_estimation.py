@@ -27,9 +27,9 @@ from mascarin.calibration.errors.joint_posterior import (
     joint_posterior,
     objective,
 )
+from mascarin.calibration.errors.sampled_posterior import ChainLengths
 from mascarin.calibration.errors.sensor_errors import sensor_columns
 from mascarin.calibration.methods.least_squares import residuals_and_derivatives
-from mascarin.calibration.sampled_posterior import ChainLengths
 
 Floats = NDArray[np.float64]
 Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]

@@ -35,8 +35,8 @@ from mascarin.calibration.errors.discrepancy import (
     estimate_discrepancy,
     hour_basis,
 )
+from mascarin.calibration.errors.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
 from mascarin.calibration.errors.sensor_errors import SensorError, sensor_columns
-from mascarin.calibration.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.calibration.sampling.truncated_normal import within_bounds
 
@@ -271,7 +271,8 @@ def joint_posterior(
         Sizes of the errors of the model; drawn from their distribution when absent.
     simulate : callable, optional
         The model itself, from positions (M, P) to series (M, T, S). With it parameters and errors of sensors
-        are sampled by `mascarin.calibration.sampled_posterior`, in place of the linear model within bounds.
+        are sampled by `mascarin.calibration.errors.sampled_posterior`, in place of the linear model within
+        bounds.
     lengths : ChainLengths, optional
         How long is sampled.
 

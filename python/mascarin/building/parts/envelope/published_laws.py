@@ -61,7 +61,7 @@ class PublishedLaw:
                 )
         numbers = dict(self.numbers)
         for name, value in stated.items():
-            notes = value if isinstance(value, Mapping) else {"value": value}
+            notes = dict(value) if isinstance(value, Mapping) else {"value": value}
             # The range of the law is about its own value.
             limits = {key: ends for key, ends in self.numbers.get(name, {}).items() if key == "limits"}
             numbers[name] = limits | notes

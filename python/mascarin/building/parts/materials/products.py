@@ -250,22 +250,22 @@ def _table(item: Product, curve: Curve, name: str) -> dict[str, Any]:
     }
 
 
-def _scale(one: Product) -> dict[str, Number]:
+def _scale(item: Product) -> dict[str, Number]:
     """Factor on the curve with the tolerance of the maker; none for a maker that states none."""
-    if one.heat_tolerance is None:
+    if item.heat_tolerance is None:
         return {}
-    half, reason = one.heat_tolerance
+    half, reason = item.heat_tolerance
     span = (1.0 - half, 1.0 + half)
     return {
         "enthalpy_scale": Number(1.0, range=span, source=f"the curve as measured; {reason}", derived=True)
     }
 
 
-def _with_tolerance(heat: Number, one: Product) -> Number:
+def _with_tolerance(heat: Number, item: Product) -> Number:
     """A latent heat with the tolerance of the maker as its range, unless the product has one."""
-    if one.heat_tolerance is None or heat.range is not None:
+    if item.heat_tolerance is None or heat.range is not None:
         return heat
-    half, reason = one.heat_tolerance
+    half, reason = item.heat_tolerance
     span = (float(heat) * (1.0 - half), float(heat) * (1.0 + half))
     source = f"{heat.source}; {reason}"
     return Number(float(heat), range=span, source=source, assumed=heat.assumed, derived=True)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
 #: Name, value, range and unit, where they are stated.
-Given = tuple[tuple[str, float, Interval | None, str | None], ...]
+StatedNumbers = tuple[tuple[str, float, Interval | None, str | None], ...]
 #: Temperature at which a conductivity by temperature is said as one number. [degC]
 _USUAL = 20.0
 
@@ -42,35 +42,37 @@ class TextLaw(Formula):
         return names_in(self.formula) | names_in(self.valid)
 
     @property
-    def given(self) -> Given:
+    def stated(self) -> StatedNumbers:
         """Names, values, ranges and units of its numbers."""
-        return tuple((name, float(one), one.range, stated_unit(one)) for name, one in self.numbers.items())
+        return tuple(
+            (name, float(number), number.range, stated_unit(number)) for name, number in self.numbers.items()
+        )
 
     @model_validator(mode="after")
     def _is_a_law(self) -> Self:
         insist(*self.faults(()))
         return self
 
-    def faults(self, at: Location) -> Iterator[InitErrorDetails]:
+    def faults(self, location: Location) -> Iterator[InitErrorDetails]:
         """What is wrong with it.
 
         Parameters
         ----------
-        at : tuple
+        location : tuple
             Path of the law.
         """
-        found = _checked(self.law_of, self.formula, self.valid, self.given)
-        if found is not None:
-            key, line, column, *words = found
-            known = key in ("formula", "valid")
-            yield text_fault((*at, key), words, (line, column) if known else None)
+        defect = _checked(self.law_of, self.formula, self.valid, self.stated)
+        if defect is not None:
+            key, line, column, *words = defect
+            in_text = key in ("formula", "valid")
+            yield text_fault((*location, key), words, (line, column) if in_text else None)
 
     def at_values(self, values: Mapping[str, float]) -> Iterator[InitErrorDetails]:
         """What is wrong with it at other values of its numbers."""
-        given = tuple((name, values.get(name, value), None, unit) for name, value, _, unit in self.given)
-        found = _checked(self.law_of, self.formula, self.valid, given)
-        if found is not None:
-            key, _, _, *words = found
+        changed = tuple((name, values.get(name, value), None, unit) for name, value, _, unit in self.stated)
+        defect = _checked(self.law_of, self.formula, self.valid, changed)
+        if defect is not None:
+            key, _, _, *words = defect
             yield text_fault((key,), words, None)
 
     def _values(self, *points: npt.ArrayLike) -> npt.NDArray[np.float64]:
@@ -78,17 +80,17 @@ class TextLaw(Formula):
         arrays = np.broadcast_arrays(*(np.asarray(point, dtype=np.float64) for point in points))
         flat = [np.ascontiguousarray(array.ravel()) for array in arrays]
         try:
-            found = _engine.function_values(self.law_of, self.formula, list(self.given), flat)
+            values = _engine.function_values(self.law_of, self.formula, list(self.stated), flat)
         except _engine.EngineInputError as error:
             raise InputError(f"formula: {error}") from None
-        return found.reshape(arrays[0].shape)
+        return values.reshape(arrays[0].shape)
 
 
 @lru_cache(maxsize=512)
 def _checked(
-    law_of: str, formula: str, valid: str | None, given: Given
+    law_of: str, formula: str, valid: str | None, stated: StatedNumbers
 ) -> tuple[str, int, int, str, str, str] | None:
-    return _engine.check_function(law_of, formula, valid, list(given))
+    return _engine.check_function(law_of, formula, valid, list(stated))
 
 
 class ConductivityLaw(TextLaw):
