@@ -58,6 +58,15 @@ def test_numbers_of_a_suite(name: str, data_dir: Path) -> None:
     assert all(math.isfinite(line.value) for line in lines if line.verdict != Verdict.NOT_EXPRESSIBLE)
 
 
+@pytest.mark.parametrize("name", EXPECTED)
+def test_the_page_states_the_numbers(name: str, repository: Path) -> None:
+    page = (repository / "docs" / "suites.md").read_text(encoding="utf-8")
+    row = next(line for line in page.splitlines() if line.startswith(f"| `{name}` |"))
+    counts = EXPECTED[name]
+    judged = sum(count for verdict, count in counts.items() if verdict != Verdict.NOT_EXPRESSIBLE)
+    assert f"| {counts[Verdict.INSIDE]} of {judged} |" in row
+
+
 def test_simquality_is_perfect_in_every_variable(data_dir: Path) -> None:
     """The limits that the suite calls perfect, from 90 on, and the mean beside TRNSYS and NANDRAD."""
     lines = lines_of("simquality", data_dir)
