@@ -321,6 +321,7 @@ OPTIONAL = {
         "conductivity": {"formula": "1.7 + a*T", "a": 0.002}, "density": 2300, "specific_heat": 900,
     },
     "derived_outputs": {"swing": {"formula": "k*room.air_temperature", "k": 2}},
+    "weather": {"clock": 60, "columns": {"wind_speed": {"gain": 0.9, "offset": 0.1, "clock": 30}}},
     "zones.attic.sun": {
         "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
         "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},

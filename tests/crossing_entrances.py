@@ -363,6 +363,7 @@ WITHOUT_BUILDING: Final[dict[str, str]] = {
     "weather": "reads weather alone",
     "verify": "runs its own walls",
     "bestest": "runs its own cases",
+    "suites": "runs its own cases",
 }
 #: Entrances that make no run in the weather, so that there are no warnings of one, with the reason.
 WITHOUT_RUN: Final[dict[str, str]] = {

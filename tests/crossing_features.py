@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from mascarin.building import Building
+from mascarin.building.parts.posterior import Posterior, SensorPosterior, table_of
 
 Json = dict[str, Any]
 
@@ -203,6 +204,53 @@ def _sensors_and_ties(tree: Json) -> None:
     tree["ties"] = {"materials.*.density": "factor"}
 
 
+def _laws_as_text(tree: Json) -> None:
+    tree["materials"]["board"]["conductivity"] = {"formula": "k*(1 + a*T)", "k": 0.19, "a": 0.003}
+    tree["zones"]["room"]["infiltration"] = {"formula": "c*sqrt(0.02*abs(dT) + 0.01*V^2)", "c": 0.8}
+    tree["site"]["sky"] = {"kind": "text", "formula": "a + b*sqrt(pw/100)", "a": 0.52, "b": 0.065}
+
+
+def _derived_outputs(tree: Json) -> None:
+    tree["derived_outputs"] = {
+        "gain": {"formula": "A*south.inside_flux", "A": {"value": 12, "unit": "m2"}, "unit": "W"},
+        "overheat": "max(room.air_temperature - 26, 0)",
+        "half": "gain/2",
+    }
+
+
+def _weather_errors(tree: Json) -> None:
+    tree["weather"] = {
+        "clock": 120,
+        "columns": {
+            "radiation": {"gain": {"value": 1.03, "range": [0.9, 1.1]}},
+            "air_temperature": {"offset": {"value": -0.3, "range": [-1, 1]}},
+        },
+    }
+
+
+def _column_errors(tree: Json) -> None:
+    """Errors of a measured column of the building."""
+    _measured_columns(tree)
+    tree["weather"] = {"columns": {"T_back": {"offset": 0.2, "clock": 600}}}
+
+
+def _posterior(tree: Json) -> None:
+    """What an earlier study has written; tests/test_study_carried.py makes one by a study."""
+    volume, absorptance = VARIED
+    sample = np.random.default_rng(5).normal([0.5, 30.0], [0.05, 1.0], (20, 2))
+    air = SensorPosterior(
+        output="room.air_temperature", unit="degC", range=(22.0, 33.0), repeating=0.1, daily=0.1,
+        independent=0.1, limit=0.5, errors={"offset": (0.1, 0.8)},
+    )  # fmt: skip
+    section = Posterior.sealed(
+        study="earlier", mascarin="1.0", confidence=0.95, days=3, stated=True,
+        intervals={absorptance: (0.5, 0.4, 0.6)}, numbers={volume: 30.0},
+        sample=table_of((absorptance, volume), sample), sensors={"air": air},
+        weather={"air_temperature": (26.0, 28.0)},
+    )  # fmt: skip
+    tree["posterior"] = section.model_dump(mode="json")
+
+
 def _plain(tree: Json) -> None:
     """A room without anything."""
 
@@ -226,6 +274,11 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "mechanical air": _mechanical_air,
     "shades": _shades,
     "sensors and ties": _sensors_and_ties,
+    "laws as text": _laws_as_text,
+    "derived outputs": _derived_outputs,
+    "weather errors": _weather_errors,
+    "column errors": _column_errors,
+    "posterior": _posterior,
 }
 
 

@@ -63,7 +63,9 @@ def test_every_parameter_is_an_id_of_the_engine_and_back() -> None:
         engine = building.to_engine()
         varying = [p.path for p in building.parameters() if not p.structural]
         assert engine.paths == varying
-        assert {index for _, index in ids(json.loads(engine.json))} == set(range(len(varying)))
+        # Errors of the weather change the forcing: the engine gets their values and does not use them.
+        used = {at for at, path in enumerate(varying) if not path.startswith("weather.")}
+        assert {index for _, index in ids(json.loads(engine.json))} == used
 
 
 def test_paths_and_values_are_those_of_the_parameters() -> None:

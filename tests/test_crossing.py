@@ -42,7 +42,9 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
     ("loads", "linear model"): "heating or cooling",
     ("interior windows", "linear model"): "is not linear",
     ("mechanical air", "linear model"): "is not linear",
+    ("laws as text", "linear model"): "conductivity by temperature",
     ("measured columns", "design"): "weather files, which have no measurements",
+    ("column errors", "design"): "weather files, which have no measurements",
 }
 
 

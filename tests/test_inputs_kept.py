@@ -6,6 +6,7 @@ past `mascarin._io` is seen as well.
 
 from __future__ import annotations
 
+import gzip
 import os
 import shutil
 import sys
@@ -125,12 +126,34 @@ CASES: dict[str, Case] = {
         folder={"--out": ("bestest.html",)},
         late=("site.epw", "house.yaml", "base.yaml"),  # the weather is not that of the standard
     ),
+    "suites": Case(("bland",), folder={"--out": ("suites.html", "suites.json")}),
     "optimize": Case(("--project", "genopt/opt.ini"), {"--table": ".csv"}),
     "genopt": Case(
         VALIDATE, folder={"--out": ("template.txt", "compiled.npz")}, reads=("validate", *VALIDATE)
     ),
     "cost": Case(("parameters.txt", "--study", "study/study.yaml"), {"--out": ".txt", "--log": ".log"}),
 }
+
+#: Reference numbers of a suite: a slab, its film, its start, the step of the air, and two hours.
+SLAB = """\
+Input Data
+
+0.1
+1.0
+1000
+1000
+10
+20
+10
+0
+0
+7200
+3600
+IOSTEP Output Data
+Temperature (K)
+20.1, 0
+20.4, 0
+"""
 
 _opened: list[str] | None = None
 
@@ -170,6 +193,9 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "study" / "study.yaml").write_text(STUDY, encoding="utf-8")
     logger_table(folder / "study" / "building.yaml").to_csv(folder / "study" / "logger.csv")
     write_project(folder / "genopt")
+    (folder / "suites" / "bland").mkdir(parents=True)
+    with gzip.open(folder / "suites" / "bland" / "Test_1-1_Analytical.csv.gz", "wt") as file:
+        file.write(SLAB)
     return folder
 
 
@@ -178,6 +204,7 @@ def place(original: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     """A copy of the inputs, which is the working folder."""
     shutil.copytree(original, tmp_path / "inputs")
     monkeypatch.chdir(tmp_path / "inputs")
+    monkeypatch.setenv("MASCARIN_DATA", str(tmp_path / "inputs"))
     return tmp_path / "inputs"
 
 

@@ -118,7 +118,7 @@ def _parameters(simulation: Simulation, patterns: Sequence[str] | None) -> list[
             )
     by_path = {parameter.path: parameter for parameter in simulation.building.parameters()}
     variables = []
-    for position, (path, value) in enumerate(zip(paths, compiled.values.tolist(), strict=True)):
+    for position, (path, value) in enumerate(zip(compiled.paths, compiled.values.tolist(), strict=True)):
         if is_of_weather(path):
             continue
         if patterns is not None and not any(fnmatchcase(path, pattern) for pattern in patterns):

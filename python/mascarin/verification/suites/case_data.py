@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,10 +64,11 @@ class CaseData:
         Raises
         ------
         InputError
-            There is none.
+            There is none, or it is where results will be written.
         """
         for path in (self.folder / name, self.folder / f"{name}.gz"):
             if path.is_file():
+                require_regular(path)
                 return path
         raise InputError(f"{self.folder}: no file '{name}', which the suite compares with")
 
