@@ -91,18 +91,17 @@ class LawShorthand(Shorthand):
         if not isinstance(law, Mapping) or not isinstance(law.get("kind"), str):
             return law
         published = published_laws().get(law["kind"])
-        return (
-            law if published is None else published.described({k: v for k, v in law.items() if k != "kind"})
-        )
+        if published is None:
+            return law
+        return published.described({key: value for key, value in law.items() if key != "kind"})
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """Allow published laws beside the others."""
-        keys = {
-            "type": "object",
-            "required": ["kind"],
-            "properties": {"kind": {"enum": list(published_laws())}},
-        }
+        laws = published_laws()
+        titles = "; ".join(f"{key}: {law.title}" for key, law in laws.items())
+        kind = {"enum": list(laws), "description": f"A published law that is text. {titles}"}
+        keys = {"type": "object", "required": ["kind"], "properties": {"kind": kind}}
         short = super().__get_pydantic_json_schema__(schema, handler)
         return {"anyOf": [*short["anyOf"], keys]}
