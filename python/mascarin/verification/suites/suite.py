@@ -54,7 +54,7 @@ class Suite:
     rule : str
         When a number is inside.
     settings : tuple of str
-        What the specification does not state, and what was chosen before the run.
+        What the specification does not state, what was chosen, and whether a result was known then.
     known_misses : dict of (str, str) to KnownMiss
         By case and quantity.
     open_cases : dict of str to str
