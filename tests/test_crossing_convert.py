@@ -77,6 +77,11 @@ WITHOUT_OBJECTS: Final = {
     "thermal bridges": "EnergyPlus has no object for them",
     "supercooling": "hysteresis of EnergyPlus has two curves, and no nucleation",
     "sensors and ties": "outputs inside walls belong to nodes, and numbers are not tied",
+    "laws as text": "curves of coefficients are objects of their own, which the conversion names",
+    "derived outputs": "what follows from outputs is not part of a model of EnergyPlus",
+    "weather errors": "a weather file of EnergyPlus is taken to be right",
+    "column errors": "a weather file of EnergyPlus is taken to be right",
+    "posterior": "only a study of Mascarin writes one",
 }
 
 
