@@ -93,7 +93,10 @@ def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Resul
             report(number, len(suites))
             folder = folder_of(suite.data)
             if folder is None:
-                missing = f"not run: no folder suites/{suite.data} in {FOLDER}"
+                missing = (
+                    f"not run: no folder suites/{suite.data} in {FOLDER}. Set the environment variable {FOLDER} "
+                    "to the folder with the reference numbers; mascarin suites --list names their sources"
+                )
                 results.append(Result(suite, missing=missing))
             else:
                 results.append(Result(suite, tuple(suite.lines(CaseData(folder)))))

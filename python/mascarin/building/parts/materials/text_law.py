@@ -34,7 +34,7 @@ class TextLaw(Formula):
     @property
     def law_of(self) -> str:
         """What it is a law of, in the words of the engine."""
-        raise NotImplementedError
+        raise NotImplementedError  # each law below says what it is of; this class itself is none
 
     @property
     def names(self) -> frozenset[str]:
