@@ -71,3 +71,7 @@ def test_what_a_law_does_not_have_is_refused() -> None:
         box().replace({FACADE: {"kind": "fisher_ceiling_diffuser", "mixng": 20.7}})
     with pytest.raises(InputError, match="mixing"):
         box().replace({FACADE: {"kind": "fisher_ceiling_diffuser", "mixing": -1.0}})
+    with pytest.raises(
+        InputError, match=r"kind: .*awbi_haton.*\n.*tarp, measured, text, fisher.*awbi_hatton"
+    ):
+        box().replace({FACADE: "awbi_haton"})

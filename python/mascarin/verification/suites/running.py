@@ -94,8 +94,8 @@ def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Resul
             folder = folder_of(suite.data)
             if folder is None:
                 missing = (
-                    f"not run: no folder suites/{suite.data} in {FOLDER}. Set the environment variable {FOLDER} "
-                    "to the folder with the reference numbers; mascarin suites --list names their sources"
+                    f"not run: no folder suites/{suite.data} in {FOLDER}. Set the environment variable "
+                    f"{FOLDER} to the folder with the reference numbers (sources: mascarin suites --list)"
                 )
                 results.append(Result(suite, missing=missing))
             else:

@@ -142,7 +142,13 @@ else:
     Convection = Annotated[
         functools.reduce(operator.or_, [*_LAWS, Measured, FormulaLaw]),
         Field(discriminator="kind"),
-        LawShorthand(word="kind", number="coefficient", kind="constant", implied=("formula", "text")),
+        LawShorthand(
+            word="kind",
+            number="coefficient",
+            kind="constant",
+            implied=("formula", "text"),
+            kinds=(*(law.row.kind for law in _LAWS), "measured", "text"),
+        ),
     ]
 
 

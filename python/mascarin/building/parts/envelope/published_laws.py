@@ -21,6 +21,7 @@ from mascarin.building.base.part import Shorthand
 from mascarin.building.files.yaml_document import plain
 from mascarin.building.parts.envelope.formula_law import LENGTH, PERIMETER
 from mascarin.building.parts.materials.formula import names_in
+from mascarin.errors import did_you_mean
 
 FILE: Final = "published_laws.yaml"
 
@@ -83,16 +84,28 @@ def published_laws() -> dict[str, PublishedLaw]:
 
 @dataclass(frozen=True)
 class LawShorthand(Shorthand):
-    """Short forms of a coefficient: a number, a word, a formula, or the key of a published law."""
+    """Short forms of a coefficient: a number, a word, a formula, or the key of a published law.
+
+    Parameters
+    ----------
+    kinds : tuple of str
+        Kinds of all other laws.
+    """
+
+    kinds: tuple[str, ...] = ()
 
     def expand(self, raw: Any) -> Any:
         """The whole mapping."""
         law = super().expand(raw)
         if not isinstance(law, Mapping) or not isinstance(law.get("kind"), str):
             return law
-        published = published_laws().get(law["kind"])
-        if published is None:
+        kind = law["kind"]
+        if kind in self.kinds:
             return law
+        published = published_laws().get(kind)
+        if published is None:
+            kinds = (*self.kinds, *published_laws())
+            raise problem(f"kind: {kind}", f"one of {', '.join(kinds)}", did_you_mean(kind, kinds))
         return published.described({key: value for key, value in law.items() if key != "kind"})
 
     def __get_pydantic_json_schema__(
