@@ -127,7 +127,7 @@ def study_of(table: pd.DataFrame) -> Study:
     table = table.tz_localize("Etc/GMT-4")
     return Study(
         building=base.building.replace({"site.timezone": ZONE}),
-        climate=Climate.from_table(table, columns=WEATHER, absent=["dew_point", "direct_normal"]),
+        climate=Climate.from_table(table, columns=WEATHER),
         measurements=Measurements.from_table(table),
         sensors={name: one.model_dump(exclude_unset=True) for name, one in base.plan.sensors.items()},
         periods=PERIODS,

@@ -41,6 +41,9 @@ Floats = NDArray[np.float64]
 _FREEDOM: Final = 2.0
 #: Part of a variance that round-off may hide in a sum of squares. [-]
 _ROUND_OFF: Final = 1e-12
+#: Part of each variance that a sensor has for itself at least. Fewer errors than sensors allow covariances that
+#: are singular to round-off, and so are then the equations of the next move. [-]
+_OWN_PART: Final = 1e-6
 #: Moves before the sample, moves of the sample, and every which of them is kept.
 _BURN_IN: Final = 100
 _MOVES: Final = 300
@@ -285,7 +288,8 @@ class _Chain:
         total = squares + 2.0 * _FREEDOM * np.diag(inverse)
         draw = inverse_wishart(self.rng, total, _FREEDOM + len(now) - 1.0 + count)
         shrink = np.minimum(1.0, self.limit / np.sqrt(np.diag(draw)))
-        return np.asarray(draw * np.outer(shrink, shrink))
+        limited = draw * np.outer(shrink, shrink)
+        return np.asarray(limited + _OWN_PART * np.diag(np.diag(limited)))
 
     def _variance(self, white: Floats) -> Floats:
         """Draw the variances of independent errors."""

@@ -174,19 +174,36 @@ class JointPosterior:
 
         return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size - 1, 2)))
 
-    def days_left_out(self, confidence: float) -> Floats:
-        """Quantile of what days differ from their predictions by the other days, over that assumed, (S,). [-]
+    def days_left_out(self, confidence: float, nearness: Floats | float = 0.0) -> Floats:
+        """Factor of the bands of a sensor that days left out of the identification require. [-]
 
-        Below 1 the bands of a sensor are wider than days left out need, above 1 narrower (cross-validated
-        prediction intervals: Barber R.F., Candes E.J., Ramdas A., Tibshirani R.J. (2021), Annals of
-        Statistics 49, 486. https://doi.org/10.1214/20-AOS1965). Few days tell it within the limits alone.
+        It is the quantile of what days differ from their predictions by the other days, over the quantile
+        that is assumed (cross-validated prediction intervals: Barber R.F., Candes E.J., Ramdas A.,
+        Tibshirani R.J. (2021), Annals of Statistics 49, 486. https://doi.org/10.1214/20-AOS1965), within
+        limits. A day that is left out has the weather of its neighbours: bands that are wider than such days
+        need are made narrower near the identification alone. On other days they are as assumed. Bands that
+        are too narrow are made wider on all days.
+
+        Parameters
+        ----------
+        confidence : float
+            Of the bands. [-]
+        nearness : float or ndarray, shape (n,)
+            Correlation of the errors of each instant with those of the identification, from `nearness`; 0 for
+            days of another season. [-]
+
+        Returns
+        -------
+        ndarray, shape (S,) or (n, S)
         """
         from scipy import stats
 
         ratio = np.abs(self.left_out) / self.left_out_sd
         assumed = float(stats.norm.ppf(0.5 + 0.5 * confidence))
         ratio_of_days = np.nanquantile(ratio.reshape(-1, ratio.shape[2]), confidence, axis=0) / assumed
-        return np.asarray(np.clip(ratio_of_days, *_CROSS_VALIDATED))
+        factor = np.clip(ratio_of_days, *_CROSS_VALIDATED)
+        near = np.asarray(nearness)[..., None]
+        return np.asarray(np.maximum(factor, 1.0) - near * np.maximum(1.0 - factor, 0.0))
 
     def widened(self, confidence: float = 0.95) -> Floats:
         """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
@@ -246,6 +263,40 @@ class JointPosterior:
         repeating = hour_basis(hours)[:, None, :, None] * np.eye(sensors)[None, :, None, :]
         shape = (*jacobian.shape[:2], -1)
         return np.concatenate([jacobian, effects_of_errors, repeating.reshape(shape)], axis=2)
+
+
+def nearness(hours: Floats, identification: Flags, persistence: float) -> Floats:
+    """Correlation of the errors of days with those of the nearest day of the identification.
+
+    Parameters
+    ----------
+    hours : ndarray, shape (n,)
+        Local time of all instants, from any midnight. [h]
+    identification : ndarray of bool, shape (n,)
+        Which of them belong to the identification.
+    persistence : float
+        Correlation time of the errors of days. [d]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> nearness(np.array([0.0, 24.0, 144.0]), np.array([True, False, False]), 5.0).round(2).tolist()
+    [1.0, 0.82, 0.3]
+    """
+    days = np.floor(np.asarray(hours) / 24.0 + 1e-9)
+    of_identification = np.unique(days[identification])
+    if not of_identification.size or persistence <= 0.0:
+        return np.where(identification, 1.0, 0.0)
+    after = np.clip(np.searchsorted(of_identification, days), 1, of_identification.size) - 1
+    before_and_after = np.stack(
+        [of_identification[after], of_identification[np.minimum(after + 1, of_identification.size - 1)]]
+    )
+    lag = np.min(np.abs(days - before_and_after), axis=0)
+    return np.asarray(np.exp(-lag / persistence))
 
 
 def joint_posterior(

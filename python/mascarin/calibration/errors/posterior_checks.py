@@ -230,10 +230,14 @@ def _days(joint: JointPosterior, days: Sequence[str]) -> list[Contradiction]:
 
 
 def _order(joint: JointPosterior, sensors: Sequence[str]) -> list[Contradiction]:
-    """Sensors whose errors follow each other otherwise than assumed."""
+    """Sensors whose errors follow each other for longer than assumed.
+
+    A negative correlation is none: errors are assumed that are larger than the data have, because the error
+    within a day has a smallest size (`mascarin.calibration.errors.joint_posterior.LEAST_ERROR`).
+    """
     from scipy import stats
 
-    contradictions, limit = [], float(stats.norm.isf(0.5 * _RARE / max(len(sensors), 1)))
+    contradictions, limit = [], float(stats.norm.isf(_RARE / max(len(sensors), 1)))
     for s, name in enumerate(sensors):
         first, second = joint.whitened[:, :-1, s], joint.whitened[:, 1:, s]
         present = np.isfinite(first) & np.isfinite(second)
@@ -242,16 +246,14 @@ def _order(joint: JointPosterior, sensors: Sequence[str]) -> list[Contradiction]
             continue
         square = float(np.mean(joint.whitened[:, :, s][np.isfinite(joint.whitened[:, :, s])] ** 2))
         correlation = float(np.mean(first[present] * second[present])) / max(square, 1e-300)
-        if abs(correlation) > max(limit / math.sqrt(count), _SLIGHT):
+        if correlation > max(limit / math.sqrt(count), _SLIGHT):
             text = (
                 f"{name}: errors of neighbouring hours are correlated ({correlation:+.2f}) beyond what the "
                 "errors of the model account for"
             )
             # Errors that follow each other are worth fewer values: (1 + r) / (1 - r) times fewer.
-            lasting = math.sqrt((1.0 + abs(correlation)) / (1.0 - min(abs(correlation), 0.95)))
-            contradictions.append(
-                Contradiction("autocorrelation", name, text, lasting if correlation > 0.0 else 1.0)
-            )
+            lasting = math.sqrt((1.0 + correlation) / (1.0 - min(correlation, 0.95)))
+            contradictions.append(Contradiction("autocorrelation", name, text, lasting))
     return contradictions
 
 

@@ -127,6 +127,12 @@ def unknowns(study: StudyContext, simulation: Simulation, fit: Calibration) -> l
     return [Unknown(path, uncertainty) for path, uncertainty in (found | depth).items()]
 
 
+def persistence_of(study: StudyContext) -> float:
+    """Correlation time of the errors of days. [d]"""
+    plan = study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()
+    return seconds_of(plan.persistence) / 86400.0
+
+
 def statement(study: StudyContext, fit: Calibration) -> ErrorStatement:
     """What is known of the errors before the calibration."""
     plan = study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()
@@ -136,7 +142,7 @@ def statement(study: StudyContext, fit: Calibration) -> ErrorStatement:
         local_hours(study)[seen],
         study.observation.interval,
         np.array([max(plan.limit * sensor.span, 1e-9) for sensor in fit.problem.sensors]),
-        seconds_of(plan.persistence) / 86400.0,
+        persistence_of(study),
     )
 
 

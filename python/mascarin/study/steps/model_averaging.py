@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin.calibration.errors.joint_posterior import nearness
 from mascarin.calibration.errors.pseudo_bma_weights import weighted_quantiles
 from mascarin.study.context.forms import comparable
 from mascarin.study.steps.error_model import (
     effects_of_sensors,
     effects_of_unknowns,
     local_hours,
+    persistence_of,
     used_sensors,
 )
 from mascarin.study.steps.findings import PredictionIntervals
@@ -91,7 +93,8 @@ def combined_intervals(study: StudyContext, found: Combination) -> PredictionInt
     shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
     half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
     used = [observation.names.index(name) for name in used_sensors(study)]
-    half[:, used] *= found.forms[0].joint.days_left_out(confidence)
+    near = nearness(hours, np.any(study.used["identification"], axis=1), persistence_of(study))
+    half[:, used] *= found.forms[0].joint.days_left_out(confidence, near)
     misses = fitted + center - observation.measured
     coverage = {period: coverage_of(misses, half, use) for period, use in study.used.items()}
     return PredictionIntervals(confidence, half, np.sqrt(of_parameters), np.sqrt(new_day), coverage, center)

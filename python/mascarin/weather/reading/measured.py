@@ -90,7 +90,7 @@ def _stated(
     )
     if "radiation" in given:
         given.pop("radiation")
-        given.update({name: 0.0 for name in RADIATION if name not in chosen})
+        given.update({name: None for name in RADIATION if name not in chosen})
     for name in given:
         if name not in NEUTRAL:
             hint = did_you_mean(name, (*NEUTRAL, "radiation"))
@@ -110,7 +110,28 @@ def _stated(
         if not there:
             remedy = _remedy(name)
             raise InputError(f"{where}: no column for {name} [{UNITS[name]}]; map one under columns{remedy}.")
+    for name, source in _follows_from(chosen).items():
+        value = given.pop(name, None)
+        if value is not None:
+            raise InputError(
+                f"{where}: absent: found {name} with the value {value:g}, but it follows from {source}, which "
+                f"is mapped to a column; leave {name} out of absent, or {source} out of columns."
+            )
     return {name: NEUTRAL[name] if value is None else value for name, value in given.items()}
+
+
+def _follows_from(chosen: Mapping[str, Column]) -> dict[str, str]:
+    """Channels that are computed from mapped ones, whatever is stated to be absent: name -> from what."""
+    computed = {}
+    if "relative_humidity" in chosen:
+        computed["dew_point"] = "relative_humidity"
+    elif "dew_point" in chosen:
+        computed["relative_humidity"] = "dew_point"
+    if "global_horizontal" in chosen:
+        computed |= {name: "global_horizontal" for name in RADIATION if name not in chosen}
+    elif {"direct_normal", "diffuse_horizontal"} <= {*chosen}:
+        computed["global_horizontal"] = "direct_normal and diffuse_horizontal"
+    return computed
 
 
 def _enough_radiation(names: set[str]) -> bool:
