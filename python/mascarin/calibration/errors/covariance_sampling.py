@@ -41,8 +41,8 @@ Floats = NDArray[np.float64]
 _FREEDOM: Final = 2.0
 #: Part of a variance that round-off may hide in a sum of squares. [-]
 _ROUND_OFF: Final = 1e-12
-#: Part of each variance that a sensor has for itself at least. Fewer errors than sensors allow covariances that
-#: are singular to round-off, and so are then the equations of the next move. [-]
+#: Part of each variance that a sensor has for itself at least. Fewer errors than sensors allow covariances
+#: that are singular to round-off, and so are then the equations of the next move. [-]
 _OWN_PART: Final = 1e-6
 #: Moves before the sample, moves of the sample, and every which of them is kept.
 _BURN_IN: Final = 100

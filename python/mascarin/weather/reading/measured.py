@@ -114,8 +114,8 @@ def _stated(
         value = given.pop(name, None)
         if value is not None:
             raise InputError(
-                f"{where}: absent: found {name} with the value {value:g}, but it follows from {source}, which "
-                f"is mapped to a column; leave {name} out of absent, or {source} out of columns."
+                f"{where}: absent: found {name} with the value {value:g}, but it follows from {source}, "
+                f"which is mapped to a column; leave {name} out of absent, or {source} out of columns."
             )
     return {name: NEUTRAL[name] if value is None else value for name, value in given.items()}
 
