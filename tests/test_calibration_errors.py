@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions, solve
+from mascarin.calibration.errors.covariance_sampling import sample_covariances
 from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.errors.discrepancy import (
     DayData,
@@ -18,7 +19,13 @@ from mascarin.calibration.errors.discrepancy import (
     hour_basis,
 )
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
-from mascarin.calibration.errors.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.joint_posterior import (
+    ErrorStatement,
+    JointPosterior,
+    Linear,
+    joint_posterior,
+    nearness,
+)
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
 from mascarin.calibration.sampling.truncated_normal import within_bounds
@@ -353,3 +360,37 @@ def test_a_prior_wider_than_its_range_is_refused() -> None:
         InputError, match=r"range \[0, 1\].* narrower than the standard deviation of its prior, 2"
     ):
         FitParameter("p", 0.0, 1.0, prior=(0.5, 2.0))
+
+
+def test_sensors_that_err_alike_do_not_stop_the_sampling() -> None:
+    """Six sensors with one error of 5 K, as five days show it."""
+    rng = np.random.default_rng(8)
+    days, slots, sensors = 5, 24, 6
+    shape = np.sin(np.arange(slots) * np.pi / 12.0)
+    error = 5.0 * rng.normal(size=(days, 1, 1)) + 3.0 * shape[None, :, None] * np.ones(sensors)
+    data = data_of(error.reshape(days, -1), slots, sensors=sensors)
+    small = 1e-4 * np.eye(sensors)
+    first = Discrepancy(small, small, small, np.full(sensors, 1e-4), np.zeros(sensors), 4.0, 2.0)
+    limit = np.full(sensors, 6.0)
+    drawn = sample_covariances(data, first, scale=np.full(sensors, 0.05), limit=limit)
+    for part in (drawn.typical.hour, drawn.typical.day, drawn.typical.drift):
+        correlation = part / np.sqrt(np.outer(np.diag(part), np.diag(part)))
+        assert np.linalg.eigvalsh(correlation)[0] > 0.9e-6
+        assert np.all(np.sqrt(np.diag(part)) <= 6.0 * (1.0 + 1e-6))
+    assert np.all(np.isfinite(drawn.mean))
+
+
+def test_days_left_out_narrow_bands_near_the_identification_alone() -> None:
+    """A band of twice what left-out days need: narrowed in the identification, as assumed far away."""
+    ratio = np.zeros((400, 1, 2))
+    ratio[:, 0, 0], ratio[:, 0, 1] = 0.7, 1.3  # the quantile of 95 % of a constant is that constant
+    joint = object.__new__(JointPosterior)
+    object.__setattr__(joint, "left_out", ratio * stats.norm.ppf(0.975))
+    object.__setattr__(joint, "left_out_sd", np.ones_like(ratio))
+    hours = 24.0 * np.array([10.0, 11.0, 12.0, 17.0, 100.0])
+    near = nearness(hours, np.array([False, True, True, False, False]), 5.0)
+    assert near == pytest.approx([np.exp(-0.2), 1.0, 1.0, np.exp(-1.0), 0.0], abs=1e-7)
+    factor = joint.days_left_out(0.95, near)
+    assert factor[:, 0] == pytest.approx(1.0 - 0.3 * near)
+    assert factor[:, 1] == pytest.approx(np.full(5, 1.3))
+    assert joint.days_left_out(0.95) == pytest.approx([1.0, 1.3])

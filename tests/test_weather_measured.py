@@ -150,6 +150,23 @@ def test_missing_irradiances_are_derived_and_said(columns: dict[str, str], basis
     assert climate.data["diffuse_horizontal"].min() >= 0.0
 
 
+def test_what_follows_from_a_column_is_not_assumed() -> None:
+    """Humidity tells the dew point, global and diffuse the direct irradiance, though said to be absent."""
+    measured = frame()
+    columns = {"air_temperature": "T", "relative_humidity": "RH", "wind_speed": "v", "wind_direction": "dir"}
+    columns |= {"global_horizontal": "G", "diffuse_horizontal": "D"}
+    plain = Climate.from_table(measured, timezone="UTC", columns=columns).completed(Place(45.0, 0.0))
+    for absent in (["dew_point", "direct_normal"], ["dew_point", "radiation"]):
+        stated = Climate.from_table(measured, timezone="UTC", columns=columns, absent=absent)
+        np.testing.assert_array_equal(
+            stated.completed(Place(45.0, 0.0)).data.to_numpy(), plain.data.to_numpy()
+        )
+    with pytest.raises(
+        InputError, match="found dew_point with the value 9, but it follows from relative_humidity"
+    ):
+        Climate.from_table(measured, timezone="UTC", columns=columns, absent={"dew_point": 9.0})
+
+
 def test_absent_channels_are_assumed_only_when_stated() -> None:
     base = {"air_temperature": "T"}
     for absent, missing in (

@@ -2,7 +2,7 @@
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
 use crate::building::humidity::HumidityPlan;
-use crate::building::ids::BySurface;
+use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
 use crate::input::forcing::channel;
 use crate::input::values::Values;
@@ -48,6 +48,8 @@ pub struct Conditions<S: Real> {
     pub sun: SolarConditions<S>,
     /// Emission of the outdoor air by each of [`WeatherIndex::emissions`] [W/m2].
     from_air: Vec<S>,
+    /// Surfaces whose convection is written as text.
+    with_text: Box<[SurfaceId]>,
 }
 
 impl<S: Real> Conditions<S> {
@@ -55,6 +57,9 @@ impl<S: Real> Conditions<S> {
     #[must_use]
     pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>, weather_index: &WeatherIndex<S>) -> Self {
         let zero = S::zero();
+        let is_text = |&surface: &SurfaceId| {
+            coefficients.surfaces[surface].convection.as_ref().is_some_and(SurfaceConvection::is_text)
+        };
         let surfaces = coefficients.surfaces.iter().map(|surface| {
             let forced = surface.convection.as_ref().map_or([zero; 4], SurfaceConvection::calm);
             SurfaceConditions { solar: zero, longwave: zero, temperature: zero, forced }
@@ -79,6 +84,7 @@ impl<S: Real> Conditions<S> {
             sky: zero,
             sun: SolarConditions::new(plan, weather_index),
             from_air: vec![zero; weather_index.emissions.len()],
+            with_text: (0..coefficients.surfaces.len()).map(SurfaceId::from_index).filter(is_text).collect(),
         }
     }
 
@@ -98,7 +104,13 @@ impl<S: Real> Conditions<S> {
             at.solar = a.solar + (b.solar - a.solar) * of_sun;
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
-            at.forced = core::array::from_fn(|k| part(a.forced[k], b.forced[k]));
+            for k in 0..2 {
+                at.forced[k] = rate(a.forced[k], b.forced[k]);
+            }
+        }
+        for &surface in &self.with_text {
+            let (a, b) = (&first.surfaces[surface].forced, &second.surfaces[surface].forced);
+            self.surfaces[surface].forced = core::array::from_fn(|k| part(a[k], b[k]));
         }
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
             at.interpolate(a, b, fraction);
@@ -322,7 +334,6 @@ impl<S: Real> Conditions<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::building::ids::SurfaceId;
     use crate::building::test_buildings::{WINDOW, glazed_zone, values};
     use crate::input::forcing::{CLIMATE_CHANNELS, Forcing};
 

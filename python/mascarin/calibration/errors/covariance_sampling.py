@@ -248,7 +248,7 @@ class _Chain:
         lifted = (day_covariance @ np.swapaxes(with_columns, 1, 2)).reshape(tall.shape)
         precision -= tall.T @ lifted
         right -= lifted.T @ with_values.ravel()
-        lower = np.linalg.cholesky(0.5 * (precision + precision.T))
+        lower = _cholesky(0.5 * (precision + precision.T))
         root = np.linalg.inv(lower).T
         middle = root @ (root.T @ right)
         spread = root_of(np.asarray(day_covariance, dtype=np.float64))
@@ -344,10 +344,10 @@ def inverse_wishart(rng: np.random.Generator, total: Floats, freedom: float) -> 
 
 
 def _cholesky(total: Floats) -> Floats:
-    """Lower factor of a sum of squares, which may be singular to round-off.
+    """Lower factor of a sum of squares or of a precision, which may be singular to round-off.
 
     Fewer errors than sensors make a singular sum. What the prior adds to its diagonal is lost where the
-    errors are large: then that much is added in units of each sensor that round-off cannot hide it.
+    errors are large: then that much is added in units of each row that round-off cannot hide it.
     """
     try:
         return np.asarray(np.linalg.cholesky(total))

@@ -36,7 +36,9 @@ pub(super) struct Laws<S> {
     pub(super) convection: [Vec<S>; 2],
     pub(super) emission: [Vec<S>; 2],
     /// What the wind drives, see [`SurfaceConditions`](crate::weather::conditions::SurfaceConditions).
-    forced: [Vec<S>; 4],
+    forced: [Vec<S>; 2],
+    /// Two further parts, which laws that are written as text have; none if no surface has such a law.
+    forced_of_text: Option<[Vec<S>; 2]>,
     /// Temperature of the air in front of each surface [degC].
     pub(super) air: Vec<S>,
     /// Surfaces whose heat transfer coefficient depends on the wind alone: place, convective area over plane area.
@@ -57,7 +59,8 @@ impl<S: Real> Laws<S> {
             count,
             convection: [zeros(), zeros()],
             emission: [zeros(), zeros()],
-            forced: [zeros(), zeros(), zeros(), zeros()],
+            forced: [zeros(), zeros()],
+            forced_of_text: None,
             air: zeros(),
             by_wind: Vec::new(),
             nonlinear: Vec::new(),
@@ -121,6 +124,9 @@ impl<S: Real> Laws<S> {
                 (self.convection[0][i], self.convection[1][i]) = (S::zero(), S::zero());
             }
         }
+        if self.surfaces().any(|surface| convection(surface).is_some_and(SurfaceConvection::is_text)) {
+            self.forced_of_text = Some(self.forced.clone());
+        }
         let nonlinear = |surface: SurfaceId| convection(surface).filter(|convection| !convection.straight());
         let padded: Vec<_> = self.places.iter().map(|&place| SurfaceId::from_index(place)).collect();
         let (mut groups, mut fourth_power) = (Vec::new(), Vec::new());
@@ -176,10 +182,15 @@ impl<S: Real> Laws<S> {
         if self.nonlinear.is_empty() && self.by_wind.is_empty() {
             return;
         }
-        let [first, second, third, fourth] = &mut self.forced;
-        let parts = first.iter_mut().zip(second).zip(third.iter_mut().zip(fourth));
-        for (&place, ((first, second), (third, fourth))) in self.places[..self.count].iter().zip(parts) {
-            [*first, *second, *third, *fourth] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+        let places = &self.places[..self.count];
+        let [first, second] = &mut self.forced;
+        for (&place, (first, second)) in places.iter().zip(first.iter_mut().zip(second)) {
+            [*first, *second, ..] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+        }
+        if let Some([third, fourth]) = &mut self.forced_of_text {
+            for (&place, (third, fourth)) in places.iter().zip(third.iter_mut().zip(fourth)) {
+                [.., *third, *fourth] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+            }
         }
         for &(i, factor) in &self.by_wind {
             self.convection[1][i] = self.forced[0][i] * factor;
@@ -194,9 +205,12 @@ impl<S: Real> Laws<S> {
             let start = group.start;
             let temperature = V::gather(temperatures, &self.places[start..start + S::CHUNK]);
             let difference = temperature - part!(self.air, start);
-            let [first, second, third, fourth] = &self.forced;
-            let forced =
-                [part!(first, start), part!(second, start), part!(third, start), part!(fourth, start)];
+            let [first, second] = &self.forced;
+            let [third, fourth] = match &self.forced_of_text {
+                Some([third, fourth]) => [part!(third, start), part!(fourth, start)],
+                None => [V::zero(); 2],
+            };
+            let forced = [part!(first, start), part!(second, start), third, fourth];
             let flux = group.convection.flux_of(
                 #[inline(always)]
                 |numbers| V::load(numbers),

@@ -268,6 +268,11 @@ impl<S: Real> SurfaceConvection<S> {
         if let Law::Formula(law) = &self.law { law.valid(d, speed, air) } else { S::one() }
     }
 
+    /// Whether it is written as text: all four parts of [`Driven`] may act, and be negative.
+    pub(crate) fn is_text(&self) -> bool {
+        matches!(&self.law, Law::Formula(_))
+    }
+
     /// Whether it depends on its [`Surroundings`].
     pub(crate) fn surrounded(&self) -> bool {
         matches!(&self.law, Law::Formula(law) if law.surrounded())
