@@ -23,6 +23,7 @@ from mascarin.building.checks import summary
 from mascarin.building.checks.consistency import faults, faults_of_values
 from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription, describe
+from mascarin.building.files.defaults import with_defaults
 from mascarin.building.files.yaml_document import read
 from mascarin.building.files.yaml_text import text_of
 from mascarin.building.outputs import output as results
@@ -88,7 +89,7 @@ class Building(Description):
         """Let parts refer to each other by name, then check how they fit together."""
         if isinstance(data, Building):
             return handler(data)
-        data = without_parts(data)
+        data = with_defaults(without_parts(data))
         with known_names(data):
             building = handler(data)
         insist(*faults(building))

@@ -11,6 +11,7 @@ from mascarin.building.base.docstrings import summary_of
 from mascarin.building.base.number import Number
 from mascarin.building.base.part import Part
 from mascarin.building.building import Building
+from mascarin.building.files.defaults import DEFAULTS, SECTIONS, SIDES
 from mascarin.building.files.inheritance import EXTENDS, SET
 
 USUAL_KINDS: Final = ("solid", "factor")
@@ -26,6 +27,14 @@ _SET: Final = {
     "type": "object",
     "description": "Path -> value or part that replaces the one of the extended description",
     "additionalProperties": True,
+}
+
+
+_DEFAULTS: Final = {
+    "type": "object",
+    "description": "Keys that many parts share, written once; a part that has a key keeps it",
+    "properties": {key: {"type": "object", "description": text} for key, text in (SIDES | SECTIONS).items()},
+    "additionalProperties": False,
 }
 
 
@@ -53,7 +62,7 @@ def json_schema() -> dict[str, Any]:
     True
     """
     schema = schema_of(Building)
-    schema["properties"][SET] = _SET
+    schema["properties"] |= {SET: _SET, DEFAULTS: _DEFAULTS}
     return schema
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -16,6 +16,7 @@ from mascarin._io.memory import uncollected
 from mascarin._io.regular import require_regular
 from mascarin.building.base.error_texts import COLUMN, KeyPath, explained
 from mascarin.building.base.part import Part
+from mascarin.building.files.defaults import DEFAULTS, with_defaults
 from mascarin.building.files.inheritance import EXTENDS, Inherited, inherited
 from mascarin.building.files.yaml_nodes import compose, number_of
 from mascarin.errors import InputError
@@ -105,7 +106,28 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
         document = _Document(str(file), blanks=blanks)
         return document.read(text), document.lines
 
-    return inherited(path, one, by_path=not blanks, file_keys=file_keys)
+    document = inherited(path, one, by_path=not blanks, file_keys=file_keys)
+    # Only buildings have keys without blanks, and defaults.
+    return document if blanks else _with_defaults(document)
+
+
+def _with_defaults(document: Inherited) -> Inherited:
+    """The description with its section `defaults` put in; what is put in has the line of its default."""
+    if DEFAULTS not in document.plain:
+        return document
+    where = dict(document.lines)
+
+    def put(place: KeyPath, source: KeyPath) -> None:
+        for known, line in document.lines.items():
+            if known[: len(source)] == source:
+                where[*place, *known[len(source) :]] = line
+
+    try:
+        described = with_defaults(document.plain, put)
+    except InputError as error:
+        line = document.lines[(DEFAULTS,)]
+        raise InputError(f"{getattr(line, 'file', document.files[0])}:{line}: {error}") from None
+    return replace(document, plain=described, lines=where)
 
 
 def validated(
@@ -122,12 +144,14 @@ def validated(
 
 def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
     """Read a description of any kind from YAML text; ``name`` is the name of the file in messages."""
-    document = _Document(name, blanks=blanks)
-    plain = document.read(text)
+    source = _Document(name, blanks=blanks)
+    document = Inherited(source.read(text), source.lines, (Path(name),))
+    if not blanks:
+        document = _with_defaults(document)
     try:
-        return kind.model_validate(plain)
+        return kind.model_validate(document.plain)
     except ValidationError as error:
-        raise explained(error, plain, name, document.lines) from None
+        raise explained(error, document.plain, name, document.lines) from None
 
 
 def plain(text: str, name: str) -> Any:

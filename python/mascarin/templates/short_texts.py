@@ -1,0 +1,244 @@
+"""Read what users write in a few words: sizes, layers and windows.
+
+A size is ``4x3x2.8`` [m], layers ``plasterboard 12.5mm + SP24E 15mm``, a window ``south:1.2x1.0``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin.errors import InputError, did_you_mean
+
+WALLS: Final = {"south": 180.0, "east": 90.0, "north": 0.0, "west": 270.0}
+"""Walls of a room by the direction that they face, with their azimuth [deg]."""
+
+_NUMBER: Final = r"(\d+(?:\.\d+)?)"
+_UNITS: Final = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
+_LAYER: Final = re.compile(rf"^(?P<name>.+?)(?:\s+{_NUMBER}\s*(?P<unit>[a-zA-Z]+)?)?$")
+#: Limits of lengths of a room [m] and of a layer [m].
+_ROOM: Final = (0.5, 100.0)
+_THICKNESS: Final = (1e-4, 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class LayerText:
+    """A layer: a common material, or a phase-change product.
+
+    Attributes
+    ----------
+    name : str
+        Name of the material in the description.
+    material : dict
+        Its keys in the description.
+    thickness : float
+        [m]
+    assumed : bool
+        Whether the thickness is a typical one.
+    """
+
+    name: str
+    material: dict[str, Any]
+    thickness: float
+    assumed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WindowText:
+    """A window: the wall that it is in, its width and height [m]."""
+
+    wall: str
+    width: float
+    height: float
+
+
+def size_of(text: str, option: str = "size") -> tuple[float, float, float]:
+    """Length (east to west), width (north to south) and height of a room.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``4x3x2.8``.
+    option : str
+        Named in errors.
+
+    Returns
+    -------
+    tuple of float
+        [m]
+
+    Raises
+    ------
+    InputError
+        Not three lengths, or one that no room has.
+
+    Examples
+    --------
+    >>> size_of("4 x 3 x 2.8")
+    (4.0, 3.0, 2.8)
+    """
+    numbers = _lengths(text, 3, option, "length x width x height in m, such as 4x3x2.8")
+    for name, value in zip(("length", "width", "height"), numbers, strict=True):
+        if not _ROOM[0] <= value <= _ROOM[1]:
+            raise InputError(
+                f"{option}: found a {name} of {value:g} m; expected {_ROOM[0]:g} to {_ROOM[1]:g} m. Write "
+                "lengths in m, such as 4x3x2.8"
+            )
+    return numbers[0], numbers[1], numbers[2]
+
+
+def _lengths(text: str, count: int, option: str, expected: str) -> list[float]:
+    parts = re.split(r"\s*[xX×*]\s*", text.strip())
+    if len(parts) != count or not all(re.fullmatch(rf"{_NUMBER}\s*m?", part) for part in parts):
+        comma = " Write decimals with a point." if "," in text else ""
+        raise InputError(f"{option}: found '{text}'; expected {expected}.{comma}")
+    return [float(re.sub(r"\s*m$", "", part)) for part in parts]
+
+
+def window_of(text: str) -> WindowText:
+    """Read a window.
+
+    Parameters
+    ----------
+    text : str
+        Wall, width and height, such as ``south:1.2x1.0``.
+
+    Raises
+    ------
+    InputError
+        No such wall, or no size.
+
+    Examples
+    --------
+    >>> window_of("south:1.2x1.0")
+    WindowText(wall='south', width=1.2, height=1.0)
+    """
+    wall, colon, size = text.partition(":")
+    wall = wall.strip().lower()
+    if not colon or wall not in WALLS:
+        raise InputError(
+            f"--window: found '{text}'; expected a wall and a size, such as south:1.2x1.0, with one of "
+            f"{', '.join(WALLS)}. {did_you_mean(wall, WALLS)}".rstrip()
+        )
+    width, height = _lengths(size, 2, "--window", "width x height in m, such as south:1.2x1.0")
+    return WindowText(wall, width, height)
+
+
+def layers_of(text: str, option: str) -> list[LayerText]:
+    """Read the layers of a wall, from inside to outside.
+
+    Parameters
+    ----------
+    text : str
+        Materials with their thicknesses, such as ``plasterboard 12.5mm + SP24E 15mm``. The thickness may be
+        left out where a material has a typical one.
+    option : str
+        Named in errors.
+
+    Returns
+    -------
+    list of LayerText
+        From inside to outside.
+
+    Raises
+    ------
+    InputError
+        No material or product of this name, a thickness without unit or beyond what a layer has.
+
+    Examples
+    --------
+    >>> layers = layers_of("plasterboard 12.5mm + RT25HC 15mm", "--ceiling")
+    >>> [(layer.name, layer.thickness) for layer in layers]
+    [('plasterboard', 0.0125), ('rt25hc', 0.015)]
+    """
+    if not text.strip():
+        raise InputError(
+            f"{option}: found no layer; expected materials, such as 'plasterboard 12.5mm + RT25HC 15mm'"
+        )
+    return [_layer(part.strip(), option) for part in text.split("+")]
+
+
+def _layer(text: str, option: str) -> LayerText:
+    # A name that ends in a number, such as RT21HC 10, is read as a product first.
+    match = _LAYER.match(text)
+    if match is None:
+        raise InputError(f"{option}: found an empty layer; expected a material between two '+'")
+    whole, product = _material(text)
+    if whole is not None:
+        name, (material, typical) = text, whole
+        number = unit = None
+    else:
+        name, number, unit = match["name"], match[2], match["unit"]
+        found, product = _material(name)
+        if found is None:
+            names = [*common_materials(), *product]
+            raise InputError(
+                f"{option}: found no material '{name}'; expected a product that 'mascarin materials' lists, "
+                f"or one of {', '.join(common_materials())}. {did_you_mean(name, names)}".rstrip()
+            )
+        material, typical = found
+    thickness, assumed = _thickness(text, number, unit, typical, option)
+    return LayerText(
+        re.sub(r"[^a-z0-9]+", "_", name.strip().lower()).strip("_"), material, thickness, assumed
+    )
+
+
+def _thickness(
+    text: str, number: str | None, unit: str | None, typical: float | None, option: str
+) -> tuple[float, bool]:
+    if number is None:
+        if typical is None:
+            raise InputError(
+                f"{option}: found '{text}' without a thickness; expected one, such as '{text} 10mm'"
+            )
+        return typical, True
+    if unit not in _UNITS:
+        raise InputError(
+            f"{option}: found '{text}'; expected a thickness in {', '.join(_UNITS)}, such as 12.5mm"
+        )
+    thickness = round(float(number) * _UNITS[unit], 9)
+    if not _THICKNESS[0] <= thickness <= _THICKNESS[1]:
+        raise InputError(
+            f"{option}: found '{text}', a layer of {thickness:g} m; expected {1e3 * _THICKNESS[0]:g} mm to "
+            f"{_THICKNESS[1]:g} m. Check the unit"
+        )
+    return thickness, False
+
+
+def _material(name: str) -> tuple[tuple[dict[str, Any], float | None] | None, list[str]]:
+    """Keys and typical thickness of a material, none if there is no such; and the names of all products."""
+    from mascarin.materials.library import products
+
+    names = {product.lower(): product for product in products()}
+    table, common = common_materials(), name.strip().lower().replace("_", " ")
+    if common in table:
+        row = dict(table[common])
+        thickness, limits = row.pop("thickness"), row.pop("range")
+        source = row.pop("source", "ISO 10456:2007, table 3")
+        row["conductivity"] = {
+            "value": row["conductivity"],
+            "range": limits,
+            "source": source,
+            "assumed": True,
+        }
+        return (row, thickness), list(names.values())
+    if name.strip().lower() in names:
+        return ({"product": names[name.strip().lower()]}, None), list(names.values())
+    return None, list(names.values())
+
+
+def common_materials() -> dict[str, dict[str, Any]]:
+    """Common materials by name; see ``materials.yaml``.
+
+    Examples
+    --------
+    >>> common_materials()["steel"]["thickness"]
+    0.001
+    """
+    from mascarin.building.files.yaml_document import plain
+
+    file = Path(__file__).with_name("materials.yaml")
+    table: dict[str, dict[str, Any]] = plain(file.read_text("utf-8"), file.name)
+    return table
