@@ -26,7 +26,7 @@ ORDER = [
     {"calibration"},
     {"diagnosis"},
     {"verification"},
-    {"examples"},
+    {"examples", "templates"},
     {"pages", "pages.frame", "pages.study", "pages.run", "pages.suites"},
     {"pages.view", "pages.explore"},
     {"study"},

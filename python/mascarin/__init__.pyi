@@ -28,6 +28,7 @@ from .simulation.results import Results as Results
 from .simulation.run import simulate as simulate
 from .simulation.simulation import Simulation as Simulation
 from .study import Study as Study
+from .templates import new_room as new_room
 from .weather import Climate as Climate
 from .weather import Measurements as Measurements
 

@@ -67,6 +67,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.convert:convert",
             "Convert a model of EnergyPlus to a building.",
         ),
+        Command("new", "mascarin.commands.new:new", "Describe a room, house, cell or wall from a few words."),
         Command("view", "mascarin.commands.view:view", "Show a building in three dimensions."),
         Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
         Command("outputs", "mascarin.commands.building:outputs", "List every output of a building."),

@@ -27,6 +27,10 @@ _ISO_DATE: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]|$)|\d{8}T")
 """How a date begins in ISO 8601: year, month, day."""
 
 
+_MONTH_AND_DAY: Final = re.compile(r"\d{2}-\d{2}(?:[T ]\d{2}:\d{2}(?::\d{2})?)?")
+"""A date without a year, with or without a time of the day."""
+
+
 _ISO_PLAIN: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]\d{2}:\d{2}(?::\d{2})?)?")
 """A whole date in ISO 8601, with or without a time of the day."""
 
@@ -198,6 +202,31 @@ def standard_offset(zone: tzinfo, year: int) -> timedelta:
     """
     offsets = [datetime(year, month, 1, tzinfo=zone).utcoffset() or timedelta() for month in (1, 7)]
     return min(offsets)
+
+
+def with_year(value: object, zone: tzinfo, since: float) -> object:
+    """A date without a year as the first one from a moment on; all else as it is.
+
+    Parameters
+    ----------
+    value : object
+        Such as ``07-01`` or ``07-01 06:30``.
+    zone : datetime.tzinfo
+        Zone of the climate.
+    since : float
+        Seconds since 1970-01-01 UTC. [s]
+
+    Examples
+    --------
+    >>> with_year("07-01", UTC, 0.0), with_year("2024-07-01", UTC, 0.0)
+    ('1970-07-01', '2024-07-01')
+    """
+    if not isinstance(value, str) or not _MONTH_AND_DAY.fullmatch(value.strip()):
+        return value
+    begin = datetime.fromtimestamp(since, tz=zone)
+    text = value.strip()
+    year = begin.year if f"{begin:%m-%d %H:%M}" <= text.replace("T", " ").ljust(11, "~") else begin.year + 1
+    return f"{year}-{text}"
 
 
 def seconds_at(value: object, zone: tzinfo, what: str) -> float:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.weather import SHIPPED, Climate
 
 #: Plausible distance of the ground below a floor from the mean of the air. [K]
 _GROUND: Final = 3.0
@@ -32,6 +33,36 @@ class Place:
     ground: str
 
 
+def _weather(name: str) -> tuple[str, str]:
+    """What ``--weather`` takes for a place, and its title."""
+    if name in SHIPPED:
+        return f"shipped:{name}", name
+    if Path(name).is_file():
+        return name, Path(name).stem
+    raise InputError(
+        f"--place: found '{name}'; expected one of {', '.join(SHIPPED)}, or the path of an EPW file. "
+        f"{did_you_mean(name, SHIPPED)}".rstrip()
+    )
+
+
+def coordinates_of(name: str) -> tuple[float, float, float, str]:
+    """Latitude, longitude [deg], altitude [m] and time zone of a place.
+
+    Parameters
+    ----------
+    name : str
+        As for `place_of`.
+
+    Examples
+    --------
+    >>> coordinates_of("tampa")
+    (27.97, -82.53, 6.0, 'UTC-5')
+    """
+    climate = Climate.from_epw(_weather(name)[0])
+    where = climate.site
+    return where.latitude, where.longitude, where.altitude, str(climate.timezone)
+
+
 def place_of(name: str) -> Place:
     """A shipped climate by its name, or a weather file.
 
@@ -52,23 +83,13 @@ def place_of(name: str) -> Place:
     """
     import numpy as np
 
-    from mascarin.weather import SHIPPED, Climate
-
-    if name in SHIPPED:
-        weather, title = f"shipped:{name}", name
-    elif Path(name).is_file():
-        weather, title = name, Path(name).stem
-    else:
-        raise InputError(
-            f"--place: found '{name}'; expected one of {', '.join(SHIPPED)}, or the path of an EPW file. "
-            f"{did_you_mean(name, SHIPPED)}".rstrip()
-        )
+    weather, title = _weather(name)
     climate = Climate.from_epw(weather)
     mean = float(np.mean(climate.data["air_temperature"]))
-    where = climate.site
+    latitude, longitude, altitude, timezone = coordinates_of(name)
     site = (
-        f"{{latitude: {where.latitude:g}, longitude: {where.longitude:g}, altitude: {where.altitude:g}, "
-        f"timezone: {climate.timezone}, wind: {{terrain: suburb}}}}"
+        f"{{latitude: {latitude:g}, longitude: {longitude:g}, altitude: {altitude:g}, "
+        f"timezone: {timezone}, wind: {{terrain: suburb}}}}"
     )
     ground = (
         f"{{mean: {{value: {mean:.1f}, range: [{mean - _GROUND:.1f}, {mean + _GROUND:.1f}], "

@@ -59,7 +59,7 @@ class Room:
     roof: str = "steel"
     ceiling: str = ""
     walls: str = "plasterboard + mineral wool + fibre cement"
-    floor: str = "concrete"
+    floor: str = "concrete + soil"
     gap: str = "none"
     windows: tuple[str, ...] = ()
     place: str = "saint-denis"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,9 +29,6 @@ from mascarin.weather.reading.shipped import PREFIX, found
 if TYPE_CHECKING:
     from mascarin.design.evaluation.objectives import AnyObjective
     from mascarin.design.variants.description import ClimateFile
-
-#: A date without a year is one of the year that the weather file has.
-_MONTH_AND_DAY: Final = re.compile(r"\d{1,2}-\d{1,2}(?:[T ].*)?")
 
 
 #: Sections of a building with zones that are dried, and with the vertices that are seen from a seat.
@@ -174,7 +170,7 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, locat
         moved = building.replace({**_location_changes(climate), **climate_file.set})
     with locations.blame("climates", name):
         _require_wind(climate, moved)
-        start, end = period(climate, *_dates(file, climate_file, climate))
+        start, end = period(climate, *_dates(file, climate_file))
         first, last = period(climate, None, None)
         if start < first or end > last:
             raise InputError(
@@ -189,11 +185,9 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, locat
     return Site(name, words, climate, start, end, moved, file_hash(weather))
 
 
-def _dates(file: DesignFile, climate_file: ClimateFile, climate: Climate) -> Iterator[str | None]:
-    year = period(climate, None, None)[0].year
+def _dates(file: DesignFile, climate_file: ClimateFile) -> Iterator[str | None]:
     for key in ("start", "end"):
-        text = getattr(climate_file, key) or (getattr(file.period, key) if file.period is not None else None)
-        yield f"{year}-{text}" if text is not None and _MONTH_AND_DAY.fullmatch(text) else text
+        yield getattr(climate_file, key) or (getattr(file.period, key) if file.period is not None else None)
 
 
 def _location_changes(climate: Climate) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from mascarin.simulation.preparation.sky import with_sky_of
 from mascarin.simulation.preparation.weather_inputs import with_weather_inputs
 from mascarin.simulation.records.times import Times
 from mascarin.tables.times import stamps_of
-from mascarin.tables.timezones import seconds_at
+from mascarin.tables.timezones import seconds_at, with_year
 from mascarin.weather import (
     CHANNELS,
     COEFFICIENTS,
@@ -172,8 +172,12 @@ def period(
 def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tuple[float, float]:
     """Start and end, by default those of the climate, in seconds since 1970-01-01 UTC. [s]"""
     grid = climate.grid
-    first = grid.start if start is None else seconds_at(start, grid.zone, "start")
-    last = grid.end if end is None else seconds_at(end, grid.zone, "end")
+    # A date without a year is the first one in the climate, and after the start.
+    first, last = grid.start, grid.end
+    if start is not None:
+        first = seconds_at(with_year(start, grid.zone, grid.start), grid.zone, "start")
+    if end is not None:
+        last = seconds_at(with_year(end, grid.zone, first), grid.zone, "end")
     if last <= first:
         begin, finish = stamps_of(np.array([first, last]), grid.zone)
         raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")

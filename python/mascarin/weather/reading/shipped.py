@@ -1,8 +1,10 @@
-"""Climates that come with Mascarin: typical years of the U.S. government, compressed, found by name.
+"""Climates that come with Mascarin, compressed: typical years of the U.S. government and one measured year.
 
 Typical meteorological years of the National Solar Radiation Data Base (TMY3), made by the National Renewable
 Energy Laboratory from 1976 to 2005, as the EPW files of EnergyPlus and its weather data. They are works of
-the U.S. government and in the public domain.
+the U.S. government and in the public domain. Saint-Denis is the year 2023 as Meteo-France measured it at
+Gillot, under the Licence Ouverte 2.0 (Etalab); direct and diffuse radiation (Erbs) and infrared radiation
+are estimates.
 
 References
 ----------
@@ -58,6 +60,11 @@ class ShippedClimate:
 
 
 _ALL: Final = (
+    ShippedClimate(
+        "saint-denis", "REU_Saint-Denis-Gillot_2023_AMY.epw",
+        "tropical, by the sea, south of the equator (Aw); measured 2023, Meteo-France, Licence Ouverte 2.0",
+        "57123dd3e18e650db813e955f0880541f71d52adb94ac7c2a770037a505cb8be",
+    ),
     ShippedClimate(
         "tampa", "USA_FL_Tampa.Intl.AP.722110_TMY3.epw", "hot and humid (Cfa, subtropical)",
         "70bfcdf8a79b9df57f062e0ba94cda9b9316ea53e3c1130a24b6c230eec90c45",
