@@ -16,6 +16,7 @@ from mascarin.study.steps.model_averaging import combined_intervals, estimates_o
 from mascarin.study.steps.prediction_intervals import prediction_intervals, slopes
 from mascarin.study.steps.predictive_checks import contradictions, with_doubt
 from mascarin.study.steps.residuals import DRIVERS
+from mascarin.study.steps.sky_error import sky_effect
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -153,6 +154,8 @@ def _sensor_records(
     simulated = observation.simulated(run.results.index, run.results.records)
     limit = (study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()).limit
     wider = intervals.factor if intervals.stated else 1.0
+    vector = run.simulation.vector(fit.values)
+    sky = sky_effect(study, run.simulation, vector, fit.problem.paths) if combination is not None else None
     records = []
     for k, sensor in enumerate(fit.problem.sensors):
         s = observation.names.index(sensor.name)
@@ -163,6 +166,8 @@ def _sensor_records(
             independent = errors.independent[k]
             squares = np.array([errors.hour[k, k], errors.new_day[k] - independent, independent])
             squares = factor**2 * np.maximum(squares, 0.0)
+            if sky is not None:
+                squares[1] += float(np.mean(sky[:, s] ** 2))
         repeating, daily, independent = np.sqrt(squares).tolist()
         output = study.building.output(study.plan.sensors[sensor.name].output)
         series = simulated[used[:, s], s]

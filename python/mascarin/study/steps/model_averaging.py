@@ -7,7 +7,7 @@ distributions; its mean and variance are given.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +24,7 @@ from mascarin.study.steps.error_model import (
 )
 from mascarin.study.steps.findings import PredictionIntervals
 from mascarin.study.steps.prediction_intervals import coverage_of, slopes
+from mascarin.study.steps.sky_error import sky_effect
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -63,6 +64,33 @@ def estimates_of(study: StudyContext, found: Combination) -> Calibration:
     return replace(fit, low=low, high=high, uncertainty_method=method)
 
 
+@dataclass(frozen=True, eq=False)
+class FormPrediction:
+    """What one form predicts.
+
+    Attributes
+    ----------
+    difference : ndarray, shape (n, S)
+        Expected measured minus simulated value. [unit of each sensor]
+    variance : ndarray, shape (n, S)
+        Of parameters, sensors, errors that repeat, and what is `stated`. [unit^2]
+    parameters : ndarray, shape (n, S)
+        Of the estimated parameters alone. [unit^2]
+    stated : ndarray, shape (n, S)
+        Of what the identification does not tell: other numbers of the building, the sky of other weather.
+        It is as large as sources say, whatever the days. [unit^2]
+    new_day, independent : ndarray, shape (S,)
+        Of what differs on each day, and of the part of it that differs from value to value. [unit^2]
+    """
+
+    difference: Array
+    variance: Array
+    parameters: Array
+    stated: Array
+    new_day: Array
+    independent: Array
+
+
 def combined_intervals(study: StudyContext, found: Combination) -> PredictionIntervals:
     """Prediction intervals of all forms together.
 
@@ -75,25 +103,26 @@ def combined_intervals(study: StudyContext, found: Combination) -> PredictionInt
     shape = observation.measured.shape
     mean, square, of_parameters = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     effects: dict[str, Array] = {}
-    new_day, noise = np.zeros(shape[1]), np.zeros(shape[1])
+    near = nearness(hours, np.any(study.used["identification"], axis=1), persistence_of(study))
+    new_day, known = np.zeros(shape[1]), np.zeros(shape)
     fitted = observation.simulated(found.forms[0].run.results.index, found.forms[0].run.results.records)
     for form, weight in found.kept:
-        about, variance, parameters, own, white = _predicted(study, form, hours, effects)
+        prediction = _predicted(study, form, (hours, near), effects)
         simulated = observation.simulated(form.run.results.index, form.run.results.records)
-        there = simulated + about
-        mean += weight * there
-        square += weight * (variance + own + (there - fitted) ** 2)
-        of_parameters += weight * parameters
-        new_day += weight * own
-        noise += weight * white
+        expected = simulated + prediction.difference
+        mean += weight * expected
+        square += weight * (prediction.variance + prediction.new_day + (expected - fitted) ** 2)
+        of_parameters += weight * prediction.parameters
+        new_day += weight * prediction.new_day
+        known += weight * (prediction.independent + prediction.stated)
     center = mean - fitted
     variance = np.maximum(square - center**2, 0.0)
     confidence = found.forms[0].fit.confidence
-    # What differs from value to value is known from many values, all else from few days.
-    shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
-    half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
+    # What differs from value to value is known from many values, and some numbers from sources; all else from
+    # few days.
+    shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - known, 0.0)
+    half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * known)
     used = [observation.names.index(name) for name in used_sensors(study)]
-    near = nearness(hours, np.any(study.used["identification"], axis=1), persistence_of(study))
     half[:, used] *= found.forms[0].joint.days_left_out(confidence, near)
     misses = fitted + center - observation.measured
     coverage = {period: coverage_of(misses, half, use) for period, use in study.used.items()}
@@ -101,41 +130,53 @@ def combined_intervals(study: StudyContext, found: Combination) -> PredictionInt
 
 
 def _predicted(
-    study: StudyContext, form: FormFit, hours: Array, effects: dict[str, Array]
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Expected measured minus simulated value, its variance, that of the parameters, of a day, of a value.
+    study: StudyContext, form: FormFit, when: tuple[Array, Array], effects: dict[str, Array]
+) -> FormPrediction:
+    """What a form predicts; sensors that are not used have an error of their own size.
 
-    Shapes (n, S), (n, S), (n, S), (S,) and (S,); sensors that are not used have an error of their own size.
+    `when`: local time [h] and `nearness` of each instant.
     """
+    hours, near = when
     slope = np.moveaxis(slopes(study, form.run, form.fit), 0, -1)
     joint, count = form.joint, slope.shape[2]
-    named = used_sensors(study)
-    columns = [study.observation.names.index(name) for name in named]
+    columns = [study.observation.names.index(name) for name in used_sensors(study)]
     base = form.run.simulation.vector(form.fit.values)
+    simulated = study.observation.simulated(form.run.results.index, form.run.results.records)
+    further, stated = _not_estimated(study, form, base, near, effects)
+    errors = np.concatenate([effects_of_sensors(study, simulated), further], axis=2)
+    difference, variance = np.zeros(slope.shape[:2]), stated.copy()
+    parameters = np.einsum("tsp,pq,tsq->ts", slope, joint.covariance[:count, :count], slope, optimize=True)
+    used = joint.effects(slope[:, columns], errors[:, columns], hours)
+    difference[:, columns], of_used = joint.predicted(used, form.fit.problem.positions(form.fit.x))
+    variance[:, columns] += of_used
+    new_day, independent = np.zeros(slope.shape[1]), np.zeros(slope.shape[1])
+    new_day[columns] = joint.error_covariances.new_day
+    independent[columns] = joint.error_covariances.independent
+    seen = study.used["identification"]
+    for s in range(new_day.size):
+        if s not in columns:
+            misses = (simulated - study.observation.measured)[seen[:, s], s]
+            new_day[s] = float(np.nanmean(misses**2)) if np.isfinite(misses).any() else np.nan
+            variance[:, s] += parameters[:, s]
+    return FormPrediction(difference, variance, np.maximum(parameters, 0.0), stated, new_day, independent)
+
+
+def _not_estimated(
+    study: StudyContext, form: FormFit, base: Array, near: Array, effects: dict[str, Array]
+) -> tuple[Array, Array]:
+    """Effects (n, S, K) of what is not estimated, and the variance (n, S) that the identification leaves."""
     # Effects of one form serve all others that have the same numbers: they only give the width.
     missing = [number for number in form.unknown.numbers if number.path not in effects]
     if missing:
-        own_effects = effects_of_unknowns(study, study.observation, form.run.simulation, base, missing)
-        effects |= {number.path: own_effects[:, :, k] for k, number in enumerate(missing)}
-    every = np.zeros((*slope.shape[:2], len(form.unknown.numbers)))
+        own = effects_of_unknowns(study, study.observation, form.run.simulation, base, missing)
+        effects |= {number.path: own[:, :, k] for k, number in enumerate(missing)}
+    every = np.zeros((*study.observation.measured.shape, len(form.unknown.numbers)))
     for k, number in enumerate(form.unknown.numbers):
         every[:, :, k] = effects[number.path]
     further = every @ form.unknown.directions
-    simulated = study.observation.simulated(form.run.results.index, form.run.results.records)
-    known = np.concatenate([effects_of_sensors(study, simulated), further], axis=2)
-    z = form.fit.problem.positions(form.fit.x)
-    about, variance = np.zeros(slope.shape[:2]), np.zeros(slope.shape[:2])
-    own, white = np.zeros(slope.shape[1]), np.zeros(slope.shape[1])
-    parameters = np.einsum("tsp,pq,tsq->ts", slope, joint.covariance[:count, :count], slope, optimize=True)
-    used = joint.effects(slope[:, columns], known[:, columns], hours)
-    about[:, columns], variance[:, columns] = joint.predicted(used, z)
-    # What the identification does not tell of these numbers remains as uncertain as it was.
-    variance += np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
-    own[columns], white[columns] = joint.error_covariances.new_day, joint.error_covariances.independent
-    seen = study.used["identification"]
-    for s in range(own.size):
-        if s not in columns:
-            misses = (simulated - study.observation.measured)[seen[:, s], s]
-            own[s] = float(np.nanmean(misses**2)) if np.isfinite(misses).any() else np.nan
-            variance[:, s] += parameters[:, s]
-    return about, variance, np.maximum(parameters, 0.0), own, white
+    left = np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
+    sky = sky_effect(study, form.run.simulation, base, form.fit.problem.paths)
+    if sky is not None:
+        # The estimates contain the error of the days of the identification.
+        left += sky**2 * (1.0 - near**2)[:, None]
+    return further, left

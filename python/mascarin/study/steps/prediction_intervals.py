@@ -26,8 +26,9 @@ _STEP: Final = 1e-3
 #: A coverage below this is mentioned in the notes. [-]
 _LOW_COVERAGE: Final = 0.85
 _SHARED: Final = (
-    "; it includes errors of sensors and model, numbers that are not estimated, and the spread between the "
-    "forms of the model, and its middle is the expected reading"
+    "; it includes errors of sensors and model, numbers that are not estimated, the sky of other weather "
+    "where its radiation was not measured, and the spread between the forms of the model, and its middle is "
+    "the expected reading"
 )
 
 
