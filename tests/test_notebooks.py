@@ -16,6 +16,27 @@ def test_there_are_three() -> None:
     assert [path.stem for path in NOTEBOOKS] == ["1-run", "2-sensitivity", "3-study"]
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_a_notebook_shows_each_figure_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the last value of a cell, with a semicolon behind it, and in the middle of a cell."""
+    monkeypatch.delenv("MPLBACKEND")  # that of the other tests
+    cells = [
+        "import mascarin as mc\nfrom mascarin.examples import box, box_climate\n"
+        "run = mc.simulate(box(), box_climate(), step='1h')",
+        "run.plot('room.air_temperature')",
+        "run.plot('room.air_temperature');",
+        "figure = run.plot('room.air_temperature')\n1 + 1",
+        "import matplotlib.pyplot as plt\nplt.get_fignums()",
+    ]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])  # type: ignore[no-untyped-call]
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    pictures = [
+        sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in notebook.cells
+    ]
+    assert pictures == [0, 1, 1, 1, 0]
+    assert notebook.cells[-1].outputs[0]["data"]["text/plain"] == "[]"
+
+
 @pytest.mark.filterwarnings("ignore")  # those of the notebook's own process and of its messages
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook(path: Path, tmp_path: Path) -> None:

@@ -232,6 +232,14 @@ def test_plot_has_axes_for_each_unit(run: Results) -> None:
     assert len(run.plot("deep.temperature").axes) == 1
 
 
+def test_a_figure_is_known_to_pyplot(run: Results) -> None:
+    from matplotlib import pyplot
+
+    figure = run.plot(["deep.temperature"])
+    assert figure.number in pyplot.get_fignums()  # type: ignore[attr-defined]
+    pyplot.close(figure)
+
+
 def test_plot_has_local_time_that_does_not_go_back(run: Results) -> None:
     axis = run.plot(["deep.temperature"]).axes[0]
     days = np.asarray(axis.get_lines()[0].get_xdata(), dtype=np.float64)

@@ -162,13 +162,13 @@ def plot_profiles(profiles: Sequence[Profile], *, columns: int = 3) -> Figure:
     >>> len(plot_profiles([one]).axes)
     1
     """
-    from matplotlib.figure import Figure
+    from mascarin.figures.shown import new_figure
 
     if not profiles:
         raise InputError("found no profile to draw, expected at least one")
     columns = min(columns, len(profiles))
     rows = math.ceil(len(profiles) / columns)
-    figure = Figure(figsize=(3.2 * columns, 2.4 * rows), layout="constrained")
+    figure = new_figure(3.2 * columns, 2.4 * rows)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, profile in zip(panels, profiles, strict=False):
         profile.plot(ax=axes)

@@ -16,7 +16,7 @@ from mascarin._io.arguments import require_type
 from mascarin._io.units import bracketed, shown
 from mascarin.errors import InputError
 from mascarin.figures import colors
-from mascarin.progress import in_notebook
+from mascarin.figures.shown import new_figure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,22 +154,13 @@ def _mark_dates(ax: Axes, zone: tzinfo | None) -> None:
     ax.xaxis.set_major_formatter(dates.ConciseDateFormatter(locator, tz=zone))  # type: ignore[no-untyped-call]
 
 
-def _let_notebook_show_figures() -> None:
-    """Load the backend of the notebook: only then does it know how to draw a `Figure` that a cell returns."""
-    import matplotlib
-    from matplotlib import pyplot
-
-    if not pyplot.get_fignums():  # with an open figure the backend is loaded
-        pyplot.switch_backend(matplotlib.get_backend())
-
-
 def axes_for(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
     """One axes for each unit; the same axes may be used for several units.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes or sequence of them, or None
-        One for each unit, or one for all; None makes a new figure, which a notebook shows.
+        One for each unit, or one for all; None makes a new figure of pyplot.
     units : sequence of str
         The units.
 
@@ -185,14 +176,16 @@ def axes_for(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axe
 
     Examples
     --------
+    >>> from matplotlib import pyplot
     >>> len(axes_for(None, ["degC", "W"]))
     2
+    >>> pyplot.close("all")
     """
     if ax is None:
-        if in_notebook():
-            _let_notebook_show_figures()
-        figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
-        return list(figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]) if units else []
+        if not units:
+            return []
+        figure = new_figure(9.0, 2.8 * len(units) + 0.6)
+        return list(figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0])
     all_axes = [ax] if isinstance(ax, Axes) else list(np.ravel(np.array(ax, dtype=object)))
     for entry in all_axes:
         require_type("ax", entry, Axes, "axes of matplotlib, one or a list")
