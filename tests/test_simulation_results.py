@@ -81,7 +81,7 @@ def test_the_table_is_in_local_time(run: Results) -> None:
 
 def test_names_and_aliases(run: Results) -> None:
     assert len(run) == 4
-    assert list(run)[3] == "north.interface_3_temperature"
+    assert list(run)[3] == "north.gap_lining_temperature"  # the name that was asked for
     assert np.array_equal(run["north.gap_lining_temperature"], run["north.interface_3_temperature"])
 
 

@@ -49,7 +49,7 @@ def new(
     column: Words = None,
     sensor: Words = None,
 ) -> None:
-    """Describe a room, a house, a test cell or a wall from a few words.
+    """Describe a room, house, cell or wall from a few words.
 
     Writes building.yaml, a short description with comments, and prints the next command. A cell or a wall
     with the data of a logger gets study.yaml as well. Layers are named from inside to outside; a common

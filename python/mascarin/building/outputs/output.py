@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -178,6 +179,52 @@ def named(building: Description, names: Iterable[str]) -> list[Output]:
     for output in reversed(outputs(building)):
         by_name.update(dict.fromkeys((*output.aliases, output.name), output))
     return [_by_name(by_name, name, damp=building.humidity is not None) for name in names]
+
+
+def chosen(building: Description, names: Iterable[str]) -> list[Output]:
+    """Results by names and patterns, each under the name that was asked for.
+
+    Parameters
+    ----------
+    building : Description
+        The building.
+    names : iterable of str
+        Names, other names, and patterns such as ``*.air_temperature``, which stand for all names that fit.
+
+    Returns
+    -------
+    list of Output
+        Each once, in the order of the names.
+
+    Raises
+    ------
+    InputError
+        There is no such output, or none that fits a pattern.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> [output.name for output in chosen(box(), ["room.air_t*", "facade.inside_temperature"])]
+    ['room.air_temperature', 'facade.inside_temperature']
+    """
+    every = outputs(building)
+    asked: dict[str, Output] = {}
+    for name in names:
+        if isinstance(name, str) and any(sign in name for sign in "*?["):
+            fitting = [output for output in every if fnmatchcase(output.name, name)]
+            if not fitting:
+                of_all = [output.name for output in every]
+                raise InputError(
+                    f"{name}: found no output that fits; expected a pattern that fits one of the "
+                    f"{len(every)} of this building, which 'mascarin outputs' lists. "
+                    f"{did_you_mean(name, of_all)}".rstrip()
+                )
+            asked |= {output.name: output for output in fitting}
+        else:
+            output = named(building, [name])[0]
+            aliases = tuple({output.name, *output.aliases} - {name})
+            asked[name] = output if output.name == name else replace(output, name=name, aliases=aliases)
+    return list(asked.values())
 
 
 def _humid_names() -> set[str]:

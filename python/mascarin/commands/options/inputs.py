@@ -183,7 +183,9 @@ def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list
                 f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
                 f"{_suggestion(pattern, names)}".rstrip()
             )
-        names_found |= dict.fromkeys(meant or [building.output(pattern).name])
+        if not meant:
+            building.output(pattern)
+        names_found |= dict.fromkeys(meant or [pattern])
     return list(names_found)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
 from mascarin.building.engine_input.series_users import courses
-from mascarin.building.outputs.output import named
+from mascarin.building.outputs.output import chosen
 from mascarin.building.parts.envelope.convection import measured_column
 from mascarin.errors import InputError
 from mascarin.simulation.checks.flow_balance import require_balanced_flows
@@ -187,7 +187,7 @@ def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tupl
 def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Output]:
     """Outputs by name, or the usual ones."""
     if names is not None:
-        return named(building, names)
+        return chosen(building, names)
     return [output for output in building.outputs() if output.usual]
 
 
