@@ -6,6 +6,7 @@ import io
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import pytest
 
@@ -219,3 +220,28 @@ def test_a_command_in_the_background_can_be_interrupted() -> None:
         "except KeyboardInterrupt:\n    pass\nelse:\n    sys.exit(1)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize(
+    ("words", "actual", "remedy"),
+    [
+        ("check lgi/study.yaml", "a study", "mascarin study"),
+        ("run lgi/study.yaml --weather shipped:tampa", "a study", "mascarin study"),
+        ("parameters reunion_house/design.yaml", "a design study", "mascarin design"),
+        ("study lgi/building.yaml -o OUT", "a building", "mascarin run"),
+        ("validate reunion_house/design.yaml", "a design study", "mascarin design"),
+        ("design lgi/study.yaml -o OUT", "a study", "mascarin study"),
+        ("design lgi/building.yaml -o OUT", "a building", "mascarin run"),
+    ],
+)
+def test_a_file_of_another_kind_is_recognised(
+    words: str, actual: str, remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from mascarin.examples import FOLDER
+
+    command, file, *rest = words.replace("OUT", str(tmp_path / "out")).split()
+    assert cli.main([command, str(FOLDER / file), *rest]) == 2
+    said = capsys.readouterr().err
+    assert f"found: {actual}\n" in said
+    assert remedy in said
+    assert len(said.splitlines()) < 6

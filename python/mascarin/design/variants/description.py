@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import Field, StringConstraints, model_validator
@@ -201,3 +202,16 @@ class DesignFile(Part):
     def ranked_by(self) -> str:
         """The objective of the ranking."""
         return self.rank_by or next(iter(self.objectives))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_other_file(cls, data: Any) -> Any:
+        if isinstance(data, Mapping) and "objectives" not in data:
+            for key, what, command in (
+                ("surfaces", "a building", "mascarin run FILE --weather CLIMATE"),
+                ("measurements", "a study", "mascarin study FILE -o FOLDER"),
+            ):
+                if key in data:
+                    expected = "a design study: building, climates, variables, objectives"
+                    insist(fault((), what, expected, f"Run it with '{command}'."))
+        return data

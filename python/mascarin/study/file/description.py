@@ -437,7 +437,11 @@ class StudyFile(StudyPlan):
     def _no_building(cls, data: Any) -> Any:
         if isinstance(data, dict) and "surfaces" in data and "building" not in data:
             expected = "a study: building, climate, measurements, sensors, periods, identification"
-            insist(fault((), "a building", expected, "A study names a building; see docs/your-own-wall.md."))
+            remedy = "Run it with 'mascarin run FILE --weather CLIMATE'; a study names a building."
+            insist(fault((), "a building", expected, remedy))
+        if isinstance(data, dict) and "objectives" in data:
+            remedy = "Run it with 'mascarin design FILE -o FOLDER'."
+            insist(fault((), "a design study", "a study: measurements, sensors, periods", remedy))
         return data
 
 
