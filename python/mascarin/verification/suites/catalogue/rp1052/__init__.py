@@ -1,1 +1,1 @@
-"""ASHRAE 1052-RP."""
+"""Analytical tests of the fabric of a building, ASHRAE project 1052-RP."""
