@@ -12,7 +12,7 @@ from mascarin._io import atomic
 from mascarin.figures import text
 from mascarin.pages.frame.template import environment, frame
 from mascarin.verification.suites.running import Result
-from mascarin.verification.suites.verdict import Line, Verdict
+from mascarin.verification.suites.verdict import WITHOUT_NUMBER, Line, Verdict
 
 #: Significant digits of the numbers.
 _DIGITS: Final = 4
@@ -71,7 +71,11 @@ def _content(result: Result) -> dict[str, Any]:
         "Source": suite.source, "Licence": suite.licence, "A number is inside if it is": suite.rule,
         "Result": result.summary,
     }  # fmt: skip
-    causes = {line.case: line.cause for line in result.lines if line.cause}
+    causes = {
+        f"{line.case}, {line.quantity}" if line.quantity else line.case: line.cause
+        for line in result.lines
+        if line.cause
+    }
     programs = list(dict.fromkeys(name for line in result.lines for name in line.peers))
     return {
         "about": suite.about,
@@ -79,7 +83,7 @@ def _content(result: Result) -> dict[str, Any]:
         "settings": suite.settings,
         "causes": causes,
         "programs": programs,
-        "rows": [_row(line, programs) for line in result.lines if line.verdict != Verdict.NOT_EXPRESSIBLE],
+        "rows": [_row(line, programs) for line in result.lines if line.verdict not in WITHOUT_NUMBER],
     }
 
 

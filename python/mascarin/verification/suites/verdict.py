@@ -29,10 +29,14 @@ class Verdict(StrEnum):
     """The specification leaves open what decides it."""
     NOT_EXPRESSIBLE = "not expressible"
     """The case cannot be described."""
+    NOT_RUN = "not run"
+    """What the case needs is not among the data."""
     INFORMATION = "information"
     """No tolerance is stated."""
 
 
+#: Verdicts of lines without a number.
+WITHOUT_NUMBER: Final = (Verdict.NOT_EXPRESSIBLE, Verdict.NOT_RUN)
 #: A known miss may grow by this part of half the width of its limits before it counts as a worse one. [-]
 _GROWTH: Final = 0.1
 
