@@ -115,9 +115,7 @@ class Case:
     @property
     def sides(self) -> dict[str, float]:
         """Areas of the sides that look into the room. [m2]"""
-        horizontal = (
-            ("floor.inside", "roof.inside") if self.under_roof else ("slab.outside", "slab.inside")
-        )
+        horizontal = ("floor.inside", "roof.inside") if self.under_roof else ("slab.outside", "slab.inside")
         return {
             "window.inside": self.window,
             "facade.inside": _WIDTH * _HEIGHT - self.window,

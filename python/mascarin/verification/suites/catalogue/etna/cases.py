@@ -144,7 +144,10 @@ def lines(data: CaseData) -> Iterator[Line]:
         tolerance, against = 0.01 * uncertainty, f"measured within {uncertainty:g} %"
         if case.by_catalogue:
             reference, peers = program, {}
-            tolerance, against = _OF_PROGRAM, f"of CSE; measured {measured:.1f} W, which it contradicts by design"
+            tolerance, against = (
+                _OF_PROGRAM,
+                f"of CSE; measured {measured:.1f} W, which it contradicts by design",
+            )
         limits = around(reference, tolerance * reference)
         note = f"{100.0 * (heat / reference - 1.0):+.2f} %, {against}"
         yield Line(case.name, "heater, steady hours", "W", heat, reference, limits, peers, note)

@@ -81,9 +81,7 @@ def room(
     materials = {
         name: dict(zip(keys, layer[1:], strict=True)) for name, layer in zip(names, layers, strict=True)
     }
-    built = [
-        {"material": name, "thickness": layer[0]} for name, layer in zip(names, layers, strict=True)
-    ]
+    built = [{"material": name, "thickness": layer[0]} for name, layer in zip(names, layers, strict=True)]
     face: Tree = {"area": area, "tilt": tilt, "azimuth": azimuth}
     if vertices is not None:
         face = {"vertices": [list(map(float, corner)) for corner in vertices]}

@@ -110,9 +110,7 @@ def _air() -> Tree:
 
 def _table(data: CaseData, name: str) -> dict[str, tuple[float, float]]:
     """Numbers of the toolkit and of EnergyPlus by the words beside them."""
-    return {
-        row[1]: (number(row[5]), number(row[6])) for row in rows(data, name) if len(row) > 6 and row[1]
-    }
+    return {row[1]: (number(row[5]), number(row[6])) for row in rows(data, name) if len(row) > 6 and row[1]}
 
 
 def _last(

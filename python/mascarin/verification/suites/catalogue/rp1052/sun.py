@@ -182,9 +182,7 @@ def _sunlit(data: CaseData, climate: Climate, window: Corners, shades: Sequence[
     return np.where(lit, behind / np.where(lit, free, 1.0), np.nan)
 
 
-def _area(
-    case: str, area: float, sunlit: Array, reference: tuple[Array, Array], tolerance: float
-) -> Line:
+def _area(case: str, area: float, sunlit: Array, reference: tuple[Array, Array], tolerance: float) -> Line:
     hour, expected = reference
     values = area * np.interp(hour, _MIDDLE[: len(sunlit)], sunlit)
     compared = np.isfinite(values) & np.isfinite(expected) & ((expected > 0.0) | (values > 0.0))

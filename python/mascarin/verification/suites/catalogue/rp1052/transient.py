@@ -77,9 +77,7 @@ def _jump(data: CaseData, jump: Jump) -> Iterator[Line]:
         initial = {"zones": {"room": 20.0}, "surfaces": {"wall": [float(outside[0]), float(inside[0])]}}
     outputs = ["wall.inside_temperature", "wall.outside_temperature"]
     outputs += ["room.net_load"] if jump.room else []
-    hours, run = simulated(
-        data.building(tree), weather(columns, extra=["air"]), outputs, _STEP, initial
-    )
+    hours, run = simulated(data.building(tree), weather(columns, extra=["air"]), outputs, _STEP, initial)
     hour = np.arange(1, count)
     for side, reference, tolerance in (("inside", inside, _INSIDE), ("outside", outside, _OUTSIDE)):
         values = np.interp(hour, hours, run[f"wall.{side}_temperature"].to_numpy())
