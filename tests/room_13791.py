@@ -143,7 +143,8 @@ def _repeated(
 
     def hourly(values: npt.ArrayLike) -> Array:
         numbers = np.asarray(values, dtype=np.float64)
-        return np.interp(hour, at, np.r_[numbers[-1], numbers])
+        day: Array = np.interp(hour, at, np.concatenate(([numbers[-1]], numbers)))
+        return day
 
     within = np.minimum((hour - 1e-6).astype(int), 23)
     gains = np.array(whole._GAINS)[within] * 19.8
@@ -170,7 +171,7 @@ def _repeated(
     areas = np.array([area for _, area, _ in sides])
     nodes = [node for node, _, _ in sides]
     held = capacity.diagonal()[:, None]
-    # A day maps the state at its begin, and 1, to the state at its end: the day that repeats is its fixed point.
+    # A day maps the state at its begin, and 1, to that at its end: the day that repeats is its fixed point.
     size = len(net.capacities)
     state = np.eye(size, size + 1)
     for step in range(count):

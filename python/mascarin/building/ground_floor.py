@@ -67,9 +67,9 @@ def on_ground(
     soil : {"clay", "sand", "rock"} or Soil
         Kind of soil by table 7 of the standard, or its own numbers.
     inside_resistance, outside_resistance : float
-        Of the surfaces of floor and ground, for the transmittance; what acts in a run is the film of the floor. The
-        virtual resistance below makes up for no other film: give 1/(convection + radiation) of the floor where a
-        case states it. 0 outside for a surface at the temperature of the air. [m2 K/W]
+        Of the surfaces of floor and ground, for the transmittance; what acts in a run is the film of the
+        floor, and the virtual resistance makes up for no other one: give 1/(convection + radiation) of the
+        floor where it is known. 0 outside for ground as warm as the air. [m2 K/W]
     edge : EdgeInsulation, optional
         Along the edge of the slab.
 
@@ -81,8 +81,8 @@ def on_ground(
     Raises
     ------
     InputError
-        There is no such floor, a number is out of range, perimeter and aspect are both given or both missing, or
-        the slab loses more than 0.5 m of soil let through.
+        There is no such floor, a number is out of range, perimeter and aspect are both given or both
+        missing, or the slab loses more than 0.5 m of soil let through.
 
     References
     ----------
@@ -127,7 +127,8 @@ def on_ground(
     if behind <= 0.0:
         raise InputError(
             f"on_ground: found a slab of U {u_value:.3f} W/(m2 K), which loses more than {_DEPTH:g} m of "
-            f"soil of {ground.conductivity:g} W/(m K) let through; expected a slab with insulation, or a larger one"
+            f"soil of {ground.conductivity:g} W/(m K) let through; expected a slab with insulation, or a "
+            "larger one"
         )
     names = {key: f"{surface}_{key}" for key in ("soil", "below", "on_ground")}
     lower: list[dict[str, Any]] = [

@@ -107,7 +107,7 @@ class EdgeInsulation:
         require_range("edge: conductivity", self.conductivity, (0.005, 1.0), "W/(m K)")
 
     def additional(self, soil: Soil) -> float:
-        """Thickness of soil with the resistance that the insulation adds to that of the soil it replaces. [m]"""
+        """Thickness of soil that resists as much as the insulation does beyond the soil it replaces. [m]"""
         added = self.thickness / self.conductivity - self.thickness / soil.conductivity
         return added * soil.conductivity
 

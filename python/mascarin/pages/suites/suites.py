@@ -11,6 +11,7 @@ from mascarin import __version__
 from mascarin._io import atomic
 from mascarin.figures import text
 from mascarin.pages.frame.template import environment, frame
+from mascarin.verification.suites.peers import in_words, standing
 from mascarin.verification.suites.running import Result
 from mascarin.verification.suites.verdict import WITHOUT_NUMBER, Line, Verdict
 
@@ -55,7 +56,15 @@ def render(results: Sequence[Result], facts: Mapping[str, str]) -> str:
                 *({"id": r.suite.name, "title": r.suite.title, "content": _content(r)} for r in results),
                 {"id": "repeat", "title": "How to reproduce the results", "content": dict(facts)},
             ],
-            summary=[{"name": r.suite.name, "title": r.suite.title, "summary": r.summary} for r in results],
+            summary=[
+                {
+                    "name": result.suite.name,
+                    "title": result.suite.title,
+                    "summary": result.summary,
+                    "peers": in_words(standing(result.lines)),
+                }
+                for result in results
+            ],
             inside=sum(line.verdict == Verdict.INSIDE for line in lines),
             count=sum(line.limits is not None for line in lines),
             misses=sum(line.verdict == Verdict.MISS for line in lines),

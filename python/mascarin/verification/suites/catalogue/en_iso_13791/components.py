@@ -31,15 +31,15 @@ _WALLS: Final[dict[str, Sequence[tuple[str, float]]]] = {
     "COND-3": (("stone", 0.2), ("insulation", 0.1), ("board", 0.005)),
     "COND-4": (("board", 0.005), ("insulation", 0.1), ("stone", 0.2)),
 }
-#: Length, width and height of the rooms with long-wave exchange [m]; in the last one the wall outdoors ends at half
-#: its height.
+#: Length, width and height of the rooms with long-wave exchange [m]; in the last one the wall outdoors ends
+#: at half its height.
 _ROOMS: Final = {
     "IntRad-1": (1.0, 1.0, 1.0),
     "IntRad-2": (4.0, 6.0, 3.0),
     "IntRad-3": (30.0, 3.0, 3.0),
     "IntRad-4": (4.0, 6.0, 3.0),
 }
-#: Heat that the wall outdoors absorbs at its inside [W/m2], resistances of this wall and of the others [m2 K/W].
+#: Heat that the wall outdoors absorbs at its inside [W/m2], resistances of this wall and of others [m2 K/W].
 _HEAT, _OUTER, _INNER = 100.0, 0.2, 1.0
 _OUTSIDE_FILM: Final = 13.5
 
@@ -134,7 +134,7 @@ def _conduction(
 
 
 def _radiant(data: CaseData, case: str) -> float:
-    """Air of a room [degC]: what the wall absorbs inside is the heat of air outside that is as much warmer."""
+    """Air of a room [degC]: what the wall absorbs inside is the heat of air outside that is warmer by it."""
     x, y, z = _ROOMS[case]
     corners = {
         "south": [[0, 0, z], [0, 0, 0], [x, 0, 0], [x, 0, z]],
@@ -218,5 +218,4 @@ def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> Line:
     at = np.array([float(hour) + float(minute) / 60.0 for hour, minute, _ in stamps])
     values = np.interp(at, hours + 6.0 - 0.5 / 60.0, sunlit)
     references = [float(row["reference"]) for row in rows]
-    worst = largest(case, f"sunlit part, worst of {len(at)}", "-", (at, values, references), _SUNLIT)
-    return worst
+    return largest(case, f"sunlit part, worst of {len(at)}", "-", (at, values, references), _SUNLIT)

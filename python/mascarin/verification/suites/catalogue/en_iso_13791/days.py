@@ -52,7 +52,8 @@ def _by_hour(parts: tuple[Sequence[float], ...]) -> Array:
     return day
 
 
-# Table 9 (A) has the light from the ground in the diffuse sun, as the report of EnergyPlus says; table 10 has not.
+# Table 9 (A) has the light from the ground in the diffuse sun, as the report of EnergyPlus says; table 10
+# has not.
 DAYS: Final = {
     "A": Day(
         40.0,

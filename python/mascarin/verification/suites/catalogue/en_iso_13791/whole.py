@@ -69,8 +69,8 @@ class Sunshine:
     to_air : float
         Part that heats the air at once. [-]
     to_floor : float or None
-        Part of the rest on the floor, with a tenth of the remainder on the ceiling and the others by area; None:
-        all by area. Not for slabs with both sides in the room: a side of these is no target of shares. [-]
+        Part of the rest on the floor, with a tenth of the remainder on the ceiling and the others by area;
+        None: all by area. Not for slabs with both sides in the room, which are no targets of shares. [-]
     """
 
     to_air: float = 0.1
@@ -284,7 +284,7 @@ def _climate(day: Day) -> Climate:
     """The day three times; its numbers are values at the ends of hours."""
 
     def repeated(hourly: Array) -> Array:
-        return np.r_[hourly[-1], np.tile(hourly, 3)]
+        return np.concatenate(([hourly[-1]], np.tile(hourly, 3)))
 
     west, level = day.on_facade, day.on_roof
     sky = np.maximum(level, np.where(west > 0.0, 5.0, 0.0))

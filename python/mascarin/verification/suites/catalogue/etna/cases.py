@@ -43,8 +43,8 @@ _FORCED_AIR: Final = {"kind": "fisher_ceiling_diffuser", "mixing": 20.7}
 _HEIGHT: Final = 2.565
 #: Cases by the program's own films.
 _OWN_FILMS: Final = "3"
-#: Cases with conductivities of a catalogue and an infiltration [1/h]: by design not in agreement with the cell, so
-#: that the program CSE is their reference, with the part that they may deviate [-].
+#: Cases with conductivities of a catalogue and an infiltration [1/h]: by design not in agreement with the
+#: cell, so that the program CSE is their reference, with the part that they may deviate [-].
 _BY_CATALOGUE: Final = "2"
 _INFILTRATION: Final = {"A": 0.05775, "B": 0.02045}
 _OF_PROGRAM: Final = 0.01

@@ -21,7 +21,7 @@ _COMMON: Final = 21.6
 #: Gains [W], and temperature at which the third zone is held [degC].
 _GAINS: Final = {"a": 2500.0, "b": 1000.0}
 _HELD, _OUTDOORS = 15.0, 20.0
-#: Analytical solution: air of two zones [degC], cooling of the third [W]; lowest and highest of nine programs.
+#: Analytical solution: air of two zones [degC], cooling of the third [W]; and the range of nine programs.
 _ANSWERS: Final = {
     "a.air_temperature": ("air of zone A", "degC", 31.057855, (30.99, 31.93)),
     "b.air_temperature": ("air of zone B", "degC", 24.797706, (24.65, 24.80)),

@@ -23,8 +23,7 @@ _OF_LOAD, _OF_AIR, _OF_STACK = 0.001, 0.005, 0.02
 #: Of surfaces between two airs, and of those under a sky. [K]
 _SURFACE, _UNDER_SKY = 0.01, 0.02
 _OUTPUTS: Final = ("room.net_load", "wall.inside_temperature", "wall.outside_temperature")
-#: Density [kg/m3] and specific heat [J/(kg K)] of air with 4.6 g of vapour in a kilogram; one litre weighs as much
-#: outdoors as it does at 10 degC.
+#: Density outdoors at 10 degC [kg/m3], specific heat [J/(kg K)] of air with 4.6 g of vapour in a kilogram.
 _DENSITY: Final = 1.2432
 _HEAT: Final = 1006.0 + 1860.0 * 0.0046
 
