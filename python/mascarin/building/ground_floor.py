@@ -130,11 +130,6 @@ def on_ground(
             f"soil of {ground.conductivity:g} W/(m K) let through; expected a slab with insulation, or a "
             "larger one"
         )
-    names = {key: f"{surface}_{key}" for key in ("soil", "below", "on_ground")}
-    lower: list[dict[str, Any]] = [
-        {"material": names["below"]},
-        {"material": names["soil"], "thickness": _DEPTH},
-    ]
     temperature = {
         "mean": {"value": mean, "source": f"{SLAB}: yearly mean outdoors"},
         "amplitude": {
@@ -143,12 +138,26 @@ def on_ground(
         },
         "coldest_day": (coldest_day + _LAG) % 365.0,
     }
+    return _with_soil(building, surface, ground, behind, temperature)
+
+
+def _with_soil(
+    building: Building, surface: str, soil: Soil, behind: float, temperature: dict[str, Any]
+) -> Building:
+    """Put soil and a resistance below a floor, and the temperature behind them."""
+    floor = building.surfaces[surface]
+    layers = building.constructions[floor.construction].layers
+    names = {key: f"{surface}_{key}" for key in ("soil", "below", "on_ground")}
+    lower: list[dict[str, Any]] = [
+        {"material": names["below"]},
+        {"material": names["soil"], "thickness": _DEPTH},
+    ]
     return building.replace(
         {
             f"materials.{names['soil']}": {
-                "conductivity": {"value": ground.conductivity, "source": ground.source},
+                "conductivity": {"value": soil.conductivity, "source": soil.source},
                 "density": _DENSITY,
-                "specific_heat": {"value": ground.heat_capacity / _DENSITY, "source": ground.source},
+                "specific_heat": {"value": soil.heat_capacity / _DENSITY, "source": soil.source},
             },
             f"materials.{names['below']}": {
                 "kind": "resistance",
@@ -178,8 +187,8 @@ def _soil(soil: str | Soil) -> Soil:
 def _perimeter(area: float, perimeter: float | None, aspect: float | None) -> float:
     """Length of walls to outdoors, given or of a rectangle. [m]"""
     if (perimeter is None) == (aspect is None):
-        found = "neither perimeter nor aspect" if perimeter is None else "perimeter and aspect"
-        raise InputError(f"on_ground: found {found}, expected one of them")
+        words = "neither perimeter nor aspect" if perimeter is None else "perimeter and aspect"
+        raise InputError(f"on_ground: found {words}, expected one of them")
     if perimeter is not None:
         if not perimeter > 0.0:
             raise InputError(f"on_ground: found perimeter {perimeter:g}, expected a number above 0")

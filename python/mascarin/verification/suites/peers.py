@@ -39,8 +39,8 @@ def standing(lines: Iterable[Line]) -> dict[str, tuple[int, int]]:
         low, high = line.limits
         for program, value in line.peers.items():
             if math.isfinite(value):
-                inside, given = counts.get(program, (0, 0))
-                counts[program] = inside + (at_least(value, low) and at_most(value, high)), given + 1
+                inside, total = counts.get(program, (0, 0))
+                counts[program] = inside + (at_least(value, low) and at_most(value, high)), total + 1
     return counts
 
 
@@ -52,4 +52,4 @@ def in_words(counts: Mapping[str, tuple[int, int]]) -> str:
     >>> in_words({"A": (1, 2), "B": (2, 2)}), in_words({})
     ('A 1 of 2, B 2 of 2', 'none')
     """
-    return ", ".join(f"{program} {inside} of {given}" for program, (inside, given) in counts.items()) or NONE
+    return ", ".join(f"{program} {inside} of {total}" for program, (inside, total) in counts.items()) or NONE

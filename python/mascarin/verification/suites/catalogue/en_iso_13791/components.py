@@ -47,14 +47,14 @@ _OUTSIDE_FILM: Final = 13.5
 Corners = Sequence[tuple[float, float, float]]
 
 _FRONT: Final[Corners] = ((1, 0, 0.5), (3, 0, 0.5), (3, 0, 2.5), (1, 0, 2.5))
-_LEFT: Final[Corners] = ((0, -1, 3), (0, 0, 3), (0, 0, 0), (0, -1, 0))
-_RIGHT: Final[Corners] = ((4, 0, 3), (4, -1, 3), (4, -1, 0), (4, 0, 0))
+_WEST_FIN: Final[Corners] = ((0, -1, 3), (0, 0, 3), (0, 0, 0), (0, -1, 0))
+_EAST_FIN: Final[Corners] = ((4, 0, 3), (4, -1, 3), (4, -1, 0), (4, 0, 0))
 _ABOVE: Final[Corners] = ((0, -1, 3), (0, 0, 3), (4, 0, 3), (4, -1, 3))
 #: A window and the planes before it.
 _SHADES: Final[dict[str, tuple[Corners, Sequence[Corners]]]] = {
     "Shade-1": (_FRONT, (_ABOVE,)),
-    "Shade-2": (_FRONT, (_LEFT, _RIGHT)),
-    "Shade-3": (_FRONT, (_LEFT, _ABOVE, _RIGHT)),
+    "Shade-2": (_FRONT, (_WEST_FIN, _EAST_FIN)),
+    "Shade-3": (_FRONT, (_WEST_FIN, _ABOVE, _EAST_FIN)),
     "Shade-4": (
         ((2, -7, 0), (7, -7, 0), (7, -7, 5), (2, -7, 5)),
         (((12, -12, 10), (-3, -12, 10), (-3, -12, 0), (12, -12, 0)),),
@@ -187,8 +187,7 @@ def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> Line:
         "global_horizontal": dark,
     }
     # All cases end at noon or later in the day.
-    place = Place(52.0, -0.5, "UTC", "2001-06-15 06:00", "1min")
-    climate = place.climate(columns, instant=list(columns)[1:])
+    climate = Place(52.0, -0.5, "UTC", "2001-06-15 06:00", "1min").climate(columns, instant=list(columns)[1:])
     irradiance = []
     for shades in (planes, ()):
         face = [list(map(float, corner)) for corner in window]
@@ -215,7 +214,7 @@ def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> Line:
     behind, free = irradiance
     sunlit = np.where(free > 1.0, behind / np.maximum(free, 1.0), 0.0)
     stamps = [row["at"].split()[1].split(":") for row in rows]
-    at = np.array([float(hour) + float(minute) / 60.0 for hour, minute, _ in stamps])
-    values = np.interp(at, hours + 6.0 - 0.5 / 60.0, sunlit)
+    times = np.array([float(hour) + float(minute) / 60.0 for hour, minute, _ in stamps])
+    values = np.interp(times, hours + 6.0 - 0.5 / 60.0, sunlit)
     references = [float(row["reference"]) for row in rows]
-    return largest(case, f"sunlit part, worst of {len(at)}", "-", (at, values, references), _SUNLIT)
+    return largest(case, f"sunlit part, worst of {len(times)}", "-", (times, values, references), _SUNLIT)

@@ -219,11 +219,11 @@ class Case:
         return {"glazings": {"glass": glazing}, "windows": {"window": window}}
 
     def _shares(self, to_floor: float) -> dict[str, float]:
-        rest = 1.0 - to_floor
+        remainder = 1.0 - to_floor
         facade = _WIDTH * _HEIGHT - self.window
         walls = {"facade": facade, "partitions": _PARTITIONS}
-        shares = {name: 0.9 * rest * area / sum(walls.values()) for name, area in walls.items()}
-        return shares | {"floor": to_floor, "roof": 0.1 * rest}
+        shares = {name: 0.9 * remainder * area / sum(walls.values()) for name, area in walls.items()}
+        return shares | {"floor": to_floor, "roof": 0.1 * remainder}
 
     def operative(self, data: CaseData, sunshine: Sunshine) -> Array:
         """Mean of air and of surfaces by area over the last day. [degC]"""
@@ -296,6 +296,7 @@ def _climate(day: Day) -> Climate:
         "west": repeated(west),
         "level": repeated(level),
     }
-    place = Place(day.latitude, 0.0, "UTC", "2001-06-15")
     radiation = ("diffuse_horizontal", "direct_normal", "global_horizontal")
-    return place.climate(columns, extra=["west", "level"], instant=radiation)
+    return Place(day.latitude, 0.0, "UTC", "2001-06-15").climate(
+        columns, extra=["west", "level"], instant=radiation
+    )

@@ -126,7 +126,7 @@ def _table(data: CaseData, name: str, columns: dict[str, int]) -> dict[str, dict
     """Numbers of programs by case, where they have one."""
     cells = csv.reader(io.StringIO(data.text(f"{name}.csv")))
     return {
-        row[1]: {program: float(row[at]) for program, at in columns.items() if row[at]}
+        row[1]: {program: float(row[column]) for program, column in columns.items() if row[column]}
         for row in cells
         if len(row) > max(columns.values()) and row[1] in _CASES
     }

@@ -42,8 +42,8 @@ def lines(data: CaseData) -> Iterator[Line]:
             building = data.building(_tree(ratio, emissivities))
             _, run = simulated(building, steady_air(40.0, 30), outputs, "15min", "repeat")
             last = run.iloc[-1]
-            outer, opposite, *others = (float(last[f"{name}.inside_temperature"]) for name in _WALLS)
-            values = outer, -float(last["room.net_load"]), opposite, float(np.mean(others))
+            outer, opposite, *sides = (float(last[f"{name}.inside_temperature"]) for name in _WALLS)
+            values = outer, -float(last["room.net_load"]), opposite, float(np.mean(sides))
             quantities = ("wall outdoors", "load", "wall opposite", "others")
             references, programs = row[8:12], row[1:5]
             case = f"IntRad {test}, ratio {ratio}"

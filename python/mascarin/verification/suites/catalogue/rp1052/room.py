@@ -52,7 +52,7 @@ def room(
     inside: Mapping[str, Any],
     *,
     zone: Mapping[str, Any] | None = None,
-    place: Mapping[str, Any] | None = None,
+    keys_of_site: Mapping[str, Any] | None = None,
     area: float = 9.0,
     tilt: float = 90.0,
     azimuth: float = 0.0,
@@ -67,7 +67,7 @@ def room(
         From outside to inside.
     outside, inside : mapping
         Sides of the wall. A second wall faces the room where this one does not.
-    zone, place : mapping, optional
+    zone, keys_of_site : mapping, optional
         More keys of the zone and of the site.
     area, tilt, azimuth : float
         Of the wall, where it has no vertices. [m2], [deg]
@@ -91,7 +91,7 @@ def room(
         surfaces["other"] = {**other, "outside": CLOSED, "inside": indoors(1.0)}
     return {
         "name": "room",
-        "site": site(**(place or {})),
+        "site": site(**(keys_of_site or {})),
         "materials": materials,
         "constructions": {"wall": {"layers": built}},
         "zones": {"room": {"volume": 27, "longwave": "none", **(zone or {})}},
@@ -102,8 +102,7 @@ def room(
 
 def weather(columns: Mapping[str, Array], *, extra: Sequence[str] = (), step: str = "1h") -> Climate:
     """Make weather of arrays; it begins on 21 August."""
-    place = Place(LATITUDE, LONGITUDE, "Etc/GMT+5", "2001-08-21", step)
-    return place.climate(columns, extra=extra)
+    return Place(LATITUDE, LONGITUDE, "Etc/GMT+5", "2001-08-21", step).climate(columns, extra=extra)
 
 
 def steady_air(temperature: float, hours: int = 60) -> Climate:

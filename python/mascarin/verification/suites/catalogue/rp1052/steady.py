@@ -58,7 +58,7 @@ def _sky(data: CaseData) -> Iterator[Line]:
     # The sky is at 7.552 degC.
     sky = {"sky": {"kind": "offset", "depression": 20.0 - 7.552}}
     roof = outdoors(1.352, longwave=None)
-    tree = room(((0.1, 1.0, 1.0, 100.0),), roof, indoors(4.04), zone={"held": 20.0}, place=sky, tilt=0)
+    tree = room(((0.1, 1.0, 1.0, 100.0),), roof, indoors(4.04), zone={"held": 20.0}, keys_of_site=sky, tilt=0)
     last = _last(data, tree, 20.0)
     load, program = table["Zone Load"]
     yield Line(
@@ -74,7 +74,7 @@ def _sky(data: CaseData) -> Iterator[Line]:
 def _infiltration(data: CaseData) -> Iterator[Line]:
     load, program = _table(data, "Tests_Infil-1__Infil-1")["Zone Load"]
     zone = {"held": 20.0, "ventilation": {"fan": {"flow": 0.5}}}
-    tree = room(((0.1, 1.15, 1.0, 100.0),), CLOSED, indoors(3.0), zone=zone, place=_air())
+    tree = room(((0.1, 1.15, 1.0, 100.0),), CLOSED, indoors(3.0), zone=zone, keys_of_site=_air())
     value = _last(data, tree, 10.0)["room.net_load"]
     limits = around(load, _OF_AIR * load)
     yield Line("Infil-1", "load", "W", value, load, limits, {"EnergyPlus": program})
@@ -91,7 +91,12 @@ def _stack(data: CaseData) -> Iterator[Line]:
         for name, height in (("low", 0.25), ("high", 9.75))
     }
     tree = room(
-        ((0.1, 0.04, 30.0, 800.0),), CLOSED, indoors(3.0), zone={"held": 20.0}, place=_air(), vents=vents
+        ((0.1, 0.04, 30.0, 800.0),),
+        CLOSED,
+        indoors(3.0),
+        zone={"held": 20.0},
+        keys_of_site=_air(),
+        vents=vents,
     )
     last = _last(data, tree, 10.0, ("room.net_load", "low.inflow"))
     flow, program = table["Mass Flow Rate of Air"]

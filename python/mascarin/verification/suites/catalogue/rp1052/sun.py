@@ -178,8 +178,8 @@ def _sunlit(data: CaseData, climate: Climate, window: Corners, shades: Sequence[
         _, run = simulated(data.building(tree), climate, ["wall.incident_solar"], _STEP, 20.0)
         irradiance.append(run["wall.incident_solar"].to_numpy()[1:])
     behind, free = irradiance
-    lit = free > 0.5
-    return np.where(lit, behind / np.where(lit, free, 1.0), np.nan)
+    sunny = free > 0.5
+    return np.where(sunny, behind / np.where(sunny, free, 1.0), np.nan)
 
 
 def _area(case: str, area: float, sunlit: Array, reference: tuple[Array, Array], tolerance: float) -> Line:
@@ -206,12 +206,12 @@ def _of_day(
     )
 
 
-def _series(data: CaseData, file: str, at: int, column: int) -> tuple[Array, Array]:
+def _series(data: CaseData, file: str, time: int, column: int) -> tuple[Array, Array]:
     """Hours and finite values of a column whose stamps have the form 06:10:00."""
-    found = []
+    pairs = []
     for row in rows(data, file):
-        if len(row) > column and row[at][:2].isdigit() and row[at][2:3] == ":":
-            stamp = float(row[at][:2]) + float(row[at][3:5]) / 60.0
-            found.append((stamp, number(row[column])))
-    table = np.array([pair for pair in found if np.isfinite(pair[1])])
+        if len(row) > column and row[time][:2].isdigit() and row[time][2:3] == ":":
+            stamp = float(row[time][:2]) + float(row[time][3:5]) / 60.0
+            pairs.append((stamp, number(row[column])))
+    table = np.array([pair for pair in pairs if np.isfinite(pair[1])])
     return table[:, 0], table[:, 1]
