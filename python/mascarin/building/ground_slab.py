@@ -92,6 +92,11 @@ class EdgeInsulation:
         Of the insulation. [m]
     conductivity : float
         Of the insulation; a foundation of low density counts as one. [W/(m K)]
+
+    Examples
+    --------
+    >>> round(EdgeInsulation("vertical", 0.8, 0.08, 0.035).additional(SOILS["sand"]), 3)
+    4.491
     """
 
     position: Literal["horizontal", "vertical"]
@@ -138,7 +143,7 @@ class Slab:
     --------
     >>> slab = Slab(100.0, 40.0, 0.3, SOILS["sand"], 2.71)
     >>> round(slab.transmittance, 4), round(slab.periodic, 2)
-    (0.2498, 13.06)
+    (0.2498, 13.04)
     """
 
     area: float

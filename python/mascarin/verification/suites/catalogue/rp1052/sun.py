@@ -72,6 +72,7 @@ def lines(data: CaseData) -> Iterator[Line]:
     for side in _WALLS:
         yield from _wall(data, climate, side)
     yield from _glass(data, climate)
+    free = _incident(data, climate, _WINDOW, ())
     shades: dict[str, Sequence[Corners]] = {
         "overhang and fin": (_OVERHANG, _FIN),
         "overhang": (_OVERHANG,),
@@ -79,10 +80,11 @@ def lines(data: CaseData) -> Iterator[Line]:
     }
     for column, (name, planes) in enumerate(shades.items(), 2):
         reference = _series(data, "Test_SolRadShade__ASHRAE-Shade-South", 1, column)
-        sunlit = _sunlit(data, climate, _WINDOW, planes)
+        sunlit = _sunlit(_incident(data, climate, _WINDOW, planes), free)
         yield _area(f"SolRadShade south, {name}", 9.0, sunlit, reference, _OF_OVERHANG)
     reference = _series(data, "Test_WinReveal__ASHRAE_Data-Setback", 1, 2)
-    sunlit = _sunlit(data, climate, _SET_BACK, _REVEAL)
+    behind = _incident(data, climate, _SET_BACK, _REVEAL)
+    sunlit = _sunlit(behind, _incident(data, climate, _SET_BACK, ()))
     yield _area("WinReveal south", 4.0, sunlit, reference, _OF_REVEAL)
 
 
@@ -167,17 +169,19 @@ def _glass(data: CaseData, climate: Climate) -> Iterator[Line]:
     yield _of_day("SolRadGlazing south", "glass above the air", "K", (hours, warm), reference, _OF_GLASS)
 
 
-def _sunlit(data: CaseData, climate: Climate, window: Corners, shades: Sequence[Corners]) -> Array:
+def _incident(data: CaseData, climate: Climate, window: Corners, shades: Sequence[Corners]) -> Array:
+    """Irradiance of a plane by step (n,). [W/m2]"""
+    tree: Tree = room(_PLATE, outdoors(_GLASS_FILM), CLOSED, vertices=window)
+    if shades:
+        corners = [[list(map(float, corner)) for corner in plane] for plane in shades]
+        tree["shades"] = {f"shade{n}": {"vertices": plane} for n, plane in enumerate(corners)}
+    _, run = simulated(data.building(tree), climate, ["wall.incident_solar"], _STEP, 20.0)
+    incident: Array = run["wall.incident_solar"].to_numpy()[1:]
+    return incident
+
+
+def _sunlit(behind: Array, free: Array) -> Array:
     """Part of a plane that the sun reaches (n,); NaN where the sun is not before it. [-]"""
-    irradiance = []
-    for planes in (shades, ()):
-        tree: Tree = room(_PLATE, outdoors(_GLASS_FILM), CLOSED, vertices=window)
-        if planes:
-            corners = [[list(map(float, corner)) for corner in plane] for plane in planes]
-            tree["shades"] = {f"shade{n}": {"vertices": plane} for n, plane in enumerate(corners)}
-        _, run = simulated(data.building(tree), climate, ["wall.incident_solar"], _STEP, 20.0)
-        irradiance.append(run["wall.incident_solar"].to_numpy()[1:])
-    behind, free = irradiance
     sunny = free > 0.5
     return np.where(sunny, behind / np.where(sunny, free, 1.0), np.nan)
 
