@@ -12,6 +12,7 @@ import pytest
 
 from mascarin import cli
 from mascarin.errors import InputError
+from mascarin.verification.bestest.reference import ranges
 from mascarin.verification.suites.case_data import CaseData, Tree
 from mascarin.verification.suites.peers import in_words, standing
 from mascarin.verification.suites.suite import Suite, chosen, suites
@@ -24,7 +25,7 @@ from mascarin.verification.suites.verdict import (
     largest,
 )
 
-#: Its cases are run by tests/test_bestest.py.
+#: Its cases are run by tests/test_verification_bestest_results.py.
 OF_BESTEST = "standard_140"
 
 
@@ -85,6 +86,20 @@ def test_the_page_states_the_numbers(name: str, data_dir: Path, repository: Path
     assert f"| {result} |" in row
     # The table of all suites beside all programs is made of the data.
     assert beside == f"| `{name}` | {result} | {in_words(standing(lines_of(name, data_dir)))} |"
+
+
+def test_the_page_states_the_programs_of_standard_140(repository: Path) -> None:
+    """Of the published table; what Mascarin has inside is all but the known misses."""
+    page = (repository / "docs" / "suites.md").read_text(encoding="utf-8")
+    published = ranges().values()
+    lines = [
+        Line(row.case, row.quantity, row.unit, math.nan, row.mean, (row.low, row.high), row.programs)
+        for row in published
+    ]
+    inside = len(lines) - len(suites()[OF_BESTEST].known_misses)
+    row, beside = (line for line in page.splitlines() if line.startswith(f"| `{OF_BESTEST}` |"))
+    assert f"| {inside} of {len(lines)} |" in row
+    assert beside == f"| `{OF_BESTEST}` | {inside} of {len(lines)} | {in_words(standing(lines))} |"
 
 
 def test_simquality_is_perfect_in_every_variable(data_dir: Path) -> None:
