@@ -25,7 +25,7 @@ from mascarin.verification.suites.verdict import (
     largest,
 )
 
-#: Its cases are run by tests/test_verification_bestest_results.py.
+#: Its cases are tested in tests/test_verification_bestest.py.
 OF_BESTEST = "standard_140"
 
 
