@@ -14,6 +14,7 @@ from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription
 from mascarin.building.engine_input.ratings import WindowRating, window_ratings
 from mascarin.building.ground_floor import on_ground
+from mascarin.building.ground_slab import EdgeInsulation, Soil
 from mascarin.building.json_schemas import json_schema
 from mascarin.building.outputs.output import Output
 from mascarin.building.parameters.parameter import Parameter
@@ -154,6 +155,7 @@ __all__ = [
     "DiffuseOptics",
     "Doe2",
     "Door",
+    "EdgeInsulation",
     "EngineDescription",
     "EvenSun",
     "Exposure",
@@ -215,6 +217,7 @@ __all__ = [
     "SimpleGlazing",
     "Site",
     "SmoothStepLaw",
+    "Soil",
     "Solid",
     "SunShares",
     "Supercooling",

@@ -76,8 +76,8 @@ def suites(
     for result in results:
         print(f"{result.suite.name}: {result.summary}", file=sys.stderr)
     missing = [result.missing for result in results if result.missing]
-    # By name each is asked for; without a name one at least has to be run.
-    if missing and (names or len(missing) == len(results)):
+    # By name each is asked for; without a name one at least of those that need data has to be run.
+    if missing and (names or len(missing) == sum(bool(result.suite.data) for result in results)):
         raise InputError(missing[0])
     return 1 if any(result.failed for result in results) else 0
 

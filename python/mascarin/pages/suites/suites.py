@@ -11,8 +11,9 @@ from mascarin import __version__
 from mascarin._io import atomic
 from mascarin.figures import text
 from mascarin.pages.frame.template import environment, frame
+from mascarin.verification.suites.peers import in_words, standing
 from mascarin.verification.suites.running import Result
-from mascarin.verification.suites.verdict import Line, Verdict
+from mascarin.verification.suites.verdict import WITHOUT_NUMBER, Line, Verdict
 
 #: Significant digits of the numbers.
 _DIGITS: Final = 4
@@ -55,7 +56,15 @@ def render(results: Sequence[Result], facts: Mapping[str, str]) -> str:
                 *({"id": r.suite.name, "title": r.suite.title, "content": _content(r)} for r in results),
                 {"id": "repeat", "title": "How to reproduce the results", "content": dict(facts)},
             ],
-            summary=[{"name": r.suite.name, "title": r.suite.title, "summary": r.summary} for r in results],
+            summary=[
+                {
+                    "name": result.suite.name,
+                    "title": result.suite.title,
+                    "summary": result.summary,
+                    "peers": in_words(standing(result.lines)),
+                }
+                for result in results
+            ],
             inside=sum(line.verdict == Verdict.INSIDE for line in lines),
             count=sum(line.limits is not None for line in lines),
             misses=sum(line.verdict == Verdict.MISS for line in lines),
@@ -71,7 +80,11 @@ def _content(result: Result) -> dict[str, Any]:
         "Source": suite.source, "Licence": suite.licence, "A number is inside if it is": suite.rule,
         "Result": result.summary,
     }  # fmt: skip
-    causes = {line.case: line.cause for line in result.lines if line.cause}
+    causes = {
+        f"{line.case}, {line.quantity}" if line.quantity else line.case: line.cause
+        for line in result.lines
+        if line.cause
+    }
     programs = list(dict.fromkeys(name for line in result.lines for name in line.peers))
     return {
         "about": suite.about,
@@ -79,7 +92,7 @@ def _content(result: Result) -> dict[str, Any]:
         "settings": suite.settings,
         "causes": causes,
         "programs": programs,
-        "rows": [_row(line, programs) for line in result.lines if line.verdict != Verdict.NOT_EXPRESSIBLE],
+        "rows": [_row(line, programs) for line in result.lines if line.verdict not in WITHOUT_NUMBER],
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from mascarin.progress import ProgressOption, reporting
@@ -91,7 +92,8 @@ def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Resul
     with reporting(progress, "suites") as report:
         for number, suite in enumerate(suites):
             report(number, len(suites))
-            folder = folder_of(suite.data)
+            # Where the numbers are typed, no folder is needed.
+            folder = folder_of(suite.data) if suite.data else Path()
             if folder is None:
                 missing = (
                     f"not run: no folder suites/{suite.data} in {FOLDER}. Set the environment variable "

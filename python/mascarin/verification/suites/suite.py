@@ -29,6 +29,7 @@ _KEYS: Final = {
     "known_misses": False,
     "open": False,
     "not_expressible": False,
+    "not_run": False,
 }
 
 #: Gives the lines of a suite from its data.
@@ -50,7 +51,7 @@ class Suite:
     source, licence : str
         Where its facts come from.
     data : str
-        Folder of its reference numbers below ``MASCARIN_DATA/suites``.
+        Folder of its reference numbers below ``MASCARIN_DATA/suites``; empty where they are typed.
     rule : str
         When a number is inside.
     settings : tuple of str
@@ -61,6 +62,8 @@ class Suite:
         Cases whose specification leaves open what decides them.
     not_expressible : dict of str to str
         Cases that cannot be described, with the reason.
+    not_run : dict of str to str
+        Cases whose data are not at hand, with what they need.
     """
 
     name: str
@@ -75,6 +78,7 @@ class Suite:
     known_misses: dict[tuple[str, str], KnownMiss] = field(default_factory=dict)
     open_cases: dict[str, str] = field(default_factory=dict)
     not_expressible: dict[str, str] = field(default_factory=dict)
+    not_run: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def read(cls, folder: Path) -> Suite:
@@ -106,8 +110,9 @@ class Suite:
             **words,
             settings=tuple(map(str, tree.get("settings", ()))),
             known_misses=misses,
-            open_cases={str(case): str(reason) for case, reason in tree.get("open", {}).items()},
-            not_expressible={str(c): str(reason) for c, reason in tree.get("not_expressible", {}).items()},
+            open_cases=_reasons(tree, "open"),
+            not_expressible=_reasons(tree, "not_expressible"),
+            not_run=_reasons(tree, "not_run"),
         )
 
     @property
@@ -128,13 +133,21 @@ class Suite:
         Yields
         ------
         Line
-            Also of cases that cannot be described.
+            Also of cases that cannot be described, or not be run.
         """
         for line in self.cases(data):
             yield line.judged(self.known_misses, self.open_cases)
         nothing = float("nan")
-        for case, reason in self.not_expressible.items():
-            yield Line(case, "", "", nothing, nothing, verdict=Verdict.NOT_EXPRESSIBLE, cause=reason)
+        for verdict, reasons in (
+            (Verdict.NOT_EXPRESSIBLE, self.not_expressible),
+            (Verdict.NOT_RUN, self.not_run),
+        ):
+            for case, reason in reasons.items():
+                yield Line(case, "", "", nothing, nothing, verdict=verdict, cause=reason)
+
+
+def _reasons(tree: dict[str, Any], key: str) -> dict[str, str]:
+    return {str(case): str(reason).strip() for case, reason in tree.get(key, {}).items()}
 
 
 @cache

@@ -6,9 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from mascarin._io.limits import at_least, at_most
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class Verdict(StrEnum):
@@ -24,10 +29,14 @@ class Verdict(StrEnum):
     """The specification leaves open what decides it."""
     NOT_EXPRESSIBLE = "not expressible"
     """The case cannot be described."""
+    NOT_RUN = "not run"
+    """What the case needs is not among the data."""
     INFORMATION = "information"
     """No tolerance is stated."""
 
 
+#: Verdicts of lines without a number.
+WITHOUT_NUMBER: Final = (Verdict.NOT_EXPRESSIBLE, Verdict.NOT_RUN)
 #: A known miss may grow by this part of half the width of its limits before it counts as a worse one. [-]
 _GROWTH: Final = 0.1
 
@@ -169,6 +178,46 @@ def around(reference: float, tolerance: float) -> tuple[float, float]:
     (98.0, 102.0)
     """
     return reference - tolerance, reference + tolerance
+
+
+def largest(
+    case: str,
+    quantity: str,
+    unit: str,
+    series: tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike],
+    tolerance: float,
+) -> Line:
+    """A line of the place at which a series deviates most from its reference.
+
+    Parameters
+    ----------
+    case, quantity, unit : str
+        As of a line.
+    series : tuple of array_like, each of shape (n,)
+        Times [h], values and references.
+    tolerance : float
+        Largest deviation. [unit]
+
+    Examples
+    --------
+    >>> line = largest("1", "load", "W", ([1, 2], [5.0, 8.0], [5.0, 7.0]), 2.0)
+    >>> line.value, line.reference, line.note
+    (8.0, 7.0, 'at 2 h, root mean square 0.707 W')
+    """
+    times, values, references = (np.asarray(numbers, dtype=np.float64) for numbers in series)
+    errors = values - references
+    worst = int(np.abs(errors).argmax())
+    reference = float(references[worst])
+    spread = float(np.sqrt((errors**2).mean()))
+    return Line(
+        case,
+        quantity,
+        unit,
+        float(values[worst]),
+        reference,
+        around(reference, tolerance),
+        note=f"at {times[worst]:.4g} h, root mean square {spread:.3g} {unit}",
+    )
 
 
 def _finite(value: float) -> float | None:

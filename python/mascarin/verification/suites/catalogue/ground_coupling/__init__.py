@@ -1,0 +1,1 @@
+"""Slabs on the ground of the IEA, by ISO 13370."""
