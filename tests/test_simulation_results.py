@@ -236,7 +236,7 @@ def test_a_figure_is_known_to_pyplot(run: Results) -> None:
     from matplotlib import pyplot
 
     figure = run.plot(["deep.temperature"])
-    assert figure.number in pyplot.get_fignums()  # type: ignore[attr-defined]
+    assert figure.number in pyplot.get_fignums()
     pyplot.close(figure)
 
 

@@ -159,9 +159,9 @@ def logger(path: Path) -> None:
         step="15min",
     )
     table = run.to_dataframe()["wall.inside_temperature"]
-    frame["T_face"] = np.interp(index.asi8, table.index.asi8, table) + 0.02 * np.random.default_rng(
-        3
-    ).standard_normal(index.size)
+    frame["T_face"] = np.interp(
+        index.asi8, pd.DatetimeIndex(table.index).asi8, table
+    ) + 0.02 * np.random.default_rng(3).standard_normal(index.size)
     frame.index = index.tz_localize(None)
     frame.rename_axis("time").round(4).to_csv(path)
 
@@ -198,7 +198,7 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
         },
         index=table.index,
     )
-    frame.index = frame.index.tz_localize(None)
+    frame.index = pd.DatetimeIndex(frame.index).tz_localize(None)
     frame.rename_axis("time").to_csv("logger.csv")
     words = (
         "new cell 3x3x2.5 --ceiling 'plasterboard + mineral wool' --place tampa --data logger.csv "

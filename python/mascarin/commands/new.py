@@ -126,7 +126,7 @@ def _room(kind: str, size: str, stated: Mapping[str, object]) -> tuple[dict[str,
         recipes=tuple(_texts(stated, "recipe")),
         rooms=int(str(stated.get("rooms", 2))) if kind == "house" else 1,
         command=" ".join(["mascarin new", kind, size, *_words(stated)]),
-        **{name: str(value) for name, value in fields.items()},  # type: ignore[arg-type]
+        **{name: str(value) for name, value in fields.items()},
     )
     files = {"building.yaml": room.yaml()}
     room.building()

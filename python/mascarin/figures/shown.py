@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from matplotlib.figure import Figure
 
 
@@ -20,11 +18,11 @@ class ShownFigure(Figure):
 
         pyplot.close(self)
         # Without this method IPython draws it as any other figure.
-        self._ipython_display_: Any = None  # type: ignore[method-assign]
+        vars(self)["_ipython_display_"] = None
         try:
             display(self)  # type: ignore[no-untyped-call]
         finally:
-            del self._ipython_display_
+            del vars(self)["_ipython_display_"]
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -60,6 +60,10 @@ def coordinates_of(name: str) -> tuple[float, float, float, str]:
     """
     climate = Climate.from_epw(_weather(name)[0])
     where = climate.site
+    if where is None:
+        raise InputError(
+            f"--place: found {name} without a site; expected a weather file that states its place"
+        )
     return where.latitude, where.longitude, where.altitude, str(climate.timezone)
 
 

@@ -115,8 +115,8 @@ def _constructions(room: Room) -> Iterator[str]:
             thickness: Any = layer.thickness
             if layer.assumed:
                 thickness = {"value": layer.thickness, "source": "typical", "assumed": True}
-            name = {"name": f"{layer.name}_{counts[layer.name]}"} if counts[layer.name] > 1 else {}
-            yield f"      - {flow({**name, 'material': layer.name, 'thickness': thickness})}"
+            own_name = {"name": f"{layer.name}_{counts[layer.name]}"} if counts[layer.name] > 1 else {}
+            yield f"      - {flow({**own_name, 'material': layer.name, 'thickness': thickness})}"
 
 
 def _parts(room: Room) -> Iterator[tuple[str, str, float, float]]:

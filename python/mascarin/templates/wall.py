@@ -127,8 +127,8 @@ class Wall:
         counts: dict[str, int] = {}
         for layer in reversed(self._parts):
             counts[layer.name] = counts.get(layer.name, 0) + 1
-            name = {"name": f"{layer.name}_{counts[layer.name]}"} if counts[layer.name] > 1 else {}
-            yield f"      - {flow({**name, 'material': layer.name, 'thickness': layer.thickness})}"
+            own_name = {"name": f"{layer.name}_{counts[layer.name]}"} if counts[layer.name] > 1 else {}
+            yield f"      - {flow({**own_name, 'material': layer.name, 'thickness': layer.thickness})}"
         yield "surfaces:"
         yield "  wall:"
         yield "    construction: wall"

@@ -210,7 +210,7 @@ def chosen(building: Description, names: Iterable[str]) -> list[Output]:
     every = outputs(building)
     asked: dict[str, Output] = {}
     for name in names:
-        if isinstance(name, str) and any(sign in name for sign in "*?["):
+        if any(sign in str(name) for sign in "*?["):
             fitting = [output for output in every if fnmatchcase(output.name, name)]
             if not fitting:
                 of_all = [output.name for output in every]

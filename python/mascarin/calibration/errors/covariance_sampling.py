@@ -249,7 +249,7 @@ class _Chain:
         precision -= tall.T @ lifted
         right -= lifted.T @ with_values.ravel()
         lower = _cholesky(0.5 * (precision + precision.T))
-        root = np.linalg.inv(lower).T
+        root = np.asarray(np.linalg.inv(lower).T, dtype=np.float64)
         middle = root @ (root.T @ right)
         spread = root_of(np.asarray(day_covariance, dtype=np.float64))
 

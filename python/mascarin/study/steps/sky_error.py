@@ -78,4 +78,4 @@ def sky_effect(
     value = simulation.value_in(base, path)
     moved = simulation.varied([path], np.array([[value + _STEP * size]]), base)[0]
     series = kept_series(study, simulation, np.array([base, moved]))
-    return np.nan_to_num((series[1] - series[0]) / _STEP)
+    return np.asarray(np.nan_to_num((series[1] - series[0]) / _STEP))
