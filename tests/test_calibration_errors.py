@@ -24,8 +24,8 @@ from mascarin.calibration.errors.joint_posterior import (
     JointPosterior,
     Linear,
     joint_posterior,
-    nearness,
 )
+from mascarin.calibration.errors.nearness import nearness
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
 from mascarin.calibration.sampling.truncated_normal import within_bounds

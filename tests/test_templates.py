@@ -16,7 +16,7 @@ from mascarin import cli
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.materials.library import products
-from mascarin.templates import Room
+from mascarin.templates import Room, building_of
 from mascarin.templates.short_texts import common_materials, layers_of
 
 ISSUE = (
@@ -84,7 +84,7 @@ def test_drawn_rooms_run_with_closed_balances() -> None:
             rooms=rng.choice([1, 1, 2]),
             recipes=tuple(recipes),
         )
-        building = room.building()
+        building = building_of(room)
         climate = mc.Climate.shipped(room.place)
         year = climate.index[0].year
         run = mc.simulate(building, climate, start=f"{year}-03-01", end=f"{year}-03-03")
@@ -94,7 +94,7 @@ def test_drawn_rooms_run_with_closed_balances() -> None:
 
 
 def test_rooms_of_a_house_share_walls() -> None:
-    house = Room("9x4x2.6", rooms=3, place="tampa").building()
+    house = building_of(Room("9x4x2.6", rooms=3, place="tampa"))
     assert [*house.zones] == ["room_1", "room_2", "room_3"]
     between = house.surfaces["room_1_room_2"]
     assert (between.outside.zone, between.inside.zone) == ("room_1", "room_2")
@@ -291,7 +291,7 @@ def test_every_common_material_is_one_of_its_kind() -> None:
 
 def test_a_date_without_a_year_is_the_first_one_of_the_climate() -> None:
     climate = mc.Climate.shipped("tampa")
-    building = Room("4x3x2.8", place="tampa").building()
+    building = building_of(Room("4x3x2.8", place="tampa"))
     short = mc.simulate(building, climate, start="07-01", end="07-02 12:00")
     long = mc.simulate(building, climate, start="2001-07-01", end="2001-07-02 12:00")
     assert short.index.equals(long.index)

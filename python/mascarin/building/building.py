@@ -17,13 +17,13 @@ from mascarin.building.base.error_texts import explained
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.names import known_names
 from mascarin.building.base.number import Interval, Number, is_number
-from mascarin.building.base.part import Part, fault, insist, plain_value
+from mascarin.building.base.part import Part, insist, plain_value
 from mascarin.building.base.replacement import piece_at, put, replaced_at, without_parts
 from mascarin.building.checks import summary
 from mascarin.building.checks.consistency import faults, faults_of_values
 from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription, describe
-from mascarin.building.files.defaults import with_defaults
+from mascarin.building.files.defaults import require_building, with_defaults
 from mascarin.building.files.yaml_document import read
 from mascarin.building.files.yaml_text import text_of
 from mascarin.building.outputs import output as results
@@ -89,10 +89,9 @@ class Building(Description):
         """Let parts refer to each other by name, then check how they fit together."""
         if isinstance(data, Building):
             return handler(data)
-        _require_building(data)
-        data = with_defaults(without_parts(data))
-        with known_names(data):
-            building = handler(data)
+        description = with_defaults(without_parts(require_building(data)))
+        with known_names(description):
+            building = handler(description)
         insist(*faults(building))
         for section, derive in DERIVED.items():
             building._fill(**{section: derive(building)})
@@ -100,7 +99,6 @@ class Building(Description):
         return building
 
     # --- from and to files and mappings ---------------------------------------------------------------------
-
     @classmethod
     def from_yaml(cls, path: str | Path) -> Self:
         """Read a building from a YAML file.
@@ -500,15 +498,3 @@ class Building(Description):
     def _repr_html_(self) -> str:
         rows = summary.rows(self, self.parameters())
         return display.page(f"Building '{self.name}'", rows, tables=summary.tables(self, self.parameters()))
-
-
-def _require_building(data: Any) -> None:
-    """Refuse the file of a study or of a design study, which names a building."""
-    if not isinstance(data, Mapping) or "building" not in data or "surfaces" in data:
-        return
-    design = "objectives" in data or "variables" in data
-    what, command = ("a design study", "design") if design else ("a study", "study")
-    remedy = (
-        f"Run it with 'mascarin {command} FILE -o FOLDER', or take the file that its key 'building' names."
-    )
-    insist(fault((), what, "a building: site, materials, constructions, zones, surfaces", remedy))

@@ -40,7 +40,7 @@ def new(
     window: Words = None,
     recipe: Words = None,
     rooms: int | None = None,
-    place: str | None = None,
+    location: Annotated[str | None, Parameter(name="--place")] = None,
     data: Path | None = None,
     timezone: str | None = None,
     inside: str | None = None,
@@ -80,7 +80,7 @@ def new(
         cool-roof, radiant-foil, night-ventilation; may be repeated.
     rooms : int
         Number of rooms of a house, 2 by default; they divide the length.
-    place : str
+    location : str
         A climate that 'mascarin weather' lists, saint-denis by default, or an EPW file.
     data : Path
         Logger file of a cell or wall; it is copied into the folder.
@@ -96,7 +96,7 @@ def new(
     """
     options = {
         "roof": roof, "ceiling": ceiling, "walls": walls, "floor": floor, "gap": gap, "window": window,
-        "recipe": recipe, "rooms": rooms, "place": place, "data": data, "timezone": timezone,
+        "recipe": recipe, "rooms": rooms, "place": location, "data": data, "timezone": timezone,
         "inside": inside, "outside": outside, "irradiance": irradiance, "column": column, "sensor": sensor,
     }  # fmt: skip
     stated = {name: value for name, value in options.items() if value is not None}
@@ -112,8 +112,10 @@ def new(
 
 def _room(kind: str, size: str, stated: Mapping[str, object]) -> tuple[dict[str, str], str]:
     """Files of a room, a house or a cell, and its weather."""
+    from mascarin.templates.new_buildings import building_of
     from mascarin.templates.place import place_of
     from mascarin.templates.room import Room
+    from mascarin.templates.room_text import text_of
 
     fields = {
         name: value
@@ -128,8 +130,8 @@ def _room(kind: str, size: str, stated: Mapping[str, object]) -> tuple[dict[str,
         command=" ".join(["mascarin new", kind, size, *_words(stated)]),
         **{name: str(value) for name, value in fields.items()},
     )
-    files = {"building.yaml": room.yaml()}
-    room.building()
+    building_of(room)
+    files = {"building.yaml": text_of(room)}
     if kind == "cell":
         from mascarin.templates.cell import cell_study
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError
+from mascarin.templates.new_buildings import building_of
 
 if TYPE_CHECKING:
     from mascarin.templates.room import Room
@@ -52,7 +53,7 @@ def cell_study(room: Room, record: Record, weather: Mapping[str, str], sensors: 
     for option, columns in (("--column", weather.values()), ("--sensor", sensors)):
         for column in columns:
             record.require(column, option)
-    building = room.building()
+    building = building_of(room)
     for output in sensors.values():
         building.output(output)
     return (

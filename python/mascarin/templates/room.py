@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.templates.geometry import MARGIN, WALLS
 from mascarin.templates.short_texts import LayerText, WindowText, layers_of, size_of, window_of
-
-if TYPE_CHECKING:
-    from mascarin.building import Building
 
 GAPS: Final = ("none", "closed", "ventilated")
 """Air between roof and ceiling."""
@@ -51,8 +48,8 @@ class Room:
     Examples
     --------
     >>> room = Room("4x3x2.8", gap="ventilated", ceiling="plasterboard 12.5mm + RT25HC 15mm")
-    >>> room.building().zones["room"].volume
-    33.6 m3
+    >>> [*room.layers]
+    ['roof', 'wall', 'floor', 'ceiling']
     """
 
     size: str
@@ -132,75 +129,6 @@ class Room:
     def names(self) -> list[str]:
         """Names of the rooms, from west to east."""
         return ["room"] if self.rooms == 1 else [f"room_{k + 1}" for k in range(self.rooms)]
-
-    def yaml(self) -> str:
-        """The description, as text with comments."""
-        from mascarin.templates.room_text import lines_of
-
-        return "\n".join(lines_of(self)) + "\n"
-
-    def building(self) -> Building:
-        """The building that the description is read as."""
-        from mascarin.building.reading import parse
-
-        return parse(self.yaml(), "room.yaml")
-
-
-def new_room(
-    size: str,
-    *,
-    roof: str = Room.roof,
-    ceiling: str = Room.ceiling,
-    walls: str = Room.walls,
-    floor: str = Room.floor,
-    gap: str = Room.gap,
-    windows: Sequence[str] = (),
-    place: str = Room.place,
-    rooms: int = 1,
-    recipes: Sequence[str] = (),
-) -> Building:
-    """Describe a room, or a row of equal rooms, in a few words.
-
-    Parameters
-    ----------
-    size : str
-        Length (east to west), width (north to south) and height in m, such as ``4x3x2.8``.
-    roof, ceiling, walls, floor : str
-        Layers from inside to outside, such as ``plasterboard 12.5mm + SP24E 15mm``: common materials, and
-        the products of `mascarin.materials`. A common material has a typical thickness.
-    gap : str
-        Air between roof and ceiling: ``none``, ``closed`` or ``ventilated``.
-    windows : sequence of str
-        Such as ``south:1.2x1.0``; of every room.
-    place : str
-        A shipped climate such as ``saint-denis``, or a weather file: its site is that of the room.
-    rooms : int
-        How many; the length is divided among them.
-    recipes : sequence of str
-        ``cool-roof``, ``radiant-foil``, ``night-ventilation``.
-
-    Returns
-    -------
-    Building
-        All numbers that were not stated are marked as assumed, with a range.
-
-    Raises
-    ------
-    InputError
-        A word that is not known; the text lists what is.
-
-    Examples
-    --------
-    >>> import mascarin as mc
-    >>> room = mc.new_room("4x3x2.8", gap="ventilated", ceiling="plasterboard 12.5mm + SP24E 15mm")
-    >>> run = mc.simulate(room, mc.Climate.shipped("saint-denis"), start="2023-02-01", end="2023-02-03")
-    >>> bool(run.energy.closes)
-    True
-    """
-    return Room(
-        size, roof=roof, ceiling=ceiling, walls=walls, floor=floor, gap=gap, windows=tuple(windows),
-        place=place, rooms=rooms, recipes=tuple(recipes),
-    ).building()  # fmt: skip
 
 
 def _require(option: str, value: str, allowed: Sequence[str]) -> None:

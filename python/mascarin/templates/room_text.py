@@ -62,7 +62,18 @@ _FOIL: Final = "{value: 0.05, range: [0.03, 0.15], source: bright foil}"
 _METAL: Final = "{value: 0.25, range: [0.2, 0.9], source: galvanised sheet, assumed: true}"
 
 
-def lines_of(room: Room) -> Iterator[str]:
+def text_of(room: Room) -> str:
+    """Description of a room as YAML.
+
+    Parameters
+    ----------
+    room : Room
+        The room.
+    """
+    return "\n".join(_lines(room)) + "\n"
+
+
+def _lines(room: Room) -> Iterator[str]:
     """Lines of the description of a room.
 
     Parameters

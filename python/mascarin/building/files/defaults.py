@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from mascarin.building.base.error_texts import KeyPath
+from mascarin.building.base.part import fault, insist
 from mascarin.errors import InputError, did_you_mean
 
 DEFAULTS: Final = "defaults"
@@ -30,7 +31,31 @@ Put = Callable[[KeyPath, KeyPath], None]
 """Told the place of what was put in, and of the default that it is."""
 
 
-def with_defaults(plain: Mapping[str, Any], put: Put = lambda place, source: None) -> dict[str, Any]:
+def require_building(data: Any) -> Any:
+    """Refuse the content of a study or of a design study, which names a building.
+
+    Parameters
+    ----------
+    data : object
+        Content of a file.
+
+    Returns
+    -------
+    object
+        The same.
+    """
+    if not isinstance(data, Mapping) or "building" not in data or "surfaces" in data:
+        return data
+    design = "objectives" in data or "variables" in data
+    what, command = ("a design study", "design") if design else ("a study", "study")
+    remedy = (
+        f"Run it with 'mascarin {command} FILE -o FOLDER', or take the file that its key 'building' names."
+    )
+    insist(fault((), what, "a building: site, materials, constructions, zones, surfaces", remedy))
+    return data
+
+
+def with_defaults(plain: Mapping[str, Any], put: Put = lambda position, source: None) -> dict[str, Any]:
     """Put the section `defaults` into the parts of a description.
 
     Parameters
@@ -79,17 +104,17 @@ def with_defaults(plain: Mapping[str, Any], put: Put = lambda place, source: Non
 
 
 def _checked(shared: Any) -> dict[str, Mapping[str, Any]]:
-    known = (*SIDES, *SECTIONS)
+    sections = (*SIDES, *SECTIONS)
     if not isinstance(shared, Mapping):
         raise InputError(
-            f"{DEFAULTS}: found {shared!r}; expected a mapping with some of {', '.join(known)}. Write "
+            f"{DEFAULTS}: found {shared!r}; expected a mapping with some of {', '.join(sections)}. Write "
             f"'{DEFAULTS}: {{indoors: {{convection: tarp, emissivity: 0.9}}}}'"
         )
     for key, value in shared.items():
-        if key not in known:
+        if key not in sections:
             raise InputError(
-                f"{DEFAULTS}: found the key '{key}'; expected one of {', '.join(known)}. "
-                f"{did_you_mean(str(key), known)}".rstrip()
+                f"{DEFAULTS}: found the key '{key}'; expected one of {', '.join(sections)}. "
+                f"{did_you_mean(str(key), sections)}".rstrip()
             )
         if not isinstance(value, Mapping):
             raise InputError(
@@ -98,7 +123,7 @@ def _checked(shared: Any) -> dict[str, Mapping[str, Any]]:
     return dict(shared)
 
 
-def _filled(part: Any, shared: Mapping[str, Any], place: KeyPath, source: KeyPath, put: Put) -> Any:
+def _filled(part: Any, shared: Mapping[str, Any], position: KeyPath, source: KeyPath, put: Put) -> Any:
     """A part with the keys that it does not have."""
     if not isinstance(part, Mapping) or (
         source[-1] == "materials" and any(key in part for key in _OF_ANOTHER if key not in shared)
@@ -106,12 +131,12 @@ def _filled(part: Any, shared: Mapping[str, Any], place: KeyPath, source: KeyPat
         return part
     missing = {key: value for key, value in shared.items() if key not in part}
     for key in missing:
-        put((*place, key), (*source, key))
+        put((*position, key), (*source, key))
     return {**part, **missing}
 
 
 def _with_sides(
-    surface: Any, shared: Mapping[str, Mapping[str, Any]], zone: Any, place: KeyPath, put: Put
+    surface: Any, shared: Mapping[str, Mapping[str, Any]], zone: Any, position: KeyPath, put: Put
 ) -> Any:
     """A surface whose sides have the keys of their kind."""
     if not isinstance(surface, Mapping):
@@ -126,8 +151,8 @@ def _with_sides(
         if not isinstance(stated, Mapping):
             continue
         if side not in surface:
-            put((*place, side), place)
+            put((*position, side), position)
         for kind, key in (("outdoors", "outdoors"), ("indoors", "zone")):
             if key in stated and kind in shared:
-                sides[side] = _filled(stated, shared[kind], (*place, side), (DEFAULTS, kind), put)
+                sides[side] = _filled(stated, shared[kind], (*position, side), (DEFAULTS, kind), put)
     return sides

@@ -117,10 +117,10 @@ def _with_defaults(document: Inherited) -> Inherited:
         return document
     where = dict(document.lines)
 
-    def put(place: KeyPath, source: KeyPath) -> None:
-        for known, line in document.lines.items():
-            if known[: len(source)] == source:
-                where[*place, *known[len(source) :]] = line
+    def put(position: KeyPath, source: KeyPath) -> None:
+        for path, line in document.lines.items():
+            if path[: len(source)] == source:
+                where[*position, *path[len(source) :]] = line
 
     try:
         described = with_defaults(document.plain, put)

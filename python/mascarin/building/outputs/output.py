@@ -207,17 +207,17 @@ def chosen(building: Description, names: Iterable[str]) -> list[Output]:
     >>> [output.name for output in chosen(box(), ["room.air_t*", "facade.inside_temperature"])]
     ['room.air_temperature', 'facade.inside_temperature']
     """
-    every = outputs(building)
+    all_outputs = outputs(building)
     asked: dict[str, Output] = {}
     for name in names:
         if any(sign in str(name) for sign in "*?["):
-            fitting = [output for output in every if fnmatchcase(output.name, name)]
+            fitting = [output for output in all_outputs if fnmatchcase(output.name, name)]
             if not fitting:
-                of_all = [output.name for output in every]
+                names_of_all = [output.name for output in all_outputs]
                 raise InputError(
                     f"{name}: found no output that fits; expected a pattern that fits one of the "
-                    f"{len(every)} of this building, which 'mascarin outputs' lists. "
-                    f"{did_you_mean(name, of_all)}".rstrip()
+                    f"{len(all_outputs)} of this building, which 'mascarin outputs' lists. "
+                    f"{did_you_mean(name, names_of_all)}".rstrip()
                 )
             asked |= {output.name: output for output in fitting}
         else:

@@ -189,8 +189,8 @@ class JointPosterior:
         confidence : float
             Of the bands. [-]
         nearness : float or ndarray, shape (n,)
-            Correlation of the errors of each instant with those of the identification, from `nearness`; 0 for
-            days of another season. [-]
+            Correlation of the errors of each instant with those of the identification, see
+            `mascarin.calibration.errors.nearness`; 0 for days of another season. [-]
 
         Returns
         -------
@@ -202,8 +202,8 @@ class JointPosterior:
         assumed = float(stats.norm.ppf(0.5 + 0.5 * confidence))
         ratio_of_days = np.nanquantile(ratio.reshape(-1, ratio.shape[2]), confidence, axis=0) / assumed
         factor = np.clip(ratio_of_days, *_CROSS_VALIDATED)
-        near = np.asarray(nearness)[..., None]
-        return np.asarray(np.maximum(factor, 1.0) - near * np.maximum(1.0 - factor, 0.0))
+        weight = np.asarray(nearness)[..., None]
+        return np.asarray(np.maximum(factor, 1.0) - weight * np.maximum(1.0 - factor, 0.0))
 
     def widened(self, confidence: float = 0.95) -> Floats:
         """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
@@ -263,40 +263,6 @@ class JointPosterior:
         repeating = hour_basis(hours)[:, None, :, None] * np.eye(sensors)[None, :, None, :]
         shape = (*jacobian.shape[:2], -1)
         return np.concatenate([jacobian, effects_of_errors, repeating.reshape(shape)], axis=2)
-
-
-def nearness(hours: Floats, identification: Flags, persistence: float) -> Floats:
-    """Correlation of the errors of days with those of the nearest day of the identification.
-
-    Parameters
-    ----------
-    hours : ndarray, shape (n,)
-        Local time of all instants, from any midnight. [h]
-    identification : ndarray of bool, shape (n,)
-        Which of them belong to the identification.
-    persistence : float
-        Correlation time of the errors of days. [d]
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [-]
-
-    Examples
-    --------
-    >>> nearness(np.array([0.0, 24.0, 144.0]), np.array([True, False, False]), 5.0).round(2).tolist()
-    [1.0, 0.82, 0.3]
-    """
-    days = np.floor(np.asarray(hours) / 24.0 + 1e-9)
-    of_identification = np.unique(days[identification])
-    if not of_identification.size or persistence <= 0.0:
-        return np.where(identification, 1.0, 0.0)
-    after = np.clip(np.searchsorted(of_identification, days), 1, of_identification.size) - 1
-    before_and_after = np.stack(
-        [of_identification[after], of_identification[np.minimum(after + 1, of_identification.size - 1)]]
-    )
-    lag = np.min(np.abs(days - before_and_after), axis=0)
-    return np.asarray(np.exp(-lag / persistence))
 
 
 def joint_posterior(

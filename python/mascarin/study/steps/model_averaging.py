@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.calibration.errors.joint_posterior import nearness
+from mascarin.calibration.errors.nearness import nearness
 from mascarin.calibration.errors.pseudo_bma_weights import weighted_quantiles
 from mascarin.study.context.forms import comparable
 from mascarin.study.steps.error_model import (
