@@ -10,7 +10,8 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
-from mascarin.tables.reading.iso_stamps import iso_stamps
+from mascarin.tables.stamps.iso_stamps import iso_stamps
+from mascarin.tables.stamps.months import with_numbers_of_months
 from mascarin.tables.timezones import YEARS, localize, zone_name
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _BLANKS: Final = "  |\t|\u00a0"
 _DATE: Final = (
     r"^(?P<a>\d{1,4})(?P<mark>[./-])(?P<b>\d{1,2})[./-](?P<c>\d{1,4})"
     r"(?:[ T,]+(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}(?:[.,]\d+)?))?"
-    r"\s*(?P<half>[AaPp])?\.?(?:[Mm]\.?)?)?$"
+    r"\s*(?P<half>[AaPp])?\.?\s?(?:[Mm]\.?)?)?$"
 )
 _FORMATS: Final = {
     "ymd": "%Y-%m-%d", "dmy": "%d/%m/%Y", "mdy": "%m/%d/%Y",
@@ -40,6 +41,10 @@ _REGULAR: Final = 0.8
 _DAY: Final = 86400.0
 #: Days from 1899-12-30, from which spreadsheets count, to 1970-01-01.
 _SPREADSHEET: Final = 25569.0
+_SPREADSHEET_SAID: Final = (
+    "stamps such as {:g} are days of a spreadsheet since 1899-12-30; those of a workbook with dates since "
+    "1904 are 1462 days later: see the year."
+)
 _ISO: Final = "ISO 8601 such as 2024-09-04 00:15"
 
 
@@ -93,7 +98,7 @@ def stamps_from(
         return _of_numbers(text, zone, clock, lines, where)
     if time_format is None and (plain := _plain_iso(text)) is not None:
         return _local(plain, clock, zone, lines, where)
-    written = text.astype(str).str.strip()
+    written = with_numbers_of_months(text.astype(str).str.strip())
     if written.str.contains(_BLANKS).any():
         written = written.str.replace(r"\s+", " ", regex=True)
     offset = bool(written.str.contains(_HAS_OFFSET).any())
@@ -106,12 +111,7 @@ def stamps_from(
         if other is not None:
             parsed, notes, bad = pd.Series(other[0]), other[1], np.zeros(0, np.int64)
     if len(bad):
-        row = int(bad[0])
-        expected = f"the format {time_format!r}" if time_format else _ISO
-        raise InputError(
-            f"{where}:{lines[row]}: time {str(text.iloc[row])!r} cannot be read, expected {expected}; "
-            "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
-        )
+        raise InputError(_unreadable(written, bad, time_format, lines, where))
     index = pd.DatetimeIndex(parsed) + pd.to_timedelta(late.astype(np.int64), unit="D")
     if time_format is not None and not offset:
         _require_likely_order(index, time_format, lines, where)
@@ -119,6 +119,22 @@ def stamps_from(
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
     found = _local(index, clock, zone, lines, where)
     return Stamped(found.times, (*notes, *found.notes))
+
+
+def _unreadable(
+    written: pd.Series[str], bad: Lines, time_format: str | None, lines: Lines, where: str
+) -> str:
+    """Text of the refusal of stamps: among many dates in one form, the row that is none is the cause."""
+    row = int(bad[0])
+    others = np.flatnonzero(written.str.extract(_DATE)["a"].isna().to_numpy())
+    if 0 < len(others) < 0.1 * len(written) and time_format is None:
+        row = int(others[0])
+    expected = f"the format {time_format!r}" if time_format else _ISO
+    entry = str(written.iloc[row])
+    remedy = "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
+    if row and not any(sign.isdigit() for sign in entry):
+        remedy = "remove this row; where a second table begins with it, write that one as a file of its own."
+    return f"{where}:{lines[row]}: time {entry!r} cannot be read, expected {expected}; {remedy}"
 
 
 #: ISO 8601 without an offset.
@@ -221,7 +237,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
         # A day with eight decimals is read to the millisecond; clocks of loggers have whole seconds.
         seconds = np.round((values - _SPREADSHEET) * _DAY).astype(np.int64)
         found = _local(pd.DatetimeIndex(seconds.astype("datetime64[s]")), clock, zone, lines, where)
-        return Stamped(found.times, (f"stamps such as {values[0]:g} are days of a spreadsheet.",))
+        return Stamped(found.times, (_SPREADSHEET_SAID.format(values[0]),))
     raise InputError(
         f"{where}:{lines[0]}: time {text.iloc[0]} cannot be read, expected {_ISO}, seconds or milliseconds "
         "since 1970, days of a spreadsheet, or digits such as 202409040015; state the column of the times "

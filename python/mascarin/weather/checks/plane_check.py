@@ -1,0 +1,168 @@
+"""Check the clock of a record by the measured irradiance of a tilted plane beside the global one."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from mascarin._io.sealed.cache import Cached, cached
+from mascarin.errors import InputError
+from mascarin.tables.arrays import Array
+from mascarin.tables.timezones import zone_name
+from mascarin.weather.checks import clock_shift, plane_shift
+from mascarin.weather.checks.clock_shift import shifts_of
+from mascarin.weather.checks.plane_shift import MeasuredPlane, PlaneShift, shift_by_plane
+from mascarin.weather.records.channels import RADIATION
+from mascarin.weather.records.record import WeatherRecord
+
+_LARGEST: Final = 600.0
+"""A shift by more than this and three times its uncertainty is refused. [s]"""
+_NAMED: Final = 180.0
+"""One by more than this and three times its uncertainty is named. [s]"""
+_FARTHEST: Final = 6000.0
+"""Larger shifts put radiation into the night, which is refused for itself; a plane only names them. [s]"""
+_FOLLOWED: Final = 0.6
+"""Part of the clear hours that the plane must follow with the shift, for a refusal. [-]"""
+_MORE: Final = 0.2
+"""How many more of the clear hours it must follow than with the stated clock: where most hours follow that one
+and some do not at all, there is an obstacle. [-]"""
+_TILTS: Final = (45.0, 135.0)
+"""Planes closer to the horizontal change too little with the time of day to tell it from a shadow. [deg]"""
+_FEWEST_DAYS: Final = 3
+"""Clear days from which a refusal may follow."""
+
+
+def plane_warnings(
+    record: WeatherRecord, planes: Sequence[MeasuredPlane], latitude: float, longitude: float
+) -> tuple[str, ...]:
+    """Compare the irradiance of tilted planes with that of the horizontal and with the sun.
+
+    Refused is a shift of more than ten minutes and of more than three times its uncertainty, on three clear
+    days or more, with which the plane follows many more hours than with the stated clock, and which neither
+    other instruments nor clear hours contradict.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        As read.
+    planes : sequence of MeasuredPlane
+        Of the same table.
+    latitude, longitude : float
+        Positive north and east. [deg]
+
+    Returns
+    -------
+    tuple of str
+        Warnings: smaller shifts, and such that are not certain.
+
+    Raises
+    ------
+    InputError
+        The plane, the global irradiance and the sun do not agree.
+    """
+    planes = [plane for plane in planes if _TILTS[0] <= plane.tilt <= _TILTS[1]]
+    if not planes or not record.measured("global_horizontal") or not record.check_sun:
+        return ()
+    grid = record.grid
+    columns = [record.columns[name] for name in RADIATION if name in record.columns] + [
+        plane.values for plane in planes
+    ]
+    digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
+    key = (
+        "planes",
+        digest,
+        sorted(record.columns),
+        record.kinds["global_horizontal"],
+        [(plane.name, plane.azimuth, plane.tilt, plane.albedo) for plane in planes],
+        record.file,
+        grid.start,
+        grid.interval,
+        zone_name(grid.zone),
+        latitude,
+        longitude,
+    )
+
+    def passed() -> Cached:
+        return Cached({"said": _said(record, planes, latitude, longitude)})
+
+    modules = [sys.modules[__name__], plane_shift, clock_shift]
+    return tuple(cached(key, modules, passed).notes["said"])
+
+
+def on_grid(values: Array, kind: str, of_global: str) -> Array:
+    """Values of a plane as those of the global irradiance are: means of intervals, or those at the stamp.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows,)
+        Irradiance of the plane. [W/m2]
+    kind, of_global : str
+        `mean` or `instant`: of the plane, and of the global irradiance.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        The last or the first row stays where the one beside it is not known. [W/m2]
+    """
+    if kind == of_global:
+        return values
+    if of_global == "mean":
+        return np.asarray(0.5 * (values + np.append(values[1:], values[-1:])))
+    return np.asarray(0.5 * (values + np.append(values[:1], values[:-1])))
+
+
+def _said(
+    record: WeatherRecord, planes: Sequence[MeasuredPlane], latitude: float, longitude: float
+) -> list[str]:
+    shown = [(plane, shift_by_plane(record, plane, latitude, longitude)) for plane in planes]
+    sure = [(plane, shift) for plane, shift in shown if shift is not None]
+    if not sure:
+        return []
+    plane, shift = min(sure, key=lambda pair: pair[1].uncertainty)
+    beyond = abs(shift.late) > 3.0 * shift.uncertainty
+    if not beyond or abs(shift.late) < _NAMED:
+        return []
+    text = _sentence(plane, shift)
+    if not _is_certain(shift) or _contradicted(record, shift, latitude, longitude):
+        return [f"{record.file}: warning: {text}; the clock is used as stated."]
+    minutes = -round(shift.late / 60.0)
+    raise InputError(
+        f"{record.file}: {text}; expected less than {_LARGEST / 60.0:g} min. Check the time zone (now "
+        f"{zone_name(record.grid.zone)}), whether stamps mark the start or the end of their interval, and "
+        f"azimuth and tilt of the plane (now {plane.azimuth:g} and {plane.tilt:g} deg). If the clock was "
+        f"wrong, state shift: {minutes}min (on the command line --shift={minutes}min, in Python "
+        f"shift='{minutes}min'). If all of these are right, read the record as it is with check_sun: false "
+        "(on the command line --no-check-sun, in Python check_sun=False)."
+    )
+
+
+def _is_certain(shift: PlaneShift) -> bool:
+    """Whether a shift is that of a clock: no obstacle and no cloud explains it."""
+    return bool(
+        _LARGEST < abs(shift.late) < _FARTHEST
+        and shift.days >= _FEWEST_DAYS
+        and shift.followed >= _FOLLOWED
+        and shift.followed - shift.stated >= _MORE
+    )
+
+
+def _contradicted(record: WeatherRecord, shift: PlaneShift, latitude: float, longitude: float) -> bool:
+    """Whether other instruments or the form of clear hours show another shift."""
+    return any(
+        not other.split
+        and abs(other.late - shift.late) > 3.0 * float(np.hypot(other.uncertainty, shift.uncertainty))
+        for other in shifts_of(record, latitude, longitude)
+    )
+
+
+def _sentence(plane: MeasuredPlane, shift: PlaneShift) -> str:
+    side = "later" if shift.late > 0.0 else "earlier"
+    return (
+        f"the radiation is {abs(shift.late) / 60.0:.0f} min (standard uncertainty "
+        f"{shift.uncertainty / 60.0:.1f} min) {side} than the sun: {plane.name} beside global_horizontal "
+        f"agrees with its plane with this shift ({shift.days} clear days)"
+    )
