@@ -173,7 +173,7 @@ def _facts(lines: Sequence[str]) -> tuple[float | None, bool | None]:
             match = exothermal.match(line.strip())
             if match is not None:
                 up = meanings[match[1].lower()]
-    signs = [match for match in SIGN.finditer(lines[-1])] if lines else []
+    signs = list(SIGN.finditer(lines[-1])) if lines else []
     if up is None and signs:
         up = (signs[0]["kind"].lower() == "exo") == (signs[0]["side"].lower() == "up")
     return mass if mass else None, up

@@ -234,6 +234,9 @@ def unit_in_name(name: str, others: Sequence[str] = ()) -> tuple[str, str] | Non
             else ("degC", known["letter"])
         )
     ending = _ENDING.search(name)
+    wind = _WIND_NAMES.fullmatch(name.strip())
+    if wind is not None:
+        return str(parse_unit(wind["unit"])), wind["unit"]
     if ending is None or len(ending[0]) == 1 or ending[0].lower() in _ENDINGS_OF_NAMES:
         return None
     unit = parse_unit(ending[0])
@@ -254,6 +257,7 @@ _KNOWN_NAMES: Final = re.compile(
     r"(?i:[a-z0-9]*[_ ]?(?:temp(?:erature)?|air_?t|t_?air|dew_?p(?:oin)?t|dry_?bulb|wet_?bulb)\d*)"
     r"[_ ](?P<letter>[CF])|(?:temp(?:in|out)?\d*|dewpt|dewpoint|windchill|heatindex)(?P<fahrenheit>f)"
 )
+_WIND_NAMES: Final = re.compile(r"(?i:wind|gust)[a-z]*?(?i:speed|gust)?(?P<unit>mph|kmh|kph|knots)")
 #: Endings of names that are words or numbers of rooms more often than units.
 _ENDINGS_OF_NAMES: Final = frozenset({"ly", "mb", "kn", "deg", "rad", "bar", "grad", "mm", "mv", "ppm"})
 

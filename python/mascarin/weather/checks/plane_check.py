@@ -28,8 +28,12 @@ _FARTHEST: Final = 6000.0
 _FOLLOWED: Final = 0.6
 """Part of the clear hours that the plane must follow with the shift, for a refusal. [-]"""
 _MORE: Final = 0.2
-"""How many more of the clear hours it must follow than with the stated clock: where most hours follow that one
-and some do not at all, there is an obstacle. [-]"""
+"""How many more of the clear hours it must follow than with the stated clock: where most hours follow that
+one and some do not at all, there is an obstacle. [-]"""
+_AGREED: Final = 2.0
+"""Shifts of planes that face different sides agree within this many uncertainties. [-]"""
+_ASIDE: Final = 40.0
+"""Planes whose azimuths differ by less face the same side. [deg]"""
 _TILTS: Final = (45.0, 135.0)
 """Planes closer to the horizontal change too little with the time of day to tell it from a shadow. [deg]"""
 _FEWEST_DAYS: Final = 3
@@ -42,8 +46,8 @@ def plane_warnings(
     """Compare the irradiance of tilted planes with that of the horizontal and with the sun.
 
     Refused is a shift of more than ten minutes and of more than three times its uncertainty, on three clear
-    days or more, with which the plane follows many more hours than with the stated clock, and which neither
-    other instruments nor clear hours contradict.
+    days or more, which neither other instruments nor clear hours contradict, and which planes that face
+    different sides agree on; a single plane must follow many more hours with it than with the stated clock.
 
     Parameters
     ----------
@@ -119,35 +123,58 @@ def _said(
     record: WeatherRecord, planes: Sequence[MeasuredPlane], latitude: float, longitude: float
 ) -> list[str]:
     shown = [(plane, shift_by_plane(record, plane, latitude, longitude)) for plane in planes]
-    sure = [(plane, shift) for plane, shift in shown if shift is not None]
+    sure = _of_directions([(plane, shift) for plane, shift in shown if shift is not None])
     if not sure:
         return []
-    plane, shift = min(sure, key=lambda pair: pair[1].uncertainty)
-    beyond = abs(shift.late) > 3.0 * shift.uncertainty
-    if not beyond or abs(shift.late) < _NAMED:
+    whole = _combined([shift for _, shift in sure])
+    if abs(whole.late) < max(_NAMED, 3.0 * whole.uncertainty):
         return []
-    text = _sentence(plane, shift)
-    if not _is_certain(shift) or _contradicted(record, shift, latitude, longitude):
+    text = _sentence([plane for plane, _ in sure], whole)
+    agreed = len(sure) > 1 and all(
+        abs(shift.late - whole.late) < _AGREED * shift.uncertainty for _, shift in sure
+    )
+    certain = _LARGEST < abs(whole.late) < _FARTHEST and whole.days >= _FEWEST_DAYS
+    if not (certain and (agreed or _is_clear(whole))) or _contradicted(record, whole, latitude, longitude):
         return [f"{record.file}: warning: {text}; the clock is used as stated."]
-    minutes = -round(shift.late / 60.0)
+    minutes = -round(whole.late / 60.0)
+    stated = ", ".join(f"{plane.name} {plane.azimuth:g} and {plane.tilt:g} deg" for plane, _ in sure)
     raise InputError(
         f"{record.file}: {text}; expected less than {_LARGEST / 60.0:g} min. Check the time zone (now "
         f"{zone_name(record.grid.zone)}), whether stamps mark the start or the end of their interval, and "
-        f"azimuth and tilt of the plane (now {plane.azimuth:g} and {plane.tilt:g} deg). If the clock was "
-        f"wrong, state shift: {minutes}min (on the command line --shift={minutes}min, in Python "
-        f"shift='{minutes}min'). If all of these are right, read the record as it is with check_sun: false "
-        "(on the command line --no-check-sun, in Python check_sun=False)."
+        f"azimuth and tilt (now {stated}). If the clock was wrong, state shift: {minutes}min (on the command "
+        f"line --shift={minutes}min, in Python shift='{minutes}min'). If all of these are right, read the "
+        "record as it is with check_sun: false (on the command line --no-check-sun, in Python "
+        "check_sun=False)."
     )
 
 
-def _is_certain(shift: PlaneShift) -> bool:
-    """Whether a shift is that of a clock: no obstacle and no cloud explains it."""
-    return bool(
-        _LARGEST < abs(shift.late) < _FARTHEST
-        and shift.days >= _FEWEST_DAYS
-        and shift.followed >= _FOLLOWED
-        and shift.followed - shift.stated >= _MORE
-    )
+def _of_directions(
+    shown: list[tuple[MeasuredPlane, PlaneShift]],
+) -> list[tuple[MeasuredPlane, PlaneShift]]:
+    """Of planes that face the same side the one with the least uncertainty, the most certain first."""
+    chosen: list[tuple[MeasuredPlane, PlaneShift]] = []
+    for plane, shift in sorted(shown, key=lambda pair: pair[1].uncertainty):
+        apart = [abs((plane.azimuth - other.azimuth + 180.0) % 360.0 - 180.0) for other, _ in chosen]
+        if all(angle > _ASIDE for angle in apart):
+            chosen.append((plane, shift))
+    return chosen
+
+
+def _combined(shifts: list[PlaneShift]) -> PlaneShift:
+    """Mean of the shifts of some planes by their uncertainties; what is best for one stays for the others."""
+    if len(shifts) == 1:
+        return shifts[0]
+    weights = np.array([shift.uncertainty**-2 for shift in shifts])
+    late = float(np.average([shift.late for shift in shifts], weights=weights))
+    spread = float(np.sqrt(np.average([(shift.late - late) ** 2 for shift in shifts], weights=weights)))
+    uncertainty = max(float(weights.sum() ** -0.5), spread / np.sqrt(len(shifts) - 1.0), plane_shift.FLOOR)
+    best = shifts[0]
+    return PlaneShift(late, uncertainty, best.days, best.followed, best.stated)
+
+
+def _is_clear(shift: PlaneShift) -> bool:
+    """Whether one plane shows a shift of the clock alone: no obstacle and no cloud explains it."""
+    return shift.followed >= _FOLLOWED and shift.followed - shift.stated >= _MORE
 
 
 def _contradicted(record: WeatherRecord, shift: PlaneShift, latitude: float, longitude: float) -> bool:
@@ -159,10 +186,11 @@ def _contradicted(record: WeatherRecord, shift: PlaneShift, latitude: float, lon
     )
 
 
-def _sentence(plane: MeasuredPlane, shift: PlaneShift) -> str:
+def _sentence(planes: Sequence[MeasuredPlane], shift: PlaneShift) -> str:
     side = "later" if shift.late > 0.0 else "earlier"
+    names = ", ".join(plane.name for plane in planes)
     return (
         f"the radiation is {abs(shift.late) / 60.0:.0f} min (standard uncertainty "
-        f"{shift.uncertainty / 60.0:.1f} min) {side} than the sun: {plane.name} beside global_horizontal "
-        f"agrees with its plane with this shift ({shift.days} clear days)"
+        f"{shift.uncertainty / 60.0:.1f} min) {side} than the sun: {names} beside global_horizontal "
+        f"agree{'s' * (len(planes) == 1)} with the stated direction with this shift ({shift.days} clear days)"
     )

@@ -10,6 +10,7 @@ days with many of them, such as cloudy ones, not at all.
 
 References
 ----------
+Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
 Liu & Jordan 1963, Solar Energy 7(2), 53-74, doi:10.1016/0038-092X(63)90006-9 (diffuse and reflected part of
 a plane).
 Hay 1979, Solar Energy 23(4), 301-307, doi:10.1016/0038-092X(79)90123-3 (the part of the sky's light that
@@ -50,9 +51,14 @@ _NEAR: Final = 1.5
 """Hours within this many standard deviations follow the plane. [-]"""
 _CLEAR_PART: Final = 0.75
 """Part of the hours of a day that follow the plane from which a day is a clear one. [-]"""
+_BRIGHT: Final = 0.8
+"""Part of the radiation of a clear sky that a clear day has at least. [-]"""
+_CLEAR_SKY: Final = 1098.0
+_DECAY: Final = 0.057
+"""Clear sky of Haurwitz: irradiance with the sun in the zenith [W/m2] without, and its decay [-]."""
 _LOW: Final = 0.08
 """Sine of the elevation below which hours are not compared. [-]"""
-_FLOOR: Final = 180.0
+FLOOR: Final = 180.0
 """Uncertainty that remains with any number of days. [s]"""
 _ITERATIONS: Final = 6
 _FEWEST: Final = 6
@@ -165,6 +171,7 @@ def shift_by_plane(
         return None
     terms = [_terms(days, plane, lag) for lag in LAGS.tolist()]
     clear = np.max([_follows(term) for term in terms], axis=0) >= _CLEAR_PART
+    clear &= _brightness(days) >= _BRIGHT
     if not clear.any():
         return None
     whole = _estimate(terms, clear, None)
@@ -180,9 +187,16 @@ def shift_by_plane(
         if both[0] is None or both[1] is None:
             return None
         days_apart = 0.5 * abs(both[0][0] - both[1][0])
-    uncertainty = float(np.sqrt(whole[1] ** 2 + apart**2 + days_apart**2 + _FLOOR**2))
+    uncertainty = float(np.sqrt(whole[1] ** 2 + apart**2 + days_apart**2 + FLOOR**2))
     stated = float(_near(terms[int(np.argmin(np.abs(LAGS)))], clear).mean())
     return PlaneShift(whole[0], uncertainty, len(numbers), whole[2], stated)
+
+
+def _brightness(days: Days) -> Array:
+    """Sum of the global irradiance of each day as a part of that of a clear sky (Haurwitz 1945). [-]"""
+    clear = days.means(_CLEAR_SKY * days.sines * np.exp(-_DECAY / np.maximum(days.sines, 1e-3)), 0)
+    total = np.nan_to_num(days.values["global_horizontal"])
+    return np.asarray(total.sum(axis=1) / np.maximum(clear.sum(axis=1), 1e-9))
 
 
 def _normal(azimuth: float, tilt: float) -> tuple[Array, Array, Array]:
@@ -282,7 +296,7 @@ def _follows(term: _Terms) -> Array:
         numbers = np.linalg.solve(matrix, right[..., None])[..., 0]
         left = term.residual - np.einsum("drj,dj->dr", term.slopes, numbers)
     count = term.used.sum(axis=1)
-    near = ((np.abs(left) < _FAR) & term.used).sum(axis=1)
+    near = ((np.abs(left) < _NEAR) & term.used).sum(axis=1)
     return np.asarray(np.where(count >= _FEWEST, near / np.maximum(count, 1), 0.0))
 
 
