@@ -295,6 +295,17 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     return None
 
 
+def same_unit(one: str, other: str) -> bool:
+    """Whether two units are converted alike, such as hPa and mbar.
+
+    Parameters
+    ----------
+    one, other : str
+        Names of units.
+    """
+    return one == other or (one in FACTORS and FACTORS[one] == FACTORS.get(other))
+
+
 def units_of(target: str) -> list[str]:
     """Units that can be turned into a unit.
 

@@ -21,7 +21,7 @@ from mascarin.tables.reading.files import Read, content_of, read_frame, with_tim
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
 from mascarin.tables.reading.order import clock_changes, first_to_last, require_order, skipped_hour
 from mascarin.tables.reading.rows import has_words, rows_with_values, without_entries
-from mascarin.tables.reading.units_of_entries import units_beside, without_units
+from mascarin.tables.reading.units_of_entries import without_units
 from mascarin.tables.stamps.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
 from mascarin.tables.stamps.time_columns import parts_of_time, time_text
 from mascarin.tables.times import epoch_seconds, stamps_of
@@ -31,7 +31,7 @@ from mascarin.tables.timezones import (
     zone_name,
     zone_of,
 )
-from mascarin.tables.units import StatedUnit, parse_unit, unit_in_name
+from mascarin.tables.units import StatedUnit, parse_unit, same_unit, unit_in_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,6 +41,7 @@ Stamps = Literal["start", "end"]
 
 #: Stamps of PVGIS (Joint Research Centre, user manual of PVGIS 5.3): the time of the satellite's image.
 _PVGIS: Final = re.compile(r"\d{8}:\d{4}")
+_IN_NAME: Final = "the name of the column"
 #: Jitter of a clock that is allowed, as a part of the step.
 _JITTER: Final = 0.1
 
@@ -79,6 +80,8 @@ class Table:
         Whether the stamps have the form of PVGIS, whose irradiances are values at the stamp (such as 00:10).
     preamble_units : mapping of str to (str, int)
         Units that lines above the names state, and their lines.
+    entry_units : mapping of str to str
+        Units behind the numbers, or in a column beside them.
     """
 
     frame: pd.DataFrame
@@ -95,6 +98,7 @@ class Table:
     decimal_evident: bool = False
     of_pvgis: bool = False
     preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    entry_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -120,23 +124,38 @@ class Table:
         InputError
             The two contradict each other.
         """
-        text = self.units.get(column, "")
-        row, name = parse_unit(text), unit_in_name(column, self.names)
-        if row is not None and name is not None and row != name[0]:
-            raise InputError(
-                f"{self.where}:{self.units_line}: the row of units has {text!r} for the column {column!r}, "
-                f"whose name says {name[1]!r}; expected the same. State the right one: "
-                f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
-            )
-        if row is not None:
-            spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
-            return StatedUnit(row, text, spot)
+        found = self._statements(column)
+        for other in found[1:]:
+            if not same_unit(found[0].unit, other.unit):
+                says = (
+                    f"whose name says {other.text!r}"
+                    if other.place == _IN_NAME
+                    else (f"for which {other.place} says {other.text!r}")
+                )
+                line = f":{self.units_line}" if self.units_line and column in self.units else ""
+                raise InputError(
+                    f"{self.where}{line}: {found[0].place.split(' (line')[0]} has {found[0].text!r} for the "
+                    f"column {column!r}, {says}; expected the same. State the right one: "
+                    f"{{column: {column!r}, unit: {other.unit!r}, overrule: true}}."
+                )
+        return found[0] if found else None
+
+    def _statements(self, column: str) -> list[StatedUnit]:
+        """All that the file says of the unit of a column: row of units, entries, name, lines above."""
+        found = []
+        spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
+        texts = [(self.units.get(column, ""), spot), (self.entry_units.get(column, ""), "each entry")]
+        for text, place in texts:
+            unit = parse_unit(text)
+            if unit is not None:
+                found.append(StatedUnit(unit, text, place))
+        name = unit_in_name(column, self.names)
         if name is not None:
-            return StatedUnit(*name, "the name of the column")
+            found.append(StatedUnit(*name, _IN_NAME))
         if column in self.preamble_units:
             words, line = self.preamble_units[column]
-            return StatedUnit(str(parse_unit(words)), words, f"line {line} above the names")
-        return None
+            found.append(StatedUnit(str(parse_unit(words)), words, f"line {line} above the names"))
+        return found
 
     def empty_words(self, column: str) -> dict[str, int]:
         """How often each word for no value stands in a column; empty entries are not counted."""
@@ -248,8 +267,7 @@ def read_table(
         read = read_frame(path, content, separator, decimal, skip_lines)
         del content
         frame, said = read.frame, read.notes
-    frame, of_entries = without_units(frame)
-    of_entries = {**units_beside(frame, where), **of_entries}
+    frame, of_entries = without_units(frame, where)
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
@@ -261,8 +279,7 @@ def read_table(
         time, time_format = parts
     text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
-    if missing:
-        frame = without_entries(frame, missing)
+    frame = without_entries(frame, missing) if missing else frame
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
     stated = read.clock if read is not None else ("", 0)
     zone, clock, of_zone = _clock(used, text, zone, where, stated)
@@ -277,7 +294,7 @@ def read_table(
         note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     table = table if read is None else replace(table, **read.said_of_itself)
-    return replace(table, units={**table.units, **of_entries}) if of_entries else table
+    return replace(table, entry_units=of_entries)
 
 
 def _shifted(

@@ -17,24 +17,31 @@ if TYPE_CHECKING:
 _WITH_UNIT: Final = r"^\s*([-+\u2212]?\d[\d.,' ]*?)\s*([^\d\s.,'+-].*?)\s*$"
 
 
-def without_units(frame: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
+def without_units(frame: pd.DataFrame, where: str) -> tuple[pd.DataFrame, dict[str, str]]:
     """Columns whose entries all have the same known unit behind the number, without it.
 
     Parameters
     ----------
     frame : pandas.DataFrame
         As read.
+    where : str
+        File, for errors.
 
     Returns
     -------
     frame : pandas.DataFrame
         Numbers as texts, where there were units.
     units : mapping of str to str
-        The units, by column.
+        The units, by column; also those of a column beside it.
+
+    Raises
+    ------
+    InputError
+        Rows of one column have different units.
     """
     import pandas as pd
 
-    units: dict[str, str] = {}
+    units = units_beside(frame, where)
     if not frame.columns.is_unique:
         return frame, units
     columns = {}

@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.stamps.formats import DATE, FORMATS, written_format
 from mascarin.tables.stamps.iso_stamps import iso_stamps
 from mascarin.tables.stamps.months import with_numbers_of_months
 from mascarin.tables.timezones import YEARS, localize, zone_name
@@ -22,14 +23,6 @@ _HAS_OFFSET: Final = r"[0-9]{1,2}:[0-9]{2}(?::[0-9]{2}(?:[.][0-9]+)?)? *(?:Z|[+-
 _MIDNIGHT: Final = r"[T ]24:00(?::00)?$"
 _MIDNIGHT_OF_DIGITS: Final = r" 2400$"
 _BLANKS: Final = "  |\t|\u00a0"
-_DATE: Final = (
-    r"^(?P<a>\d{1,4})(?P<mark>[./-])(?P<b>\d{1,2})[./-](?P<c>\d{1,4})"
-    r"(?:[ T,]+(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}(?:[.,]\d+)?))?"
-    r"\s*(?P<half>[AaPp])?\.?\s?(?:[Mm]\.?)?)?$"
-)
-_FORMATS: Final = {
-    "ymd": "%Y-%m-%d", "dmy": "%d/%m/%Y", "mdy": "%m/%d/%Y",
-}  # fmt: skip
 #: Formats with names of months, in English, that are tried in turn.
 _NAMED: Final = (
     "%Y%m%d:%H%M",
@@ -126,7 +119,7 @@ def _unreadable(
 ) -> str:
     """Text of the refusal of stamps: among many dates in one form, the row that is none is the cause."""
     row = int(bad[0])
-    others = np.flatnonzero(written.str.extract(_DATE)["a"].isna().to_numpy())
+    others = np.flatnonzero(written.str.extract(DATE)["a"].isna().to_numpy())
     if 0 < len(others) < 0.1 * len(written) and time_format is None:
         row = int(others[0])
     expected = f"the format {time_format!r}" if time_format else _ISO
@@ -292,7 +285,7 @@ def _of_dates(
     """Stamps whose order of day, month and year follows from all of them; None where they are no dates."""
     import pandas as pd
 
-    parts = written.str.extract(_DATE)
+    parts = written.str.extract(DATE)
     if parts["a"].isna().any():
         return _with_names(written)
     a, b, c = (parts[name].to_numpy(dtype=np.int64) for name in "abc")
@@ -326,13 +319,13 @@ def _of_dates(
     if "dmy" in (best, *rivals) and str(parts["mark"].iloc[0]) == ".":
         best, rivals = "dmy", []  # points stand between day, month and year alone (DIN 5008)
     if rivals:
-        pair = " or ".join(
-            f"{found[name][0]:%Y-%m-%d %H:%M} ({_FORMATS[name]})" for name in (best, rivals[0])
-        )
+        names = [best, *rivals]
+        readings = " or ".join(f"{found[name][0]:%Y-%m-%d %H:%M} ({FORMATS[name]})" for name in names)
+        formats = " or ".join(repr(written_format(written.iloc[0], name)) for name in names)
+        count = "both" if len(names) == 2 else "all of them"
         raise InputError(
-            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; "
-            f"expected one reading: state time_format: {_written_format(written.iloc[0], best)!r} or "
-            f"{_written_format(written.iloc[0], rivals[0])!r}."
+            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {readings}, and {count} give regular "
+            f"times; expected one reading: state time_format: {formats}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
     return found[best], (f"stamps such as {written.iloc[0]!r} are {words}, by the regular times of all.",)
@@ -360,20 +353,6 @@ def _share(index: pd.DatetimeIndex) -> float:
     # Days that are a month apart are fewer than the steps of a day: their share weighs as much.
     jumps = float(np.mean(steps > 20 * 86_400_000))
     return float(counts[np.argmax(counts)] / len(steps)) if not back and not jumps else 0.0 * lengths[0]
-
-
-def _written_format(example: str, order: str) -> str:
-    """Strptime format of a stamp."""
-    found = re.match(_DATE, example)
-    if found is None:
-        return _FORMATS[order]
-    mark = found["mark"]
-    year = "%Y" if max(len(found["a"]), len(found["c"])) == 4 else "%y"
-    date = mark.join({"y": year, "m": "%m", "d": "%d"}[letter] for letter in order)
-    if found["hour"] is None:
-        return date
-    clock = ("%I" if found["half"] else "%H") + ":%M" + (":%S" if found["second"] else "")
-    return f"{date} {clock}" + (" %p" if found["half"] else "")
 
 
 def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Lines, where: str) -> None:
