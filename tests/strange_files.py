@@ -404,3 +404,33 @@ _add(
     remedy=lambda content, options: (
         b"\n".join(line for line in content.splitlines() if b",B," not in line) + b"\n", options),
 )  # fmt: skip
+
+# ---------------------------------------------------------------------- slips
+
+_add(
+    "kelvins_called_celsius.csv",
+    ["time,T (°C)", *_rows("%Y-%m-%d %H:%M", WARM + 273.15)],
+    {"T (°C)": (WARM, 0.01)},
+    refused="They look like K",
+    remedy=_stating(columns={"T (°C)": {"column": "T (°C)", "unit": "K", "overrule": True}}),
+)
+_add(
+    "clock_not_set.csv",
+    ["time,T (°C)", "1970-01-01 00:00,20", "1970-01-01 00:10,20", *_rows("%Y-%m-%d %H:%M", WARM)],
+    {"T (°C)": (WARM, 0.01)},
+    refused="comes 54 years after 1970-01-01 00:10:00, expected one record",
+    remedy=lambda content, options: (
+        content.replace(b"1970-01-01 00:00,20\n1970-01-01 00:10,20\n", b""),
+        options,
+    ),
+)
+_add(
+    "blanks.txt",
+    ["date time T_degC", *_rows("%Y-%m-%d %H:%M", WARM, mark=" ")],
+    {"T_degC": (WARM, 0.01)},
+)
+_add(
+    "nanoseconds.csv",
+    ["ts,T (K)", *(f"{1e9 * s:.0f},{v + 273.15:.2f}" for s, v in zip(_SECONDS, WARM, strict=True))],
+    {"T (K)": (WARM, 0.01)},
+)

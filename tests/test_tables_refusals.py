@@ -180,6 +180,8 @@ def test_a_refusal_names_what_it_is_about_and_its_remedy_works(kind: str, tmp_pa
 #: Functions of `tables.reading` and `tables.stamps` whose refusals other tests try, with the name of the file of the test.
 ELSEWHERE = {
     ("records.py", "_require_settled_letter"): "test_tables_strange.py",
+    ("records.py", "_require_celsius"): "test_tables_strange.py",
+    ("order.py", "_require_one_record"): "test_tables_strange.py",
     ("units_of_entries.py", "units_beside"): "test_tables_strange.py",
     ("archives.py", "unpacked"): "test_tables_archives.py",
     ("files.py", "content_of"): "test_weather_table.py",

@@ -11,7 +11,7 @@ import pytest
 from mascarin import Measurements
 from mascarin.errors import InputError
 from mascarin.tables.times import epoch_seconds
-from strange_files import FILES, Strange
+from strange_files import FILES, TIMES, WARM, Strange
 
 
 def _judge(file: Strange, path: Path, options: dict[str, Any], column: str) -> None:
@@ -70,3 +70,23 @@ def test_numbers_below_the_others_are_no_codes(tmp_path: Path) -> None:
         "time,P (W)\n" + "".join(f"2023-07-13 {k:02d}:00,{-800 - 199 * k // 6}\n" for k in range(7))
     )
     assert Measurements.from_table(path, timezone="UTC").series("P (W)").iloc[-1] == -999.0
+
+
+def test_cells_of_a_workbook(tmp_path: Path) -> None:
+    """Remarks on a sheet of their own, dates and times in two columns, numbers as texts."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append(["remarks"])
+    sheet = book.create_sheet("Data")
+    sheet.append(["Date", "Time", "T [°C]"])
+    for stamp, value in zip(TIMES, WARM, strict=True):
+        sheet.append([stamp.date(), stamp.time(), f"{value:.2f}".replace(".", ",")])
+    book.save(tmp_path / "book.xlsx")
+    read = Measurements.from_table(tmp_path / "book.xlsx", timezone="UTC")
+    assert read.series("T [°C]").to_numpy() == pytest.approx(WARM)
+    assert (
+        epoch_seconds(read.series("T [°C]").index).tolist()
+        == epoch_seconds(  # type: ignore[arg-type]
+            TIMES.tz_localize("UTC")
+        ).tolist()
+    )

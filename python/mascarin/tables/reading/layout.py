@@ -22,6 +22,7 @@ _BLOCK: Final = 3
 _DIGIT: Final = re.compile(r"[-+]?[.,]?\d")
 _COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 _POINT: Final = re.compile(r"[-+]?\d+\.\d+(?:[eE][-+]?\d+)?")
+_PLAIN: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 _THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
 _FORMAT: Final = re.compile(r"(?:yy|dd|mm|hh|ss)[-/.:, tydmhs]+", re.IGNORECASE)
 _BRACKETS: Final = re.compile(r"\[.*\]|\(.*\)|<.*>")
@@ -327,6 +328,9 @@ def _separator(lines: Sequence[str], where: str, line: int) -> str:
         if count > 1:
             same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
             fits[mark] = (same, header.count(mark))
+    words = below[0].split() if below else []
+    if not fits and len(header.split()) == len(words) > 1 and _PLAIN.fullmatch(words[-1]):
+        return " "
     if not fits:
         raise InputError(
             f"{where}:{line + 1}: no separator found in the header {header.strip()[:40]!r}, expected the "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import tzinfo
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -109,6 +109,7 @@ def require_order(
     """
     wrong = np.flatnonzero(gaps <= 0.0)
     if not len(wrong):
+        _require_one_record(gaps, index, lines, where)
         return
     row = int(wrong[0])
     found = "is repeated" if gaps[row] == 0.0 else f"comes after {index[row]:%Y-%m-%d %H:%M:%S}"
@@ -128,6 +129,21 @@ def require_order(
         f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected increasing "
         f"times ({len(wrong)} such rows in all); {hint}"
     )
+
+
+#: Longest gap of a record: loggers that lose their power begin again in 1970, 1980 or 2000. [s]
+_LONGEST_GAP: Final = 5.0 * 365.0 * 86400.0
+
+
+def _require_one_record(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str) -> None:
+    """Refuse a gap of years inside a record."""
+    row = int(np.argmax(gaps)) if len(gaps) else 0
+    if len(gaps) and gaps[row] > _LONGEST_GAP and gaps[row] > 100.0 * float(np.median(gaps)):
+        raise InputError(
+            f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} comes "
+            f"{gaps[row] / (365.0 * 86400.0):.0f} years after {index[row]:%Y-%m-%d %H:%M:%S}, expected one "
+            "record: the clock of the logger was probably not set: remove the rows on the wrong side."
+        )
 
 
 def _is_half_a_clock(gaps: Array) -> bool:

@@ -108,6 +108,8 @@ def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array
     if settled.unit in HEATS and _is_meter(raw):
         return _as_read(raw, settled, stated, name, table)
     values = settled.convert(raw, unit, table.interval, where)
+    if settled.unit == "degC" and not column.overrule:
+        _require_celsius(values, column, where)
     words = {**table.empty_words(column.column), **codes}
     left = "" if stated is None or settled.unit is not None else stated.unit
     stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
@@ -131,6 +133,20 @@ def _require_settled_letter(values: Array, column: Column, name: str, table: Tab
         )
 
 
+def _require_celsius(values: Array, column: Column, where: str) -> None:
+    """Refuse temperatures that are stated in degC and look like kelvins throughout."""
+    there = values[np.isfinite(values)]
+    if len(there) and there.min() > _KELVINS[0] and there.max() < _KELVINS[1]:
+        raise InputError(
+            f"{where}: found {there.min():g} .. {there.max():g} degC in the column {column.column!r}, as the "
+            "unit is stated; expected temperatures of a building. They look like K: write "
+            f"{{column: {column.column!r}, unit: K, overrule: true}}, or unit: degC with overrule: true where"
+            " they are right."
+        )
+
+
+#: Temperatures of weather and buildings in kelvins.
+_KELVINS: Final = (220.0, 345.0)
 _LETTER: Final = re.compile(r"(?i:t|temp|temperature)[a-z0-9]*[_ ]F")
 #: Temperatures of rooms and of outdoors are below the first one in degC, and below the second one in degF.
 _USUAL: Final = 42.0

@@ -32,6 +32,11 @@ _NAMED: Final = (
 #: Part of the steps that are equal where a record is regular.
 _REGULAR: Final = 0.8
 _DAY: Final = 86400.0
+#: Numbers from 1973 to 2103 in each unit, and the unit. [s]
+_SINCE_1970: Final = (
+    (1e8, 4.2e9, 1.0, "seconds"), (1e11, 4.2e12, 1e-3, "milliseconds"), (1e14, 4.2e15, 1e-6, "microseconds"),
+    (1e17, 4.2e18, 1e-9, "nanoseconds"),
+)  # fmt: skip
 #: Days from 1899-12-30, from which spreadsheets count, to 1970-01-01.
 _SPREADSHEET: Final = 25569.0
 _SPREADSHEET_SAID: Final = (
@@ -221,7 +226,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
     if digits is not None:
         found = _local(pd.DatetimeIndex(digits), clock, zone, lines, where)
         return Stamped(found.times, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
-    for low, high, unit, name in ((1e8, 4.2e9, 1.0, "seconds"), (1e11, 4.2e12, 1e-3, "milliseconds")):
+    for low, high, unit, name in _SINCE_1970:
         if low <= values.min() and values.max() <= high:
             seconds = np.round(values * unit * 1e3).astype(np.int64)
             index = pd.DatetimeIndex(seconds.astype("datetime64[ms]")).tz_localize("UTC").tz_convert(zone)

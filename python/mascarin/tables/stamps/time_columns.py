@@ -48,7 +48,7 @@ def time_text(
         return frame[names[0]], names
     if time is None and _is_hours(frame, names[1]):
         return _with_hours(frame, names), names
-    joined = _texts(frame[names[0]])
+    joined = _texts(frame[names[0]]).str.replace(_NO_TIME, "", regex=True)
     for name in names[1:]:
         joined = joined + " " + _texts(frame[name])
     return joined, names
@@ -172,8 +172,9 @@ def parts_of_time(frame: pd.DataFrame) -> tuple[list[str], str] | None:
     return None
 
 
+_NO_TIME: Final = r" 00:00(?::00)?$"
 #: A date without a time, and a time of day.
 _PAIR: Final = (
-    r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}",
+    r"\d{1,4}[./-]\d{1,2}[./-]\d{1,4}(?: 00:00(?::00)?)?",  # a date cell of a spreadsheet has a time, too
     r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?:\s*[AaPp]\.?\s?(?:[Mm]\.?)?)?",
 )

@@ -57,6 +57,11 @@ def doubts_of_year(
                 f"{where}: {name}: found {doubt[0]}; expected values in {UNITS[name]}, which the format "
                 f"fixes. They look like {doubt[1]}: convert this column of the file."
             )
+    if not np.isfinite(values["air_temperature"]).any():
+        raise InputError(
+            f"{where}: air_temperature: found no value in any row, since 99.9 and more mean none; expected "
+            "values in degC. They look like K: convert this column of the file."
+        )
     said = []
     wind = values["wind_speed"][np.isfinite(values["wind_speed"])]
     if len(wind) and wind.mean() > _WINDY:
