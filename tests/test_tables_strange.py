@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from mascarin import Measurements
@@ -84,9 +85,5 @@ def test_cells_of_a_workbook(tmp_path: Path) -> None:
     book.save(tmp_path / "book.xlsx")
     read = Measurements.from_table(tmp_path / "book.xlsx", timezone="UTC")
     assert read.series("T [°C]").to_numpy() == pytest.approx(WARM)
-    assert (
-        epoch_seconds(read.series("T [°C]").index).tolist()
-        == epoch_seconds(  # type: ignore[arg-type]
-            TIMES.tz_localize("UTC")
-        ).tolist()
-    )
+    index = pd.DatetimeIndex(read.series("T [°C]").index)
+    assert epoch_seconds(index).tolist() == epoch_seconds(TIMES.tz_localize("UTC")).tolist()
