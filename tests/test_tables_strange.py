@@ -74,14 +74,14 @@ def test_numbers_below_the_others_are_no_codes(tmp_path: Path) -> None:
 
 
 def test_cells_of_a_workbook(tmp_path: Path) -> None:
-    """Remarks on a sheet of their own, dates and times in two columns, numbers as texts."""
+    """Remarks on a sheet of their own, dates and times in two columns."""
     openpyxl = pytest.importorskip("openpyxl")
     book = openpyxl.Workbook()
     book.active.append(["remarks"])
     sheet = book.create_sheet("Data")
     sheet.append(["Date", "Time", "T [°C]"])
     for stamp, value in zip(TIMES, WARM, strict=True):
-        sheet.append([stamp.date(), stamp.time(), f"{value:.2f}".replace(".", ",")])
+        sheet.append([stamp.date(), stamp.time(), float(value)])
     book.save(tmp_path / "book.xlsx")
     read = Measurements.from_table(tmp_path / "book.xlsx", timezone="UTC")
     assert read.series("T [°C]").to_numpy() == pytest.approx(WARM)

@@ -160,9 +160,8 @@ def read_frame(
     sheet: tuple[str, ...] = ()
     if named.suffix.lower() in ENDINGS:
         text, sheet = sheet_text(path)
-        # Numbers of cells have no marks that could be read in two ways; those that are texts may have.
-        decimal = decimal or (None if re.search(r"\d,\d", text) else ".")
-        encoding, separator = "utf-8-sig", separator or "\t"
+        # Numbers of cells have no marks that could be read in two ways.
+        encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
         content = b""  # a large sheet is put together from its text
     else:
         text, encoding = decoded(content, path.name)

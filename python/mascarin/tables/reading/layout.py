@@ -329,7 +329,8 @@ def _separator(lines: Sequence[str], where: str, line: int) -> str:
             same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
             fits[mark] = (same, header.count(mark))
     words = below[0].split() if below else []
-    if not fits and len(header.split()) == len(words) > 1 and _PLAIN.fullmatch(words[-1]):
+    same = len(below) > 1 and all(len(text.split()) == len(header.split()) for text in below)
+    if not fits and same and len(words) > 1 and _PLAIN.fullmatch(words[-1]):
         return " "
     if not fits:
         raise InputError(
