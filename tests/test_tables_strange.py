@@ -87,3 +87,11 @@ def test_cells_of_a_workbook(tmp_path: Path) -> None:
     assert read.series("T [°C]").to_numpy() == pytest.approx(WARM)
     index = pd.DatetimeIndex(read.series("T [°C]").index)
     assert epoch_seconds(index).tolist() == epoch_seconds(TIMES.tz_localize("UTC")).tolist()
+
+
+def test_a_name_above_two_columns_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "twice.csv"
+    path.write_text("time,T,T\n" + "".join(f"2023-07-13 {k:02d}:00,{20 + k},{30 + k}\n" for k in range(6)))
+    read = Measurements.from_table(path, timezone="UTC")
+    assert (read.series("T").iloc[0], read.series("T.1").iloc[0]) == (20.0, 30.0)
+    assert any("the second one is called 'T.1'" in note for note in read.provenance)
