@@ -404,6 +404,17 @@ _add(
     remedy=lambda content, options: (
         b"\n".join(line for line in content.splitlines() if b",B," not in line) + b"\n", options),
 )  # fmt: skip
+_add(
+    "day_with_a_fraction.csv",
+    [
+        "year,doy,T_C",
+        *(
+            f"2023,{t.day_of_year + (t - t.normalize()) / pd.Timedelta('1D'):.5f},{WARM[k]}"
+            for k, t in enumerate(TIMES)
+        ),
+    ],
+    {"T_C": (WARM, 0.01)},
+)
 
 # ---------------------------------------------------------------------- slips
 

@@ -36,6 +36,8 @@ def time_text(
         There is no such column.
     """
     names: list[Hashable]
+    if time is None and _has_days(frame):
+        return _of_days(frame), list(frame.columns[:2])
     names = _time_names(frame) if time is None else [time] if isinstance(time, str) else list(time)
     for name in names:
         if name not in frame.columns:
@@ -123,6 +125,34 @@ def _is_hours(frame: pd.DataFrame, name: Hashable) -> bool:
     return bool(np.all((hours >= 0.0) & (hours <= 24.0) & (hours == np.floor(hours))))
 
 
+def _has_days(frame: pd.DataFrame) -> bool:
+    """Whether the first two columns are a year and a day of it with a fraction, such as 194.5."""
+    import pandas as pd
+
+    names = [str(name).strip().lower() for name in frame.columns[:2]]
+    if len(names) < 2 or names[0] not in _YEAR_NAMES or names[1] not in _DAY_NAMES:
+        return False
+    if not all(pd.api.types.is_numeric_dtype(frame[name].dtype) for name in frame.columns[:2]):
+        return False
+    year, day = (frame[name].to_numpy(dtype=np.float64) for name in frame.columns[:2])
+    return bool(
+        np.all((year == np.floor(year)) & (year > 1900.0) & (year < 2100.0) & (day >= 1.0) & (day < 367.0))
+        and np.any(day != np.floor(day))
+    )
+
+
+def _of_days(frame: pd.DataFrame) -> pd.Series[Any]:
+    """Stamps of years and days with a fraction, to the second: five decimals of a day are 0.9 s."""
+    import pandas as pd
+
+    year, day = (frame[name].to_numpy(dtype=np.float64) for name in frame.columns[:2])
+    first = (year - 1970.0).astype(np.int64).astype("datetime64[Y]").astype("datetime64[s]")
+    seconds = np.round((day - 1.0) * 86400.0).astype(np.int64)
+    near = 60 * np.round(seconds / 60.0).astype(np.int64)
+    seconds = near if np.all(np.abs(seconds - near) <= 1) else seconds
+    return pd.Series(first + seconds.astype("timedelta64[s]"), index=frame.index)
+
+
 def _with_hours(frame: pd.DataFrame, names: Sequence[Hashable]) -> pd.Series[Any]:
     """Dates and hours as one text, or as digits."""
     import pandas as pd
@@ -133,6 +163,8 @@ def _with_hours(frame: pd.DataFrame, names: Sequence[Hashable]) -> pd.Series[Any
     return dates.astype(str).str.strip() + " " + hours.astype(str).str.zfill(2) + ":00"
 
 
+_YEAR_NAMES: Final = ("year", "yyyy", "year_rtm")
+_DAY_NAMES: Final = ("day", "doy", "jday", "julian_day", "day_rtm", "dayofyear", "decimal_day")
 _PARTS: Final = ("year", "month", "day", "hour", "minute", "second")
 
 
@@ -160,8 +192,8 @@ def parts_of_time(frame: pd.DataFrame) -> tuple[list[str], str] | None:
     names = [str(name).strip().lower() for name in frame.columns]
     for k in range(min(3, len(names) - 2)):
         if (
-            names[k] in ("year", "yyyy", "year_rtm")
-            and names[k + 1] in ("day", "doy", "jday", "julian_day", "day_rtm", "dayofyear")
+            names[k] in _YEAR_NAMES
+            and names[k + 1] in _DAY_NAMES
             and names[k + 2] in ("hhmm", "hrmn", "time", "hour_minute", "hour_minute_rtm")
         ):
             return [str(name) for name in frame.columns[k : k + 3]], "%Y %j %H%M"
