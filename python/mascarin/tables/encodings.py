@@ -7,7 +7,7 @@ from typing import Final
 
 _LETTERS: Final = re.compile(rb"[\x80-\xff]+")
 _WORDS: Final = re.compile(rb"[A-Za-z\x80-\xff]{3,}")
-_KANA_OR_SIGNS: Final = re.compile("[\u3040-\u30ff\u4e00-\u9fff\u2103\u2109]")
+_WORD: Final = re.compile("[\u3040-\u30ff\u4e00-\u9fff]{2,}")
 _SEARCHED: Final = 20_000
 
 
@@ -29,6 +29,8 @@ def encodings_of(raw: bytes) -> list[str]:
     ...     ("Zeit;Außen °C;Büro °C", "cp1252"), ("时间,温度(℃)", "gb18030"),
     ...     ("日時,気温(℃)", "shift_jis"), ("Дата;Время;Темп", "cp1251"))]
     [[], ['gb18030'], ['shift_jis'], ['cp1251']]
+    >>> encodings_of("Room’s T °C, probe’s T °F".encode("cp1252"))
+    []
     """
     head = raw[:_SEARCHED]
     runs = _LETTERS.findall(head)
@@ -44,10 +46,13 @@ def encodings_of(raw: bytes) -> list[str]:
 
 
 def _reads(head: bytes, code: str) -> bool:
-    """Whether a text can be read, with letters of the language in it; its last letter may be cut."""
+    """Whether a text can be read, with a word of the language in it; its last letter may be cut.
+
+    The apostrophe of Windows-1252 and the letter behind it are one sign of Japanese.
+    """
     for end in (len(head), len(head) - 1):
         try:
-            return len(_KANA_OR_SIGNS.findall(head[:end].decode(code))) >= 2
+            return _WORD.search(head[:end].decode(code)) is not None
         except UnicodeDecodeError:
             continue
     return False
