@@ -14,7 +14,7 @@ from archive_files import ALL, STATION, bsrn, meteo_france
 from logger_files import TIMES, TRUE, File, write
 from mascarin import Climate, Measurements
 from mascarin.errors import InputError
-from mascarin.tables.reading.iso_stamps import iso_stamps
+from mascarin.tables.stamps.iso_stamps import iso_stamps
 from mascarin.tables.times import epoch_seconds
 from mascarin.weather.checks.clock_shift import shifts_of
 from test_tables_formats import read_or_refused

@@ -19,7 +19,7 @@ import pytest
 from archive_files import bsrn
 from mascarin import Climate, Measurements
 from mascarin.errors import InputError
-from mascarin.tables import reading
+from mascarin.tables import reading, stamps
 
 Options = dict[str, Any]
 Remedy = Callable[[list[str], Options], tuple[list[str], Options]]
@@ -177,8 +177,12 @@ def test_a_refusal_names_what_it_is_about_and_its_remedy_works(kind: str, tmp_pa
     assert len(read.data) >= 2
 
 
-#: Functions of `tables.reading` whose refusals other tests try, with the name of the file of the test.
+#: Functions of `tables.reading` and `tables.stamps` whose refusals other tests try, with the name of the file of the test.
 ELSEWHERE = {
+    ("records.py", "_require_settled_letter"): "test_tables_strange.py",
+    ("records.py", "_require_celsius"): "test_tables_strange.py",
+    ("order.py", "_require_one_record"): "test_tables_strange.py",
+    ("units_of_entries.py", "units_beside"): "test_tables_strange.py",
     ("archives.py", "unpacked"): "test_tables_archives.py",
     ("files.py", "content_of"): "test_weather_table.py",
     ("files.py", "_parquet"): "test_tables_formats.py",
@@ -194,9 +198,9 @@ ELSEWHERE = {
 
 def test_every_refusal_of_the_reader_was_judged(tmp_path: Path) -> None:
     """Each function of the reader that refuses is reached by a case above, or named with its own test."""
-    folder = Path(str(reading.__file__)).parent
+    folders = [Path(str(package.__file__)).parent for package in (reading, stamps)]
     refusing = set()
-    for module in sorted(folder.glob("*.py")):
+    for module in sorted(path for folder in folders for path in folder.glob("*.py")):
         for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef) and any(
                 isinstance(inner, ast.Raise)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from mascarin import Measurements
@@ -83,3 +85,76 @@ def test_words_for_no_value_are_counted_by_column(tmp_path: Path) -> None:
     read = Measurements.from_table(written(tmp_path, ["time,AirT,Heat"], rows), timezone="UTC")
     assert "4 missing (2 '---', 1 'Err')" in read.record.origins["AirT"].line
     assert read.record.origins["Heat"].line.endswith("0 missing.")
+
+
+UNITS_SAID = list(
+    itertools.product(
+        [None, "degC", "degF", "K"], [None, "degC", "degF"], [None, "degF", "K"], [None, "°C", "°F"],
+        [None, "degF"],
+    )
+)  # fmt: skip
+
+
+def test_no_statement_of_a_unit_is_silently_overruled(tmp_path: Path) -> None:
+    """Name, row of units, lines above, entries and user: all alike are used, contradictions refused."""
+    times = pd.date_range("2023-07-13", periods=8, freq="10min")
+    warm = np.round(20.0 + 0.5 * np.arange(8), 2)
+    written = {"degC": warm, "degF": warm * 1.8 + 32.0, "K": warm + 273.15}
+    path = tmp_path / "units.csv"
+    refused = 0
+    for name, row, above, entry, user in UNITS_SAID:
+        said = {name, row, above, {"°C": "degC", "°F": "degF"}.get(str(entry)), user} - {None}
+        column = f"T [{name}]" if name else "T"
+        ending = f" {entry}" if entry else ""
+        values = written[min(map(str, said), default="degC")]
+        path.write_text(
+            "\n".join(
+                [
+                    *([f"# {column}: {above}"] if above else []),
+                    f"time,{column}",
+                    *([f"TS,{row}"] if row else []),
+                    *(f"{t:%Y-%m-%d %H:%M},{v:.2f}{ending}" for t, v in zip(times, values, strict=True)),
+                ]
+            )
+            + "\n"
+        )
+        given = {"column": column, **({"unit": user} if user else {})}
+        if len(said) > 1:
+            refused += 1
+            with pytest.raises(InputError):
+                Measurements.from_table(path, timezone="UTC", columns={"x": given})
+            continue
+        read = Measurements.from_table(path, timezone="UTC", columns={"x": given}).series("x")
+        assert read.to_numpy() == pytest.approx(warm, abs=0.01)
+    assert refused > 50
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_drawn_numbers_of_all_marks_are_read_or_refused(seed: int, tmp_path: Path) -> None:
+    """Decimal and thousands marks, separators and sizes in any mixture: never another number."""
+    rng = np.random.default_rng(seed)
+    times = pd.date_range("2023-07-13", periods=30, freq="10min")
+    path, right = tmp_path / "marks.csv", 0
+    ranges = [(0, 1), (15, 30), (900, 1100), (0, 5000), (-20, 20), (0, 40), (100_000, 120_000)]
+    for _ in range(25):
+        decimal, digits = str(rng.choice([".", ","])), int(rng.choice([0, 1, 2, 3]))
+        groups = str(rng.choice(["", "", ".", " ", "'", ",", "\u202f"]))
+        groups = "" if groups == decimal else groups
+        separator = str(rng.choice([";", "\t"] if "," in (decimal, groups) else [";", "\t", ","]))
+        columns = [np.round(rng.uniform(*ranges[rng.integers(7)], 30), digits) for _ in range(2)]
+        texts = [
+            [f"{v:,.{digits}f}".replace(",", "G").replace(".", decimal).replace("G", groups) for v in values]
+            for values in columns
+        ]
+        lines = [separator.join(row) for row in zip(times.strftime("%Y-%m-%d %H:%M"), *texts, strict=True)]
+        path.write_text("\n".join([separator.join(["time", "A", "B"]), *lines]) + "\n", encoding="utf-8")
+        for name, values in zip("AB", columns, strict=True):
+            if digits == 0 and groups in (".", ",") and values.min() >= 1000.0:
+                continue  # three digits behind one mark in all entries: decimals, as loggers write them
+            try:
+                read = Measurements.from_table(path, timezone="UTC", columns=[name]).series(name)
+            except InputError:
+                continue
+            right += 1
+            assert read.to_numpy() == pytest.approx(values, abs=1e-9), (decimal, groups, separator, digits)
+    assert right > 40

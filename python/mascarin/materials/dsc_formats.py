@@ -17,7 +17,7 @@ from typing import Final
 
 from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
-from mascarin.materials.units import UNITS, plain_unit
+from mascarin.materials.units import SIGN, UNITS, plain_unit
 
 _NUMBER: Final = re.compile(r'^\s*"?[-+]?[\d.,]*\d')
 _MASS: Final = tuple(
@@ -25,6 +25,7 @@ _MASS: Final = tuple(
     for pattern in (
         r"^#?\s*sample (?:mass|weight)\s*/?\s*(?P<unit>mg|g)\s*[:;,\t]\s*(?P<mass>[\d.,]+)",
         r"^(?:size|sample (?:mass|weight))[\s,;:]+(?P<mass>[\d.]+)[\s,]*(?P<unit>mg|g)\b",
+        r"^(?:sample )?(?:mass|weight)\s*[\[(/]\s*(?P<unit>mg|g)[\])]?\s*[:=;,\t]\s*(?P<mass>[\d.,]+)",
         r"^[^\d]*,\s*(?P<mass>[\d.]+)\s*(?P<unit>mg)\s*$",
     )
 )
@@ -172,4 +173,7 @@ def _facts(lines: Sequence[str]) -> tuple[float | None, bool | None]:
             match = exothermal.match(line.strip())
             if match is not None:
                 up = meanings[match[1].lower()]
+    signs = list(SIGN.finditer(lines[-1])) if lines else []
+    if up is None and signs:
+        up = (signs[0]["kind"].lower() == "exo") == (signs[0]["side"].lower() == "up")
     return mass if mass else None, up

@@ -11,16 +11,21 @@ from mascarin.physics import KELVIN
 
 #: Quantity -> unit without blanks, brackets and dots -> factor to SI. Heat flow is per kilogram.
 UNITS: Final[dict[str, dict[str, float]]] = {
-    "temperature": {"degc": 1.0, "°c": 1.0, "c": 1.0, "k": 1.0},
+    "temperature": {"degc": 1.0, "°c": 1.0, "c": 1.0, "k": 1.0, "degf": 1.0, "°f": 1.0},
     "time": {"s": 1.0, "min": 60.0, "h": 3600.0},
     "heat flow": {"mw/mg": 1000.0, "w/g": 1000.0, "mw/g": 1.0, "w/kg": 1.0, "mw": 1e-3, "w": 1.0, "µw": 1e-6},
-    "specific heat": {"j/gk": 1000.0, "kj/kgk": 1000.0, "j/kgk": 1.0},
-    "enthalpy": {"j/g": 1000.0, "kj/kg": 1000.0, "j/kg": 1.0},
+    "specific heat": {"j/gk": 1000.0, "kj/kgk": 1000.0, "j/kgk": 1.0, "cal/gk": 4184.0, "wh/kgk": 3600.0},
+    "enthalpy": {"j/g": 1000.0, "kj/kg": 1000.0, "j/kg": 1.0, "cal/g": 4184.0, "wh/kg": 3600.0},
 }
 #: Units of heat flow that need the mass of the sample.
 OF_SAMPLE: Final = ("mw", "w", "µw")
 #: Plausible specific heats of solids and liquids [J/(kg K)]: from metals to water, with a margin.
 POSSIBLE_HEAT: Final = (200.0, 12000.0)
+
+SIGN: Final = re.compile(
+    r"[\s(\[]*\b(?P<kind>exo|endo)(?:therm(?:al|ic)?)?[\s.]*(?P<side>up|down)\b[)\]]?", re.IGNORECASE
+)
+"""Direction of heat in the name of a column."""
 
 _NAMES: Final = {
     "temperature": ("temp", "temperature", "t", "theta", "sample temperature", "ts"),
@@ -69,7 +74,7 @@ class Column:
 def plain_unit(text: str) -> str:
     """A unit without blanks, brackets and powers: ``J/(g·K)``, ``J g^-1 K^-1``, ``J/g/K`` become one."""
     bare = text.casefold().replace("μ", "µ").replace("⁻¹", "-1")
-    bare = re.sub(r"[\s()\[\]*·.^]", "", bare)
+    bare = re.sub(r"^uw", "µw", re.sub(r"[\s()\[\]*·.^]", "", bare))
     bare = re.sub(r"(k?g)-1", r"/\1", bare).replace("k-1", "k")
     return re.sub(r"/(k?g)/?(k|°c|degc)$", r"/\1k", bare)
 
@@ -80,7 +85,8 @@ def column_of(index: int, name: str) -> Column | None:
     The unit is in brackets or after a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
     """
     text = name.strip().strip('"#').strip()
-    match = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", text)
+    plain = SIGN.sub("", text).strip(" ,;")
+    match = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", plain)
     if match is None:
         return None
     words = re.sub(r"[\s._-]+", " ", match["name"]).strip().casefold()
@@ -115,7 +121,7 @@ def check_unit(column: Column, where: str) -> None:
 
 
 SHOWN: Final = {
-    "temperature": ("degC", "K"),
+    "temperature": ("degC", "K", "degF"),
     "time": ("s", "min", "h"),
     "heat flow": ("mW/mg", "W/g", "W/kg", "mW"),
     "specific heat": ("J/(g K)", "kJ/(kg K)", "J/(kg K)"),
@@ -172,6 +178,9 @@ def to_celsius(values: list[float], column: Column, where: str) -> list[float]:
         The numbers contradict the unit.
     """
     low, high = min(values), max(values)
+    if column.unit in ("degf", "°f"):
+        values = [(value - 32.0) / 1.8 for value in values]
+        low, high = min(values), max(values)
     kelvin = column.unit == "k" or (column.unit is None and low > 200.0)
     if column.unit == "k" and low < 150.0:
         raise InputError(

@@ -20,6 +20,7 @@ from mascarin.simulation.checks.energy import EnergyLedger
 from mascarin.simulation.checks.judgement import Judgement
 from mascarin.simulation.checks.vapour import VapourLedger
 from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
+from mascarin.simulation.preparation.measured_planes import warnings_of_planes
 from mascarin.simulation.preparation.options import RunOptions, described
 from mascarin.simulation.preparation.parameter_vectors import VectorRuns
 from mascarin.simulation.preparation.slopes import gradient_of, labelled_slopes
@@ -128,7 +129,7 @@ class Simulation(VectorRuns):
         self.building = prepare.in_climate(
             building, climate, measurements=measurements, parameters=options.parameters, varied=ranges or ()
         )
-        self.climate = climate
+        self.climate, self._of_planes = climate, warnings_of_planes(self.building, climate, measurements)
         self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
@@ -443,6 +444,7 @@ class Simulation(VectorRuns):
         from mascarin.building.checks import plausibility  # pydantic, as above
 
         sun = warnings_of_sun(self.climate, self.compiled.inputs, self.building.site)
+        sun = (*sun, *self._of_planes)
         return (*sun, *self.climate.record.warnings, *plausibility.warnings(self.building, self.notes))
 
     def warnings_at(self, vector: Array) -> tuple[RunWarning, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,6 +23,12 @@ FACTORS: Final[Mapping[str, tuple[str, float, float]]] = {
     "knot": ("m/s", 1852.0 / 3600.0, 0.0),
     "mph": ("m/s", 0.44704, 0.0),
     "ft/s": ("m/s", 0.3048, 0.0),
+    "ft/min": ("m/s", 0.3048 / 60.0, 0.0),
+    "m/min": ("m/s", 1.0 / 60.0, 0.0),
+    "cm/s": ("m/s", 0.01, 0.0),
+    "0.1 degC": ("degC", 0.1, 0.0),
+    "0.1 m/s": ("m/s", 0.1, 0.0),
+    "0.1 hPa": ("Pa", 10.0, 0.0),
     "Pa": ("Pa", 1.0, 0.0),
     "hPa": ("Pa", 100.0, 0.0),
     "mbar": ("Pa", 100.0, 0.0),
@@ -78,6 +84,12 @@ _SPELLINGS: Final[Mapping[str, str]] = {
     "knot": "knot knots kt kts kn",
     "mph": "mph mi/h mi/hr miles/h miles/hour",
     "ft/s": "ft/s fps ft/sec fts-1",
+    "ft/min": "ft/min fpm feet/min",
+    "m/min": "m/min",
+    "cm/s": "cm/s",
+    "0.1 degC": "01degc 01°c 01c 0,1°c 1/10°c 01degreescelsius 01degreecelsius degc/10 °c/10",
+    "0.1 m/s": "01m/s 0,1m/s 1/10m/s",
+    "0.1 hPa": "01hpa 0,1hpa 1/10hpa 01mbar",
     "Pa": "pa pascal",
     "hPa": "hpa hectopascal",
     "mbar": "mbar mb millibar millibars mbars",
@@ -182,13 +194,15 @@ def _key(text: str) -> str:
     return re.sub(r"[\s^*·.()⋅]", "", plain)
 
 
-def unit_in_name(name: str) -> tuple[str, str] | None:
+def unit_in_name(name: str, others: Sequence[str] = ()) -> tuple[str, str] | None:
     """Unit in the name of a column: in brackets, after a comma, or at the end.
 
     Parameters
     ----------
     name : str
         Name of the column.
+    others : sequence of str
+        Names of all columns: beside ``temp_A`` and ``temp_B``, ``temp_F`` is the sixth sensor.
 
     Returns
     -------
@@ -201,6 +215,8 @@ def unit_in_name(name: str) -> tuple[str, str] | None:
     (('degF', '°F'), ('km/h', 'km/h'), ('degF', 'degF'))
     >>> unit_in_name("T (attic)"), unit_in_name("wall_C"), unit_in_name("G / W/m2")
     (None, None, ('W/m2', 'W/m2'))
+    >>> unit_in_name("Temp_F"), unit_in_name("temp_F", ["temp_A", "temp_B", "temp_F"])
+    (('degF', 'F'), None)
     """
     inside = [first or second for first, second in _BRACKETS.findall(name)]
     after = _COMMA.findall(name)
@@ -208,13 +224,40 @@ def unit_in_name(name: str) -> tuple[str, str] | None:
         unit = parse_unit(text)
         if unit is not None and not (len(text.strip()) == 1 and text.strip().islower()):
             return unit, text.strip()
+    known = _KNOWN_NAMES.fullmatch(name.strip())
+    if known is not None and known["letter"] and _is_lettered(name.strip(), others):
+        return None
+    if known is not None:
+        return (
+            ("degF", known["fahrenheit"] or known["letter"])
+            if (known["letter"] or "f") in "fF"
+            else ("degC", known["letter"])
+        )
     ending = _ENDING.search(name)
+    wind = _WIND_NAMES.fullmatch(name.strip())
+    if wind is not None:
+        return str(parse_unit(wind["unit"])), wind["unit"]
     if ending is None or len(ending[0]) == 1 or ending[0].lower() in _ENDINGS_OF_NAMES:
         return None
     unit = parse_unit(ending[0])
     return None if unit is None else (unit, ending[0])
 
 
+def _is_lettered(name: str, others: Sequence[str]) -> bool:
+    """Whether the last letter of a name counts columns, as those of others do."""
+    return any(
+        other.strip()[:-1] == name[:-1] and other.strip()[-1:].isalpha() and other.strip()[-1] not in "CFK"
+        for other in others
+    )
+
+
+#: Names of temperatures that end in the letter of their unit, and those of stations of Ecowitt. A bare T_F
+#: may be that of a room.
+_KNOWN_NAMES: Final = re.compile(
+    r"(?i:[a-z0-9]*[_ ]?(?:temp(?:erature)?|air_?t|t_?air|dew_?p(?:oin)?t|dry_?bulb|wet_?bulb)\d*)"
+    r"[_ ](?P<letter>[CF])|(?:temp(?:in|out)?\d*|dewpt|dewpoint|windchill|heatindex)(?P<fahrenheit>f)"
+)
+_WIND_NAMES: Final = re.compile(r"(?i:wind|gust)[a-z]*?(?i:speed|gust)?(?P<unit>mph|kmh|kph|knots)")
 #: Endings of names that are words or numbers of rooms more often than units.
 _ENDINGS_OF_NAMES: Final = frozenset({"ly", "mb", "kn", "deg", "rad", "bar", "grad", "mm", "mv", "ppm"})
 
@@ -250,6 +293,17 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     if unit in FACTORS and target in (FACTORS[unit][0], ""):
         return FACTORS[unit][1:]
     return None
+
+
+def same_unit(one: str, other: str) -> bool:
+    """Whether two units are converted alike, such as hPa and mbar.
+
+    Parameters
+    ----------
+    one, other : str
+        Names of units.
+    """
+    return one == other or (one in FACTORS and FACTORS[one] == FACTORS.get(other))
 
 
 def units_of(target: str) -> list[str]:

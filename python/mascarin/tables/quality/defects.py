@@ -277,6 +277,8 @@ def _runs_of_equal(values: Array) -> tuple[Lines, Lines]:
 
 def _usual_longest(lengths: Lines, least: int = 2) -> float:
     """Longest usual run: the least, or longer ones as far as several runs of similar length exist."""
+    if not len(lengths):
+        return float(least)
     ordered = np.sort(lengths)
     longest = float(max(least, np.quantile(ordered, 0.99, method="lower")))
     while True:

@@ -174,6 +174,7 @@ def read_frame(
     notes = (*sheet, *_notes(layout, encoding, body.head, path.name), *body.notes)
     frame = _parsed(body.content, rows, layout, path.name, doubt=decimal is None)
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
+    notes += _twice(list(frame.columns), path.name)
     if layout.trailing:
         frame = frame.iloc[:, :-1]
     if is_meteo_france(frame):
@@ -360,6 +361,15 @@ def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> t
     if layout.decimal != ".":
         notes.append(f"{where}: the decimal mark is {layout.decimal!r}.")
     return tuple(notes)
+
+
+def _twice(names: Sequence[str], where: str) -> tuple[str, ...]:
+    """A note about names that stand above several columns: the reader of CSV numbers the later ones."""
+    later = [name for name in names if name.endswith(".1") and name[:-2] in names]
+    return tuple(
+        f"{where}: {name[:-2]!r} stands above several columns: the second one is called {name!r}."
+        for name in later
+    )
 
 
 def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -> None:

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from mascarin.errors import InputError
-from mascarin.tables.reading.numbers import EMPTY
+from mascarin.tables.encodings import encodings_of
+from mascarin.tables.reading.numbers import EMPTY, WITH_CODE
 from mascarin.tables.units import parse_unit
 
 _MARKS: Final = (";", "\t", ",", "|")
@@ -21,6 +22,7 @@ _BLOCK: Final = 3
 _DIGIT: Final = re.compile(r"[-+]?[.,]?\d")
 _COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 _POINT: Final = re.compile(r"[-+]?\d+\.\d+(?:[eE][-+]?\d+)?")
+_PLAIN: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 _THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
 _FORMAT: Final = re.compile(r"(?:yy|dd|mm|hh|ss)[-/.:, tydmhs]+", re.IGNORECASE)
 _BRACKETS: Final = re.compile(r"\[.*\]|\(.*\)|<.*>")
@@ -70,7 +72,8 @@ def decoded(raw: bytes, where: str) -> tuple[str, str]:
     """Text of a file, and the name of its encoding.
 
     A byte order mark decides; without one, UTF-16 is recognized by its zero bytes. What is not UTF-8 is
-    Windows-1252, of which Latin-1 is a part (WHATWG Encoding Standard): degree signs and umlauts of loggers.
+    that of `encodings_of`, or Windows-1252, of which Latin-1 is a part (WHATWG Encoding Standard): degree
+    signs and umlauts of loggers.
 
     Parameters
     ----------
@@ -84,7 +87,7 @@ def decoded(raw: bytes, where: str) -> tuple[str, str]:
     InputError
         The file is no text.
     """
-    guesses = ["utf-8-sig", "cp1252", "latin-1"]
+    guesses = ["utf-8-sig", *encodings_of(raw), "cp1252", "latin-1"]
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         guesses = ["utf-16"]
     elif len(raw) >= 4:
@@ -162,7 +165,7 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
     """Number of the line with the names of the columns."""
     start = next((k for k, line in enumerate(lines) if line.strip()), 0)
     marks = [separator] if separator else list(_MARKS)
-    third = lines[start + 2] if start + 2 < len(lines) else ""
+    third = next((line for line in lines[start + 2 : start + 5] if line.strip()), "")
     if any(
         _begins_with_names(lines[start : start + 2], mark) and not _are_names(third, mark) for mark in marks
     ):
@@ -179,6 +182,7 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
     while at >= 0 and (not lines[at].strip() or _is_units(_cells(lines[at], mark))):
         at -= 1
     at = _above_labels(lines, at, mark, count)
+    at = _below_a_preamble(lines, at, mark, count)
     names = _cells(lines[at], mark) if at >= 0 else []
     if at < 0 or len(names) not in (count, count - 1):
         above = (
@@ -203,10 +207,30 @@ def _above_labels(lines: Sequence[str], at: int, mark: str, count: int) -> int:
     return place if len(names) == count and all(names) else at
 
 
+def _below_a_preamble(lines: Sequence[str], at: int, mark: str, count: int) -> int:
+    """Number of the line with the names where rows of a preamble have as many entries as those of the table.
+
+    Such a preamble, as spreadsheets write it, leaves entries of the line above its rows empty, or begins it
+    with a number.
+    """
+    cells = _cells(lines[at], mark) if at >= 0 else []
+    if len(cells) == count and _are_names(lines[at], mark):
+        return at
+    for place in range(max(at, 0) + 1, min(len(lines), _SEARCHED)):
+        if not _are_names(lines[place], mark) or len(_cells(lines[place], mark)) != count:
+            continue
+        rows = [_cells(line, mark) for line in lines[place + 1 : place + 2 + _UNIT_ROWS]]
+        data = [row for row in rows if row and not _is_units(row)]
+        if data and all(len(row) == count and _is_data(row) for row in data):
+            return place
+    return at
+
+
 def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
     """Whether the first line of a table holds names and the second one data."""
     names, data = (_cells(line, mark) for line in lines) if len(lines) == 2 else ([], [])
-    return 1 < len(names) == len(data) and not _is_data(names) and _is_data(data)
+    named = sum(bool(name) for name in names)
+    return 1 < len(names) == len(data) and 2 * named > len(names) and not _is_data(names) and _is_data(data)
 
 
 def _are_names(line: str, mark: str) -> bool:
@@ -304,6 +328,10 @@ def _separator(lines: Sequence[str], where: str, line: int) -> str:
         if count > 1:
             same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
             fits[mark] = (same, header.count(mark))
+    words = below[0].split() if below else []
+    same = len(below) > 1 and all(len(text.split()) == len(header.split()) for text in below)
+    if not fits and same and len(words) > 1 and _PLAIN.fullmatch(words[-1]):
+        return " "
     if not fits:
         raise InputError(
             f"{where}:{line + 1}: no separator found in the header {header.strip()[:40]!r}, expected the "
@@ -318,7 +346,7 @@ def _decimal(rows: Sequence[Sequence[str]]) -> tuple[str, bool]:
     It is the comma where entries have decimal commas and none has a point that stands before decimals: three
     digits behind a mark may be thousands.
     """
-    cells = [cell for row in rows for cell in row]
+    cells = [cell for row in rows for cell in row if not WITH_CODE.fullmatch(cell)]
     comma = any(_COMMA.fullmatch(cell) for cell in cells)
     evident = {
         mark: any(pattern.fullmatch(cell) and not _THOUSANDS.fullmatch(cell) for cell in cells)

@@ -21,9 +21,14 @@ EMPTY: Final = frozenset(
 )
 """Entries that mean that there is no value; in small letters."""
 
+CODES: Final = (-999.0, -999.9, -999.99, -6999.0, -7999.0, -9999.0, -9999.9, -99999.0, -888.88)
+"""Numbers that loggers and services write where nothing was measured."""
+
+WITH_CODE: Final = re.compile(r"[-+]\d{4},\d")
+"""Values of NOAA's integrated surface data: tenths and a code of quality, such as +0180,1."""
 #: Marks between groups of three digits that are never decimal: blanks of any width, apostrophes.
 _GROUPS: Final = re.compile(r"(?<=\d)['\u2019\u00a0\u202f\u2009 ](?=\d{3}(?!\d))")
-_NUMBER: Final = re.compile(r"[-+\u2212]?(?:\d+(?:[.,]\d*)*|[.,]\d+)(?:[eE][-+]?\d+)?")
+_NUMBER: Final = re.compile(r"[-+\u2212]?(?:\d+(?:[.,]\d*)*|[.,]\d+)(?:[eEdD][-+]?\d+)?")
 #: Values from which on a number without a mark shows that there are no groups of thousands.
 _GROUPED: Final = 1000.0
 #: Entries of a long column that are looked at first.
@@ -91,6 +96,13 @@ def _of_texts(
     codes, uniques = pd.factorize(series)
     texts = ["" if isinstance(entry, float) and np.isnan(entry) else str(entry).strip() for entry in uniques]
     plain = [_GROUPS.sub("", text) for text in texts]
+    coded = [text for text in plain if WITH_CODE.fullmatch(text)]
+    if coded and len(coded) == sum(text.lower() not in EMPTY for text in plain):
+        raise InputError(
+            f"{where}, line {_line(series, coded[0], lines)}: found {coded[0]!r}, a number and a code of "
+            "quality as in the integrated surface data of NOAA; expected one number: write the number alone "
+            "in a column of its own, or get the data as hourly CSV with one value in a column."
+        )
     written = [text for text in plain if _NUMBER.fullmatch(text)]
     other = "," if decimal == "." else "."
     if stated or (evident and _can_be_thousands(written, other)):
@@ -113,6 +125,35 @@ def _of_texts(
     return numbers[codes]
 
 
+def without_codes(values: Array) -> tuple[Array, dict[str, int]]:
+    """Values without the numbers that stand for none, such as -999, and how often each was found.
+
+    A code is one where it is below all other values by five times their range.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        As read, NaN where empty.
+
+    Examples
+    --------
+    >>> without_codes(np.array([20.5, -999.0, 21.0]))
+    (array([20.5,  nan, 21. ]), {'-999': 1})
+    >>> without_codes(np.array([-1050.0, -999.0, -900.0]))[1]
+    {}
+    """
+    lowest = float(np.nanmin(values)) if np.any(np.isfinite(values)) else 0.0
+    if lowest not in CODES:
+        return values, {}
+    codes = np.isin(values, CODES)
+    others = values[np.isfinite(values) & ~codes]
+    if not len(others) or lowest > others.min() - 5.0 * np.ptp(others) or others.min() < -300.0:
+        return values, {}
+    names, counts = np.unique(values[codes], return_counts=True)
+    found = {f"{name:g}": int(count) for name, count in zip(names.tolist(), counts.tolist(), strict=True)}
+    return np.where(codes, np.nan, values), found
+
+
 def _is_bad(text: str) -> bool:
     return text.lower() not in EMPTY and not _NUMBER.fullmatch(text)
 
@@ -123,7 +164,7 @@ def _line(series: pd.Series[Any], text: str, lines: Lines) -> int:
 
 
 def _number(text: str, mark: str, groups: str) -> float:
-    plain = text.replace("\u2212", "-")
+    plain = text.replace("\u2212", "-").replace("D", "e").replace("d", "e")  # exponents of Fortran
     if groups in plain and groups:
         if not re.fullmatch(
             rf"[-+]?\d{{1,3}}(?:{re.escape(groups)}\d{{3}})+(?:{re.escape(mark)}\d*)?", plain

@@ -11,6 +11,13 @@ from mascarin.tables.units import parse_unit
 #: A line that is about the clock.
 _ABOUT_CLOCK: Final = re.compile(r"zone|\btime|uhr|zeit|\btz\b|fuseau|heure|hora", re.IGNORECASE)
 _CLOCK: Final = re.compile(r"\b(?:GMT|UTC)\b(?:\s*[-+\u2212]\s*\d{1,2}(?::?\d{2})?\b)?")
+#: Names of cells with the offset of the clock, above a line with their values: NSRDB, Open-Meteo.
+_OFFSET_CELLS: Final = {"time zone": 1.0, "timezone": 1.0, "utc_offset_seconds": 1.0 / 3600.0}
+_OFFSET: Final = re.compile(r"[-+]?\d{1,5}(?:\.\d+)?")
+#: A line that states the offset alone.
+_OFFSET_LINE: Final = re.compile(
+    r"\W*time ?zone\W*?[:=,;\t ]\W*?(?P<hours>[-+]?\d{1,2}(?:\.\d+)?)\s*(?:h|hours)?[\W]*$", re.IGNORECASE
+)
 _SIGNS: Final = " \t\"'#;,:=[]()<>"
 
 
@@ -38,7 +45,32 @@ def clock_of_preamble(lines: Sequence[str]) -> tuple[str, int]:
         for number, line in enumerate(lines)
         if _ABOUT_CLOCK.search(line) and (match := _CLOCK.search(line)) is not None
     ]
+    stated = stated or _offsets(lines)
     return stated[0] if len({words for words, _ in stated}) == 1 else ("", 0)
+
+
+def _offsets(lines: Sequence[str]) -> list[tuple[str, int]]:
+    """Offsets of the clock as numbers: behind their name, or in the line below it."""
+    found = []
+    for number, line in enumerate(lines):
+        alone = _OFFSET_LINE.fullmatch(line)
+        if alone is not None:
+            found.append((_offset_text(float(alone["hours"])), number))
+        below = lines[number + 1] if number + 1 < len(lines) else ""
+        for mark in (",", ";", "\t"):
+            names, values = ([cell.strip(" \"'") for cell in text.split(mark)] for text in (line, below))
+            if len(names) < 2 or len(names) > len(values):
+                continue
+            for name, value in zip(names, values, strict=False):
+                factor = _OFFSET_CELLS.get(name.lower())
+                if factor is not None and _OFFSET.fullmatch(value) and abs(float(value) * factor) <= 14.0:
+                    found.append((_offset_text(float(value) * factor), number + 1))
+    return found
+
+
+def _offset_text(hours: float) -> str:
+    minutes = round(abs(hours) * 60.0)
+    return f"UTC{'-' if hours < 0.0 else '+'}{minutes // 60:02d}:{minutes % 60:02d}"
 
 
 def units_of_preamble(lines: Sequence[str], names: Sequence[str]) -> dict[str, tuple[str, int]]:
@@ -60,13 +92,19 @@ def units_of_preamble(lines: Sequence[str], names: Sequence[str]) -> dict[str, t
     --------
     >>> units_of_preamble(["# AirT: Deg F", "Wind [km/h]", "AirT is new"], ["time", "AirT", "Wind"])
     {'AirT': ('Deg F', 0), 'Wind': ('km/h', 1)}
+    >>> units_of_preamble(["T in Fahrenheit, G in kW/m2", "# FH = wind (in 0.1 m/s)"], ["T", "G", "FH"])
+    {'T': ('Fahrenheit', 0), 'G': ('kW/m2', 0), 'FH': ('0.1 m/s', 1)}
     """
     units: dict[str, tuple[str, int]] = {}
     for number, line in enumerate(lines):
         for name in names:
             if not name or name in units:
                 continue
-            for part in re.findall(rf"(?:^|[\s\"'#;,]){re.escape(name)}\s*[:=;,\t\[(]+([^:=;,\t\])]+)", line):
+            own = rf"(?:^|[\s\"'#;,]){re.escape(name)}"
+            parts = re.findall(rf"{own}\s*[:=;,\t\[(]+([^:=;,\t\])]+)", line)
+            parts += re.findall(rf"{own} (?:is |are |measured )*in ([^:=;,\t\])]+)", line)
+            parts += re.findall(rf"{own}\s*[:=][^:=\[(]*[\[(](?:in )?([^\])]+)[\])]", line)
+            for part in parts:
                 text = part.strip(_SIGNS)
                 if parse_unit(text) is not None:
                     units[name] = (text, number)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array
 from mascarin.tables.columns import Column
 from mascarin.tables.reading.interval_labels import knot_lines, to_starts
+from mascarin.tables.reading.numbers import without_codes
 from mascarin.tables.reading.table import Stamps, Table
 from mascarin.tables.record import Kind, Origin, Record
 from mascarin.tables.units import ENERGIES, HEATS, StatedUnit
@@ -97,19 +100,57 @@ def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array
         There is no such column, an entry is no number, or units contradict each other.
     """
     where = f"{table.where}: {name}"
-    raw = table.numbers(column.column, name, compass=unit == "deg")
+    raw, codes = without_codes(table.numbers(column.column, name, compass=unit == "deg"))
     stated = None if column.overrule else table.stated_unit(column.column)
+    if stated is None and column.unit is None and not column.overrule:
+        _require_settled_letter(raw, column, name, table)
     settled = column.settled(stated, unit, table.interval, table.names, where)
     if settled.unit in HEATS and _is_meter(raw):
         return _as_read(raw, settled, stated, name, table)
     values = settled.convert(raw, unit, table.interval, where)
-    words = table.empty_words(column.column)
+    if settled.unit == "degC" and not column.overrule:
+        _require_celsius(values, column, where)
+    words = {**table.empty_words(column.column), **codes}
     left = "" if stated is None or settled.unit is not None else stated.unit
     stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
     of_interval = settled.unit in ENERGIES or settled.unit in HEATS
     return values, Origin(
         left, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval
     )
+
+
+def _require_settled_letter(values: Array, column: Column, name: str, table: Table) -> None:
+    """Refuse a column called such as T_F whose values can be degF alone, or degC of something hot."""
+    letter = _LETTER.fullmatch(column.column.strip())
+    if letter is None or column.scale != 1.0 or column.offset != 0.0:
+        return
+    middle = float(np.nanmedian(values)) if np.any(np.isfinite(values)) else 0.0
+    if _USUAL < middle < _BOILING:
+        raise InputError(
+            f"{table.where}: {name}: the column {column.column!r} has {np.nanmin(values):g} .. "
+            f"{np.nanmax(values):g} and a name that may say degF; expected a stated unit. Write "
+            f"{{column: {column.column!r}, unit: degF}}, or unit: degC."
+        )
+
+
+def _require_celsius(values: Array, column: Column, where: str) -> None:
+    """Refuse temperatures that are stated in degC and look like kelvins throughout."""
+    there = values[np.isfinite(values)]
+    if len(there) and there.min() > _KELVINS[0] and there.max() < _KELVINS[1]:
+        raise InputError(
+            f"{where}: found {there.min():g} .. {there.max():g} degC in the column {column.column!r}, as the "
+            "unit is stated; expected temperatures of a building. They look like K: write "
+            f"{{column: {column.column!r}, unit: K, overrule: true}}, or unit: degC with overrule: true where"
+            " they are right."
+        )
+
+
+#: Temperatures of weather and buildings in kelvins.
+_KELVINS: Final = (220.0, 345.0)
+_LETTER: Final = re.compile(r"(?i:t|temp|temperature)[a-z0-9]*[_ ]F")
+#: Temperatures of rooms and of outdoors are below the first one in degC, and below the second one in degF.
+_USUAL: Final = 42.0
+_BOILING: Final = 130.0
 
 
 def _is_meter(values: Array) -> bool:

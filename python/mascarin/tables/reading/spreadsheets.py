@@ -20,7 +20,7 @@ _BYTES: Final = 200.0
 
 
 def sheet_text(path: Path) -> tuple[str, tuple[str, ...]]:
-    """The first sheet with content as text, with tabs between entries and points before decimals.
+    """The first sheet with a table as text, with tabs between entries and points before decimals.
 
     Parameters
     ----------
@@ -59,7 +59,10 @@ def sheet_text(path: Path) -> tuple[str, tuple[str, ...]]:
             out = io.StringIO()
             writer = csv.writer(out, delimiter="\t", lineterminator="\n")
             writer.writerows([_text(value) for value in row] for row in sheet.iter_rows(values_only=True))
-            if out.getvalue().strip():
+            # A sheet of remarks alone stands before that of the table in many workbooks.
+            if sum(bool(line.strip()) for line in out.getvalue().splitlines()) > 2 or (
+                name == names[-1] and out.getvalue().strip()
+            ):
                 others = [other for other in names if other != name]
                 said = f"{path.name}: read from the sheet {name!r}; {', '.join(map(repr, others))} left out."
                 return out.getvalue(), (said,) if others else ()

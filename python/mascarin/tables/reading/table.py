@@ -17,26 +17,21 @@ from mascarin._io.arguments import require_type
 from mascarin._io.durations import seconds_of, shift_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags, Lines
-from mascarin.tables.reading.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
 from mascarin.tables.reading.files import Read, content_of, read_frame, with_time_column
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
-from mascarin.tables.reading.rows import (
-    has_words,
-    parts_of_time,
-    rows_with_values,
-    time_text,
-    without_entries,
-    without_units,
-)
+from mascarin.tables.reading.order import clock_changes, first_to_last, require_order, skipped_hour
+from mascarin.tables.reading.rows import has_words, rows_with_values, without_entries
+from mascarin.tables.reading.units_of_entries import without_units
+from mascarin.tables.stamps.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
+from mascarin.tables.stamps.time_columns import parts_of_time, time_text
 from mascarin.tables.times import epoch_seconds, stamps_of
 from mascarin.tables.timezones import (
-    fixed_offset,
     fixed_zone,
     parse_timezone,
     zone_name,
     zone_of,
 )
-from mascarin.tables.units import StatedUnit, parse_unit, unit_in_name
+from mascarin.tables.units import StatedUnit, parse_unit, same_unit, unit_in_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,6 +41,7 @@ Stamps = Literal["start", "end"]
 
 #: Stamps of PVGIS (Joint Research Centre, user manual of PVGIS 5.3): the time of the satellite's image.
 _PVGIS: Final = re.compile(r"\d{8}:\d{4}")
+_IN_NAME: Final = "the name of the column"
 #: Jitter of a clock that is allowed, as a part of the step.
 _JITTER: Final = 0.1
 
@@ -84,6 +80,8 @@ class Table:
         Whether the stamps have the form of PVGIS, whose irradiances are values at the stamp (such as 00:10).
     preamble_units : mapping of str to (str, int)
         Units that lines above the names state, and their lines.
+    entry_units : mapping of str to str
+        Units behind the numbers, or in a column beside them.
     """
 
     frame: pd.DataFrame
@@ -100,6 +98,7 @@ class Table:
     decimal_evident: bool = False
     of_pvgis: bool = False
     preamble_units: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    entry_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
@@ -125,23 +124,38 @@ class Table:
         InputError
             The two contradict each other.
         """
-        text = self.units.get(column, "")
-        row, name = parse_unit(text), unit_in_name(column)
-        if row is not None and name is not None and row != name[0]:
-            raise InputError(
-                f"{self.where}:{self.units_line}: the row of units has {text!r} for the column {column!r}, "
-                f"whose name says {name[1]!r}; expected the same. State the right one: "
-                f"{{column: {column!r}, unit: {name[0]!r}, overrule: true}}."
-            )
-        if row is not None:
-            spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
-            return StatedUnit(row, text, spot)
+        found = self._statements(column)
+        for other in found[1:]:
+            if not same_unit(found[0].unit, other.unit):
+                says = (
+                    f"whose name says {other.text!r}"
+                    if other.place == _IN_NAME
+                    else (f"for which {other.place} says {other.text!r}")
+                )
+                line = f":{self.units_line}" if self.units_line and column in self.units else ""
+                raise InputError(
+                    f"{self.where}{line}: {found[0].place.split(' (line')[0]} has {found[0].text!r} for the "
+                    f"column {column!r}, {says}; expected the same. State the right one: "
+                    f"{{column: {column!r}, unit: {other.unit!r}, overrule: true}}."
+                )
+        return found[0] if found else None
+
+    def _statements(self, column: str) -> list[StatedUnit]:
+        """All that the file says of the unit of a column: row of units, entries, name, lines above."""
+        found = []
+        spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
+        texts = [(self.units.get(column, ""), spot), (self.entry_units.get(column, ""), "each entry")]
+        for text, place in texts:
+            unit = parse_unit(text)
+            if unit is not None:
+                found.append(StatedUnit(unit, text, place))
+        name = unit_in_name(column, self.names)
         if name is not None:
-            return StatedUnit(*name, "the name of the column")
+            found.append(StatedUnit(*name, _IN_NAME))
         if column in self.preamble_units:
             words, line = self.preamble_units[column]
-            return StatedUnit(str(parse_unit(words)), words, f"line {line} above the names")
-        return None
+            found.append(StatedUnit(str(parse_unit(words)), words, f"line {line} above the names"))
+        return found
 
     def empty_words(self, column: str) -> dict[str, int]:
         """How often each word for no value stands in a column; empty entries are not counted."""
@@ -253,7 +267,7 @@ def read_table(
         read = read_frame(path, content, separator, decimal, skip_lines)
         del content
         frame, said = read.frame, read.notes
-    frame, of_entries = without_units(frame)
+    frame, of_entries = without_units(frame, where)
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
@@ -265,13 +279,13 @@ def read_table(
         time, time_format = parts
     text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
-    if missing:
-        frame = without_entries(frame, missing)
+    frame = without_entries(frame, missing) if missing else frame
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
     stated = read.clock if read is not None else ("", 0)
     zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
-    said = (*said, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
+    frame, lines, turned = first_to_last(frame, lines, where)
+    said = (*said, *turned, *of_zone, *dropped, *(f"{where}: {note}" for note in notes))
     frame.index, said = _shifted(pd.DatetimeIndex(frame.index), shift, zone, where, said)
     length = seconds_of(step, where) if step is not None else None
     allowed = seconds_of(tolerance, f"{where}: tolerance") if tolerance is not None else None
@@ -280,7 +294,7 @@ def read_table(
         note = f"{where}: stamps of PVGIS: irradiances are values at the stamp."
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     table = table if read is None else replace(table, **read.said_of_itself)
-    return replace(table, units={**table.units, **of_entries}) if of_entries else table
+    return replace(table, entry_units=of_entries)
 
 
 def _shifted(
@@ -370,7 +384,7 @@ def _regular(
     index = pd.DatetimeIndex(frame.index)
     seconds = epoch_seconds(index)
     gaps = np.round(np.diff(seconds), 6)
-    _ordered(gaps, index, lines, where, zone)
+    require_order(frame, gaps, index, lines, where, zone)
     interval = expected if expected is not None else _commonest(gaps)
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
@@ -398,7 +412,7 @@ def _regular(
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
-    notes += [*said, *_clock_changes(index, where, zone), *_skipped_hour(index, gaps - interval, where, zone)]
+    notes += [*said, *clock_changes(index, where, zone), *skipped_hour(index, gaps - interval, where, zone)]
     absent = int(place[-1]) + 1 - len(frame)
     if absent:
         row = int(np.argmax(ratio > 1.5))
@@ -438,59 +452,6 @@ def _without_jitter(
                 said = f"stamps were moved to the grid of {_length(step)}, by {found[1]:g} s at most."
                 return found[0], step, said
     return None
-
-
-def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[str]:
-    """Sentences on the changes of the clock inside a record."""
-    if zone.utcoffset(None) is not None:  # a clock that never changes
-        return []
-    naive = index.tz_localize(None).to_numpy()
-    offset = (naive - index.tz_convert("UTC").tz_localize(None).to_numpy()) / np.timedelta64(60, "s")
-    changes = [int(k) for k in np.flatnonzero(np.diff(offset))]
-    return [
-        f"{where}: clocks of {zone_name(zone)} go {'forward' if offset[k + 1] > offset[k] else 'back'} by "
-        f"{abs(offset[k + 1] - offset[k]):g} min between {index[k]:%Y-%m-%d %H:%M} and "
-        f"{index[k + 1]:%Y-%m-%d %H:%M}."
-        for k in changes
-    ]
-
-
-def _skipped_hour(index: pd.DatetimeIndex, extra: Array, where: str, zone: tzinfo) -> list[str]:
-    """A warning where a single hour is missing at the time at which clocks go forward in many zones."""
-    if not fixed_offset(zone):
-        return []
-    # On a Sunday between midnight and 4 h, in March, April, September or October.
-    found = [
-        index[row]
-        for row in np.flatnonzero(extra == 3600.0).tolist()
-        if (stamp := index[row + 1]).weekday() == 6 and stamp.hour <= 4 and stamp.month in (3, 4, 9, 10)
-    ]
-    return [
-        f"{where}: warning: one hour is missing after {found[0]:%Y-%m-%d %H:%M}, when clocks go forward in "
-        "many "
-        f"zones. If the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong zone: "
-        "state the zone of the place, such as Europe/Paris."
-        for _ in found[:1]
-    ]
-
-
-def _ordered(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str, zone: tzinfo) -> None:
-    wrong = np.flatnonzero(gaps <= 0.0)
-    if not len(wrong):
-        return
-    row = int(wrong[0])
-    found = "is repeated" if gaps[row] == 0.0 else f"comes after {index[row]:%Y-%m-%d %H:%M:%S}"
-    hint = "remove or sort the rows."
-    if gaps[row] == -3600.0 or (gaps[row] < 0.0 and np.any(gaps == -gaps[row])):
-        hint = (
-            f"if the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong "
-            "zone: state the zone of the place, such as Europe/Paris, where the rows of the doubled hour are "
-            "taken in order; otherwise remove or sort the rows."
-        )
-    raise InputError(
-        f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected increasing "
-        f"times ({len(wrong)} such rows in all); {hint}"
-    )
 
 
 def _length(seconds: float) -> str:

@@ -10,30 +10,35 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io.sealed.cache import Cached, cached
-from mascarin.tables import columns, timezones, units
+from mascarin.tables import columns, encodings, timezones, units
 from mascarin.tables.grid import Grid
 from mascarin.tables.reading import (
-    clocks,
+    archives,
     files,
     interval_labels,
     layout,
     numbers,
+    order,
+    preamble,
     records,
     rows,
     spreadsheets,
     table,
+    units_of_entries,
 )
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.reading.own_readers import reader_of
 from mascarin.tables.record import Origin, Record
+from mascarin.tables.stamps import clocks, formats, iso_stamps, months, time_columns
 from mascarin.tables.timezones import parse_timezone
 
 AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 #: Modules that make a record of a table, beside that of the caller.
 _CODE: Final = (
-    clocks, columns, files, interval_labels, layout, numbers, records, rows, spreadsheets, table, timezones,
-    units,
+    archives, clocks, columns, encodings, files, formats, interval_labels, iso_stamps, layout, months,
+    numbers, order, preamble, records, rows, spreadsheets, table, time_columns, timezones, units,
+    units_of_entries,
 )  # fmt: skip
 #: Larger files have more numbers than the cache keeps: their hash alone would take time. [B]
 _LARGEST: Final = 48 * 2**20

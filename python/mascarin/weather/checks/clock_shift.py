@@ -14,6 +14,7 @@ balance of components as a check of instruments).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -24,7 +25,7 @@ from mascarin.weather.derived.sun import SunPath
 from mascarin.weather.records.channels import RADIATION
 from mascarin.weather.records.record import WeatherRecord
 
-_NODE: Final = 300.0
+NODE: Final = 300.0
 """Step of the sun and of the shifts that are tried. [s]"""
 _MOST: Final = 30
 """Largest shift that is tried, in nodes: two and a half hours."""
@@ -101,7 +102,7 @@ class ClockShift:
 
 
 @dataclass(frozen=True)
-class _Days:
+class Days:
     """Rows of a record by solar day, and the sun around them.
 
     Attributes
@@ -110,12 +111,15 @@ class _Days:
         Irradiances, shape (days, rows). [W/m2]
     sines : ndarray, shape (days, nodes)
         Sine of the elevation, not below zero, from `_MOST` nodes before the first row on. [-]
+    directions : ndarray, shape (days, nodes, 3)
+        Unit vector to the sun at the nodes: east, north, up. [-]
     width : int
         Nodes of a row.
     """
 
     values: dict[str, Array]
     sines: Array
+    directions: Array
     width: int
 
     @property
@@ -147,19 +151,31 @@ def shifts_of(record: WeatherRecord, latitude: float, longitude: float) -> tuple
     tuple of ClockShift
         By the balance and by symmetry, each where the record shows it.
     """
-    days = _days_of(record, latitude, longitude)
+    days = days_of(record, latitude, longitude)
     if days is None:
         return ()
     found = (_by_balance(days), _by_symmetry(days))
     return tuple(shift for shift in found if shift is not None)
 
 
-def _days_of(record: WeatherRecord, latitude: float, longitude: float) -> _Days | None:
-    """Rows by solar day; None where the record is too short or its step does not divide a day."""
+def days_of(
+    record: WeatherRecord, latitude: float, longitude: float, further: Mapping[str, Array] | None = None
+) -> Days | None:
+    """Rows by solar day; None where the record is too short or its step does not divide a day.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        As read.
+    latitude, longitude : float
+        Positive north and east. [deg]
+    further : mapping of str to ndarray, shape (rows,), optional
+        Irradiances of planes on the grid of the record. [W/m2]
+    """
     grid, step = record.grid, record.grid.interval
     width = next((w for w in _ROWS if w >= step and abs(w / step - round(w / step)) < 1e-9), step)
     per = round(width / step)
-    if width > _LONGEST or width % _NODE or 86400.0 % width or "global_horizontal" not in record.columns:
+    if width > _LONGEST or width % NODE or 86400.0 % width or "global_horizontal" not in record.columns:
         return None
     midnight = -longitude * 240.0
     skipped = int(np.ceil(((midnight - grid.start) % 86400.0) / step))
@@ -169,24 +185,25 @@ def _days_of(record: WeatherRecord, latitude: float, longitude: float) -> _Days 
         return None
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_DAYS)).astype(int))
     names = [name for name in RADIATION if name in record.columns and name not in record.assumed]
+    columns = {name: record.columns[name] for name in names} | dict(further or {})
     values = {
-        name: record.columns[name][skipped : skipped + count * rows * per]
-        .reshape(count, rows, per)[chosen]
-        .mean(axis=2)
-        for name in names
+        name: column[skipped : skipped + count * rows * per].reshape(count, rows, per)[chosen].mean(axis=2)
+        for name, column in columns.items()
     }
     early = 0.5 * step if record.kinds["global_horizontal"] == "instant" else 0.0
     starts = grid.start + skipped * step - early + 86400.0 * chosen
-    nodes = _NODE * np.arange(-_MOST, round(86400.0 / _NODE) + _MOST + 1)
+    nodes = NODE * np.arange(-_MOST, round(86400.0 / NODE) + _MOST + 1)
     sun = SunPath.over(latitude, longitude, starts[0] + nodes[0] - 1.0, starts[-1] + nodes[-1] + 1.0)
-    sines = np.maximum(sun.vector(starts[:, None] + nodes)[..., 2], 0.0)
+    directions = sun.vector(starts[:, None] + nodes)
+    sines = np.maximum(directions[..., 2], 0.0)
     lit = sines.max(axis=1) > _LOW
     if not lit.any() or "global_horizontal" not in values:
         return None
-    return _Days({name: column[lit] for name, column in values.items()}, sines[lit], round(width / _NODE))
+    lit_values = {name: column[lit] for name, column in values.items()}
+    return Days(lit_values, sines[lit], directions[lit], round(width / NODE))
 
 
-_LAGS: Final = np.arange(-_MOST, _MOST + 1, 2)
+LAGS: Final = np.arange(-_MOST, _MOST + 1, 2)
 
 
 def _best(scores: Array) -> float:
@@ -196,7 +213,7 @@ def _best(scores: Array) -> float:
     left, middle, right = scores[inner - 1 : inner + 2]
     bend = left - 2.0 * middle + right
     part = 0.5 * (left - right) / bend if bend < 0.0 and inner == place else 0.0
-    return float((_LAGS[place] + 2.0 * part) * _NODE)
+    return float((LAGS[place] + 2.0 * part) * NODE)
 
 
 def _with_uncertainty(scores: Array, floor: float) -> tuple[float, float]:
@@ -208,7 +225,7 @@ def _with_uncertainty(scores: Array, floor: float) -> tuple[float, float]:
     return best, float(np.hypot(spread, floor * (1.0 + 3.0 / len(scores))))
 
 
-def _by_balance(days: _Days) -> ClockShift | None:
+def _by_balance(days: Days) -> ClockShift | None:
     """The shift that closes global = direct x sine + diffuse."""
     if "direct_normal" not in days.values:
         return None
@@ -221,18 +238,18 @@ def _by_balance(days: _Days) -> ClockShift | None:
     enough = used.sum(axis=1) >= least
     if not enough.any():
         return None
-    residuals = np.stack([_residuals(days, used, lag) for lag in _LAGS.tolist()], axis=-1)[enough]
+    residuals = np.stack([_residuals(days, used, lag) for lag in LAGS.tolist()], axis=-1)[enough]
     sizes = np.abs(residuals[used[enough]])
     typical = float(np.median(sizes[:, int(np.argmin((sizes**2).mean(axis=0)))]))
     limit = max(6.0 * typical, 1.0)  # single wrong rows decide nothing
     scores = -(np.minimum(np.abs(residuals), limit) ** 2)
     floor = _FLOOR if diffuse is not None else _FLOOR_WITHOUT_DIFFUSE
     late, uncertainty = _with_uncertainty(np.where(used[enough][..., None], scores, 0.0).sum(axis=1), floor)
-    split = diffuse is not None and _is_split(days, used, round(late / _NODE))
+    split = diffuse is not None and _is_split(days, used, round(late / NODE))
     return ClockShift(late, uncertainty, "balance", int(enough.sum()), split)
 
 
-def _residuals(days: _Days, used: Flags, late: int) -> Array:
+def _residuals(days: Days, used: Flags, late: int) -> Array:
     """Residual of the balance in each row; the gain of the beam is fitted, and without diffuse also that."""
     sine = days.means(days.sines, late)
     total, beam = days.values["global_horizontal"], np.where(used, days.values["direct_normal"], 0.0) * sine
@@ -252,7 +269,7 @@ def _residuals(days: _Days, used: Flags, late: int) -> Array:
     return np.asarray((wanted - np.einsum("dri,di->dr", terms, fitted)) * weight)
 
 
-def _is_split(days: _Days, used: Flags, late: int) -> bool:
+def _is_split(days: Days, used: Flags, late: int) -> bool:
     """Whether the components close more exactly than instruments do: one was calculated from the others."""
     total, beam, diffuse = (
         days.values[name] for name in ("global_horizontal", "direct_normal", "diffuse_horizontal")
@@ -267,14 +284,14 @@ def _is_split(days: _Days, used: Flags, late: int) -> bool:
     )
 
 
-def _by_symmetry(days: _Days) -> ClockShift | None:
+def _by_symmetry(days: Days) -> ClockShift | None:
     """The shift for which most hours of clear days have the form of a clear sky."""
     seen = days.sines.max(axis=0) > _LOW  # rows that are dark on all days are left out
     lit = [bool(seen[k * days.width : (k + 1) * days.width + 2 * _MOST].any()) for k in range(days.rows)]
     total = days.values["global_horizontal"][:, lit]
-    scores = np.zeros((len(total), len(_LAGS)))
+    scores = np.zeros((len(total), len(LAGS)))
     forms = [_CLEAR * days.sines * np.exp(-decay / np.maximum(days.sines, 1e-3)) for decay in _DECAYS]
-    for column, lag in enumerate(_LAGS.tolist()):
+    for column, lag in enumerate(LAGS.tolist()):
         usable = (days.means(days.sines, lag)[:, lit] > _LOW) & (total > 0.0)
         for form in forms:
             expected = days.means(form, lag)[:, lit]
@@ -290,7 +307,7 @@ def _by_symmetry(days: _Days) -> ClockShift | None:
     return ClockShift(late, uncertainty, "symmetry", int(clear.sum()), outside=_outside(days, late))
 
 
-def _outside(days: _Days, late: float) -> float:
+def _outside(days: Days, late: float) -> float:
     """Part of the radiation that is more than a clear sky gives, in the morning or the evening."""
     total = np.nan_to_num(days.values["global_horizontal"])
     sine = days.means(days.sines, 0)

@@ -53,7 +53,7 @@ def require_likely_unit(name: str, values: Array, lines: Lines, column: str, whe
     if not len(finite):
         return
     unit = "%" if name == "relative_humidity" else UNITS.get(name, "")
-    doubt = _unlikely(name, finite)
+    doubt = unlikely(name, finite)
     if doubt is None:
         return
     said, likely = doubt
@@ -66,8 +66,16 @@ def require_likely_unit(name: str, values: Array, lines: Lines, column: str, whe
     )
 
 
-def _unlikely(name: str, values: Array) -> tuple[str, str] | None:
-    """What is not plausible, and the likely unit."""
+def unlikely(name: str, values: Array) -> tuple[str, str] | None:
+    """What is not plausible in the values of a channel, and the likely unit; None where all is.
+
+    Parameters
+    ----------
+    name : str
+        Channel.
+    values : ndarray, shape (n,)
+        In the unit of the channel, without missing ones.
+    """
     mean, top = float(values.mean()), float(values.max())
     usual = float(np.quantile(values, 0.95))  # single wrong values are found elsewhere
     if name in ("air_temperature", "dew_point") and (

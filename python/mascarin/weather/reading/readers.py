@@ -20,6 +20,7 @@ from mascarin.physics import dew_point
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.timezones import fixed_zone, zone_name
+from mascarin.weather.reading import year_checks
 from mascarin.weather.reading.shipped import COMPRESSED, content
 
 _HEADER = 8
@@ -128,7 +129,9 @@ def read_epw(path: Path) -> Year:
     """
     found = file_hash(path)  # refuses what is no file
     where = path.name.removesuffix(COMPRESSED)
-    kept_year = cached((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
+    kept_year = cached(
+        (found, where), [sys.modules[__name__], year_checks], lambda: _packed(_parsed_epw(path, where))
+    )
     return _unpacked(kept_year, where)
 
 
@@ -143,6 +146,7 @@ def _parsed_epw(path: Path, where: str) -> Year:
         unknown = (column >= limit) | ((column <= 0.0) & (channel == "infrared"))
         values[channel] = np.where(unknown, np.nan, column * factor)
     humidity = values.pop("relative_humidity")
+    doubts = year_checks.doubts_of_year(values, humidity, float(lines[0].split(",")[6]), where)
     derived = _dew_point_from(humidity, values, where)
     head = [field.strip() for field in lines[0].split(",")]
     latitude, longitude, hours, altitude = (float(field) for field in head[6:10])
@@ -154,6 +158,7 @@ def _parsed_epw(path: Path, where: str) -> Year:
         f"{where}: cloud cover is the opaque sky cover.",
         *rows.notes,
         *derived,
+        *doubts,
     )
     numbers = np.arange(len(rows.table), dtype=np.int64) + _HEADER + 1
     place = (latitude, longitude, altitude, name)

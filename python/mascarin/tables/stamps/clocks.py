@@ -10,7 +10,9 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
-from mascarin.tables.reading.iso_stamps import iso_stamps
+from mascarin.tables.stamps.formats import DATE, FORMATS, written_format
+from mascarin.tables.stamps.iso_stamps import iso_stamps
+from mascarin.tables.stamps.months import with_numbers_of_months
 from mascarin.tables.timezones import YEARS, localize, zone_name
 
 if TYPE_CHECKING:
@@ -21,14 +23,6 @@ _HAS_OFFSET: Final = r"[0-9]{1,2}:[0-9]{2}(?::[0-9]{2}(?:[.][0-9]+)?)? *(?:Z|[+-
 _MIDNIGHT: Final = r"[T ]24:00(?::00)?$"
 _MIDNIGHT_OF_DIGITS: Final = r" 2400$"
 _BLANKS: Final = "  |\t|\u00a0"
-_DATE: Final = (
-    r"^(?P<a>\d{1,4})(?P<mark>[./-])(?P<b>\d{1,2})[./-](?P<c>\d{1,4})"
-    r"(?:[ T,]+(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}(?:[.,]\d+)?))?"
-    r"\s*(?P<half>[AaPp])?\.?(?:[Mm]\.?)?)?$"
-)
-_FORMATS: Final = {
-    "ymd": "%Y-%m-%d", "dmy": "%d/%m/%Y", "mdy": "%m/%d/%Y",
-}  # fmt: skip
 #: Formats with names of months, in English, that are tried in turn.
 _NAMED: Final = (
     "%Y%m%d:%H%M",
@@ -38,8 +32,17 @@ _NAMED: Final = (
 #: Part of the steps that are equal where a record is regular.
 _REGULAR: Final = 0.8
 _DAY: Final = 86400.0
+#: Numbers from 1973 to 2103 in each unit, and the unit. [s]
+_SINCE_1970: Final = (
+    (1e8, 4.2e9, 1.0, "seconds"), (1e11, 4.2e12, 1e-3, "milliseconds"), (1e14, 4.2e15, 1e-6, "microseconds"),
+    (1e17, 4.2e18, 1e-9, "nanoseconds"),
+)  # fmt: skip
 #: Days from 1899-12-30, from which spreadsheets count, to 1970-01-01.
 _SPREADSHEET: Final = 25569.0
+_SPREADSHEET_SAID: Final = (
+    "stamps such as {:g} are days of a spreadsheet since 1899-12-30; those of a workbook with dates since "
+    "1904 are 1462 days later: see the year."
+)
 _ISO: Final = "ISO 8601 such as 2024-09-04 00:15"
 
 
@@ -93,7 +96,7 @@ def stamps_from(
         return _of_numbers(text, zone, clock, lines, where)
     if time_format is None and (plain := _plain_iso(text)) is not None:
         return _local(plain, clock, zone, lines, where)
-    written = text.astype(str).str.strip()
+    written = with_numbers_of_months(text.astype(str).str.strip())
     if written.str.contains(_BLANKS).any():
         written = written.str.replace(r"\s+", " ", regex=True)
     offset = bool(written.str.contains(_HAS_OFFSET).any())
@@ -106,12 +109,7 @@ def stamps_from(
         if other is not None:
             parsed, notes, bad = pd.Series(other[0]), other[1], np.zeros(0, np.int64)
     if len(bad):
-        row = int(bad[0])
-        expected = f"the format {time_format!r}" if time_format else _ISO
-        raise InputError(
-            f"{where}:{lines[row]}: time {str(text.iloc[row])!r} cannot be read, expected {expected}; "
-            "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
-        )
+        raise InputError(_unreadable(written, bad, time_format, lines, where))
     index = pd.DatetimeIndex(parsed) + pd.to_timedelta(late.astype(np.int64), unit="D")
     if time_format is not None and not offset:
         _require_likely_order(index, time_format, lines, where)
@@ -119,6 +117,22 @@ def stamps_from(
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
     found = _local(index, clock, zone, lines, where)
     return Stamped(found.times, (*notes, *found.notes))
+
+
+def _unreadable(
+    written: pd.Series[str], bad: Lines, time_format: str | None, lines: Lines, where: str
+) -> str:
+    """Text of the refusal of stamps: among many dates in one form, the row that is none is the cause."""
+    row = int(bad[0])
+    others = np.flatnonzero(written.str.extract(DATE)["a"].isna().to_numpy())
+    if 0 < len(others) < 0.1 * len(written) and time_format is None:
+        row = int(others[0])
+    expected = f"the format {time_format!r}" if time_format else _ISO
+    entry = str(written.iloc[row])
+    remedy = "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
+    if row and not any(sign.isdigit() for sign in entry):
+        remedy = "remove this row; where a second table begins with it, write that one as a file of its own."
+    return f"{where}:{lines[row]}: time {entry!r} cannot be read, expected {expected}; {remedy}"
 
 
 #: ISO 8601 without an offset.
@@ -212,7 +226,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
     if digits is not None:
         found = _local(pd.DatetimeIndex(digits), clock, zone, lines, where)
         return Stamped(found.times, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
-    for low, high, unit, name in ((1e8, 4.2e9, 1.0, "seconds"), (1e11, 4.2e12, 1e-3, "milliseconds")):
+    for low, high, unit, name in _SINCE_1970:
         if low <= values.min() and values.max() <= high:
             seconds = np.round(values * unit * 1e3).astype(np.int64)
             index = pd.DatetimeIndex(seconds.astype("datetime64[ms]")).tz_localize("UTC").tz_convert(zone)
@@ -221,7 +235,7 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
         # A day with eight decimals is read to the millisecond; clocks of loggers have whole seconds.
         seconds = np.round((values - _SPREADSHEET) * _DAY).astype(np.int64)
         found = _local(pd.DatetimeIndex(seconds.astype("datetime64[s]")), clock, zone, lines, where)
-        return Stamped(found.times, (f"stamps such as {values[0]:g} are days of a spreadsheet.",))
+        return Stamped(found.times, (_SPREADSHEET_SAID.format(values[0]),))
     raise InputError(
         f"{where}:{lines[0]}: time {text.iloc[0]} cannot be read, expected {_ISO}, seconds or milliseconds "
         "since 1970, days of a spreadsheet, or digits such as 202409040015; state the column of the times "
@@ -276,7 +290,7 @@ def _of_dates(
     """Stamps whose order of day, month and year follows from all of them; None where they are no dates."""
     import pandas as pd
 
-    parts = written.str.extract(_DATE)
+    parts = written.str.extract(DATE)
     if parts["a"].isna().any():
         return _with_names(written)
     a, b, c = (parts[name].to_numpy(dtype=np.int64) for name in "abc")
@@ -310,13 +324,13 @@ def _of_dates(
     if "dmy" in (best, *rivals) and str(parts["mark"].iloc[0]) == ".":
         best, rivals = "dmy", []  # points stand between day, month and year alone (DIN 5008)
     if rivals:
-        pair = " or ".join(
-            f"{found[name][0]:%Y-%m-%d %H:%M} ({_FORMATS[name]})" for name in (best, rivals[0])
-        )
+        names = [best, *rivals]
+        readings = " or ".join(f"{found[name][0]:%Y-%m-%d %H:%M} ({FORMATS[name]})" for name in names)
+        formats = " or ".join(repr(written_format(written.iloc[0], name)) for name in names)
+        count = "both" if len(names) == 2 else "all of them"
         raise InputError(
-            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {pair}, and both give regular times; "
-            f"expected one reading: state time_format: {_written_format(written.iloc[0], best)!r} or "
-            f"{_written_format(written.iloc[0], rivals[0])!r}."
+            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {readings}, and {count} give regular "
+            f"times; expected one reading: state time_format: {formats}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
     return found[best], (f"stamps such as {written.iloc[0]!r} are {words}, by the regular times of all.",)
@@ -344,20 +358,6 @@ def _share(index: pd.DatetimeIndex) -> float:
     # Days that are a month apart are fewer than the steps of a day: their share weighs as much.
     jumps = float(np.mean(steps > 20 * 86_400_000))
     return float(counts[np.argmax(counts)] / len(steps)) if not back and not jumps else 0.0 * lengths[0]
-
-
-def _written_format(example: str, order: str) -> str:
-    """Strptime format of a stamp."""
-    found = re.match(_DATE, example)
-    if found is None:
-        return _FORMATS[order]
-    mark = found["mark"]
-    year = "%Y" if max(len(found["a"]), len(found["c"])) == 4 else "%y"
-    date = mark.join({"y": year, "m": "%m", "d": "%d"}[letter] for letter in order)
-    if found["hour"] is None:
-        return date
-    clock = ("%I" if found["half"] else "%H") + ":%M" + (":%S" if found["second"] else "")
-    return f"{date} {clock}" + (" %p" if found["half"] else "")
 
 
 def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Lines, where: str) -> None:

@@ -1,0 +1,1 @@
+"""Stamps of tables: which columns hold them, and how they are written."""
