@@ -26,7 +26,7 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
         tree.setdefault("gains", {})[name] = _gain(draw, schedules)
     for name in draw.some(["fan", "shaft"]) if draw.chance(0.4) else []:
         flow = {"air_changes": draw.log(0.1, 30.0)} if draw.chance(0.6) else {"flow": draw.log(0.001, 0.3)}
-        tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5)
+        tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5) | _density(draw)
     tree |= _loads(draw, schedules)
     if draw.chance(0.25):
         tree["thermal_bridges"] = {"edge": _bridge(draw, others)}
@@ -38,7 +38,7 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
 def _infiltration(draw: Draw) -> Any:
     if draw.chance(0.4):
         return draw.noted(draw.log(0.02, 6.0), 0.01)
-    tree: Json = {"constant": draw.number(0.0, 2.0)}
+    tree: Json = {"constant": draw.number(0.0, 2.0)} | _density(draw)
     if draw.chance(0.5):
         tree["temperature"] = draw.number(0.0, 0.05)
     if draw.chance(0.5):
@@ -54,6 +54,11 @@ def _infiltration(draw: Draw) -> Any:
             },
         )  # fmt: skip
     return tree
+
+
+def _density(draw: Draw) -> Json:
+    """Which air a flow is a volume of."""
+    return {"density": draw.of("site", "outdoors", "zone", 1.2)} if draw.chance(0.3) else {}
 
 
 def _gain(draw: Draw, schedules: Schedules) -> Json:
