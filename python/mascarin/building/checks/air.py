@@ -39,13 +39,13 @@ def flows_of_zones(building: Description) -> dict[ZoneAir, list[ZoneFlowAt]]:
     """
     flows: dict[ZoneAir, list[ZoneFlowAt]] = {}
 
-    def add(zone: str, at: str, path: str, part: Driven, sign: float) -> None:
+    def add(zone: str, air_of: str, path: str, part: Driven, sign: float) -> None:
         density = getattr(part, "density", None)
         air, ratio = "site", 1.0
         if isinstance(density, ConstantDensity):
             ratio = float(density.value) / site_density(building.site)
         elif density is not None:
-            air = density.kind if density.kind != "zone" else f"zone '{at}'"
+            air = density.kind if density.kind != "zone" else f"zone '{air_of}'"
         flows.setdefault((zone, air), []).append((path, part, sign * ratio))
 
     for name, unit in building.ventilation_units.items():

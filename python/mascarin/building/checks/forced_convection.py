@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 #: The name of the air that drives a law, and that of a law's own number of air changes in addition.
 DRIVER: Final = "total_air_change"
-OWN: Final = "mixing"
+MIXING: Final = "mixing"
 
 
 def air_of_zone(building: Description, name: str) -> list[str]:
@@ -51,8 +51,8 @@ def driven_laws(building: Description) -> Iterator[tuple[str, str, bool]]:
         else:
             zone = getattr(building.surfaces[name], which).zone
         if zone is not None:
-            own = side.law.numbers.get(OWN)
-            yield side.path, zone, own is not None and float(own) > 0.0
+            mixing = side.law.numbers.get(MIXING)
+            yield side.path, zone, mixing is not None and float(mixing) > 0.0
 
 
 def forced_convection_faults(building: Description) -> Iterator[InitErrorDetails]:

@@ -73,12 +73,12 @@ def describe_unit(
     zones = list(building.zones)
 
     def flows(section: str) -> list[Json]:
-        places = {zone: deeper(ids, f"{section}.{zone}") for zone in getattr(unit, section)}
+        flow_ids = {zone: deeper(ids, f"{section}.{zone}") for zone in getattr(unit, section)}
         return [
             {
                 "zone": zones.index(zone),
-                **driven(flow, "flow", positions, places[zone]),
-                **density_of(flow, places[zone]),
+                **driven(flow, "flow", positions, flow_ids[zone]),
+                **density_of(flow, flow_ids[zone]),
             }
             for zone, flow in getattr(unit, section).items()
         ]

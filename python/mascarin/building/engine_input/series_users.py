@@ -32,8 +32,8 @@ def schedule_uses(building: Description) -> Iterator[Use]:
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             if side.heat_flux is not None and side.heat_flux.schedule is not None:
-                place = ("surfaces", name, which, "heat_flux", "schedule")
-                yield side.heat_flux.schedule, place, "fraction"
+                flux_location = ("surfaces", name, which, "heat_flux", "schedule")
+                yield side.heat_flux.schedule, flux_location, "fraction"
             if side.scheduled is not None:
                 yield side.scheduled, ("surfaces", name, which, "scheduled"), "temperature"
     for section in ("air_paths", "openings", "vents"):

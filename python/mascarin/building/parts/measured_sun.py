@@ -54,14 +54,17 @@ def _obstructed(building: Description) -> dict[SideName, list[str]]:
     walls, shades = obstructions(building), _shades(building)
     obstacles = {
         side_name: [
-            *walls.get(side_name, []), *shades.get(side_name, []), *_own(building, side_name[0]), *horizon
+            *walls.get(side_name, []),
+            *shades.get(side_name, []),
+            *_window_shades(building, side_name[0]),
+            *horizon,
         ]
         for side_name, _ in free
-    }  # fmt: skip
+    }
     return {side_name: names for side_name, names in obstacles.items() if names}
 
 
-def _own(building: Description, name: str) -> list[str]:
+def _window_shades(building: Description, name: str) -> list[str]:
     """Reveal and overhang of a window."""
     window = building.windows.get(name)
     return (

@@ -53,14 +53,14 @@ def window_shades(building: Description, name: str) -> WindowShades | None:
         return None
     wall = building.surfaces[window.surface]
     across, up, outward = _axes(float(wall.tilt or 0.0), float(wall.azimuth or 0.0))
-    drawn = window_outlines({name: window}).get(name)
-    if drawn is None:
+    polygon = window_outlines({name: window}).get(name)
+    if polygon is None:
         height = float(window.cavity_height or 0.0)
         width = float(window.area or 0.0) / height
         flat = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
         points = np.array([u * across + v * up for u, v in flat])
     else:
-        points = np.asarray(drawn.vertices, float)
+        points = np.asarray(polygon.vertices, float)
     shades = []
     reveal = float(window.reveal or 0.0)
     if window.reveal is not None:
@@ -73,11 +73,11 @@ def window_shades(building: Description, name: str) -> WindowShades | None:
         depth, gap, extension = (
             float(getattr(window.overhang, key)) for key in ("depth", "gap", "extension")
         )
-        left, right = (points @ across).min() - extension, (points @ across).max() + extension
+        ends_across = ((points @ across).min() - extension, (points @ across).max() + extension)
         level, plane = (points @ up).max() + gap, (points @ outward).mean() + reveal
-        edge = [u * across + level * up + plane * outward for u in (left, right)]
+        edge = [u * across + level * up + plane * outward for u in ends_across]
         shades.append([edge[0], edge[1], edge[1] + depth * outward, edge[0] + depth * outward])
-    outline = [] if drawn is not None else points.tolist()
+    outline = [] if polygon is not None else points.tolist()
     return WindowShades([np.asarray(shade).tolist() for shade in shades], outline)
 
 
