@@ -153,7 +153,7 @@ def test_slopes_by_path_agree_with_differences() -> None:
         "zones.room.infiltration.constant",
         "zones.room.infiltration.wind",
         "zones.room.ventilation.fan.air_changes",
-        "zones.room.ventilation.fan.density.value",
+        "zones.room.ventilation.fan.density.constant",
         "zones.room.ventilation.duct.flow",
         "zones.room.gains.heater.factor",
         "zones.hall.infiltration.constant",
@@ -190,7 +190,7 @@ def test_flows_of_different_air_do_not_balance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("density", "text"), [("indoors", "site"), (0, "above 0"), ({"kind": "constant"}, "value")]
+    ("density", "text"), [("indoors", "site"), (0, "above 0"), ({"kind": "constant"}, "constant")]
 )
 def test_refused_densities(density: Any, text: str) -> None:
     with pytest.raises(InputError, match=text):
@@ -201,3 +201,9 @@ def test_a_door_has_no_density() -> None:
     door = {"between": ["a", "b"], "door": {"width": 1, "height": 2}, "density": "zone"}
     with pytest.raises(InputError, match="door and density"):
         box({"a": {}, "b": {}}, air_paths={"door": door})
+
+
+@pytest.mark.parametrize("choice", ["site", "outdoors", "zone", 1.2, {"value": 1.2, "range": [1.1, 1.3]}])
+def test_a_description_is_read_back_as_written(choice: Any) -> None:
+    building = box({"room": {"infiltration": {"constant": 1, "density": choice}}})
+    assert Building.from_dict(building.to_dict()) == building

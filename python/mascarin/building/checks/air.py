@@ -43,7 +43,7 @@ def flows_of_zones(building: Description) -> dict[ZoneAir, list[ZoneFlowAt]]:
         density = getattr(part, "density", None)
         air, ratio = "site", 1.0
         if isinstance(density, ConstantDensity):
-            ratio = float(density.value) / site_density(building.site)
+            ratio = float(density.constant) / site_density(building.site)
         elif density is not None:
             air = density.kind if density.kind != "zone" else f"zone '{air_of}'"
         flows.setdefault((zone, air), []).append((path, part, sign * ratio))

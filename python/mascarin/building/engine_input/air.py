@@ -7,6 +7,7 @@ from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper, fields_of
+from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, Opening
@@ -36,7 +37,10 @@ def density_of(part: Any, ids: Ids, prefix: str = "") -> Json:
     """Describe the density at which a flow is a volume; nothing where it is that of the site."""
     if part.density is None or part.density.kind == "site":
         return {}
-    return {"density": fields_of(part.density, ids, f"{prefix}density.")}
+    written: Json = {"kind": part.density.kind}
+    if isinstance(part.density, ConstantDensity):
+        written["value"] = ids(f"{prefix}density.constant")
+    return {"density": written}
 
 
 def set_point(point: SetPoint, positions: Positions, ids: Ids) -> Json:

@@ -66,23 +66,23 @@ class ConstantDensity(Part):
 
     Examples
     --------
-    >>> ConstantDensity(value=1.2).words
+    >>> ConstantDensity(constant=1.2).words
     'air of 1.2 kg/m3'
     """
 
     kind: Literal["constant"] = "constant"
-    value: q.FlowDensity
+    constant: q.FlowDensity
 
     @property
     def words(self) -> str:
         """Whose density it is, in words."""
-        return f"air of {self.value:g} kg/m3"
+        return f"air of {self.constant:g} kg/m3"
 
 
 FlowDensity = Annotated[
     SiteDensity | OutdoorDensity | ZoneDensity | ConstantDensity,
     Field(discriminator="kind"),
-    Shorthand(word="kind", number="value", kind="constant"),
+    Shorthand(word="kind", number="constant", kind="constant"),
 ]
 
 #: What the key says, in all parts that have it.
