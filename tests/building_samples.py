@@ -329,6 +329,23 @@ OPTIONAL = {
 }  # fmt: skip
 
 
+#: Densities of flows, air that moves in zones, heat given to surfaces, reveals and overhangs, by path.
+FREEDOM: dict[str, Any] = {
+    "zones.room.infiltration.density": 1.2,
+    "zones.room.ventilation.fan.density": "outdoors",
+    "zones.attic.infiltration": {"constant": 0.3, "density": "zone"},
+    "air_paths.hatch.density": "zone",
+    "zones.room.mixing_air_change": {"air_changes": 10, "schedule": "day"},
+    "zones.attic.mixing_air_change": {"column": "T_out", "factor": 0.5},
+    "surfaces.floor.outside": {"heat_flux": {"flux": 5, "schedule": "day"}},
+    "surfaces.south.outside": {"heat_flux": {"column": "T_out", "factor": 0.5}},
+    "surfaces.west.inside.convection": "beausoleil_morrison",
+    "windows.pane.reveal": 0.1,
+    "windows.pane.overhang": {"depth": 0.5, "gap": 0.1, "extension": 0.2},
+    "windows.light.reveal": 0.05,
+}
+
+
 #: What a house has beside that: in zones by path, and other sections.
 IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
     ("room", "gains"): {"heater": {"column": "T_out", "radiative": 0.3}},
@@ -512,4 +529,5 @@ def everything() -> list[Building]:
         "humidity.materials.concrete": {"like": "concrete", "depth": 0.002, "deep_depth": 0.004},
         "humidity.materials.wax": {"capacity": 3000, "vapour_resistance": 8},
     }
-    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *melting]
+    freedom = building.replace(FREEDOM)
+    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), freedom, *melting]

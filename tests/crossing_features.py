@@ -182,10 +182,14 @@ def _measured_columns(tree: Json) -> None:
 def _mechanical_air(tree: Json) -> None:
     _second_room(tree)
     tree["ventilation_units"] = {
-        "unit": {"supply": {"room": 0.01}, "exhaust": {"hall": 0.01}, "recovery": 0.7}
+        "unit": {
+            "supply": {"room": {"flow": 0.01, "density": 1.2}},
+            "exhaust": {"hall": {"flow": 0.01, "density": 1.2}},
+            "recovery": 0.7,
+        }
     }
     tree["air_paths"] = {
-        "overflow": {"between": ["room", "hall"], "flow": 0.01, "one_way": True},
+        "overflow": {"between": ["room", "hall"], "flow": 0.01, "density": 1.2, "one_way": True},
         "door": {"between": ["room", "hall"], "door": {"width": 0.9, "height": 2}},
     }
 

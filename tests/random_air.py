@@ -26,7 +26,9 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
         tree.setdefault("gains", {})[name] = _gain(draw, schedules)
     for name in draw.some(["fan", "shaft"]) if draw.chance(0.4) else []:
         flow = {"air_changes": draw.log(0.1, 30.0)} if draw.chance(0.6) else {"flow": draw.log(0.001, 0.3)}
-        tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5)
+        tree.setdefault("ventilation", {})[name] = flow | schedules.maybe("on", 0.5) | _density(draw)
+    if draw.chance(0.2):
+        tree["mixing_air_change"] = _mixing(draw, schedules)
     tree |= _loads(draw, schedules)
     if draw.chance(0.25):
         tree["thermal_bridges"] = {"edge": _bridge(draw, others)}
@@ -38,7 +40,7 @@ def zone(draw: Draw, schedules: Schedules, others: list[str]) -> Json:
 def _infiltration(draw: Draw) -> Any:
     if draw.chance(0.4):
         return draw.noted(draw.log(0.02, 6.0), 0.01)
-    tree: Json = {"constant": draw.number(0.0, 2.0)}
+    tree: Json = {"constant": draw.number(0.0, 2.0)} | _density(draw)
     if draw.chance(0.5):
         tree["temperature"] = draw.number(0.0, 0.05)
     if draw.chance(0.5):
@@ -54,6 +56,21 @@ def _infiltration(draw: Draw) -> Any:
             },
         )  # fmt: skip
     return tree
+
+
+def _mixing(draw: Draw, schedules: Schedules) -> Any:
+    """Air that a fan moves within a zone."""
+    if draw.chance(0.3):
+        return draw.number(0.0, 40.0)
+    if draw.chance(0.5):
+        column: Json = {"column": "n_fan"} | ({"unit": "1/h"} if draw.chance(0.5) else {})
+        return column | ({"factor": draw.number(0.0, 2.0)} if draw.chance(0.5) else {})
+    return {"air_changes": draw.number(0.0, 40.0)} | schedules.maybe("on", 0.5)
+
+
+def _density(draw: Draw) -> Json:
+    """Which air a flow is a volume of."""
+    return {"density": draw.of("site", "outdoors", "zone", 1.2)} if draw.chance(0.3) else {}
 
 
 def _gain(draw: Draw, schedules: Schedules) -> Json:
@@ -140,6 +157,8 @@ def paths(draw: Draw, schedules: Schedules, zones: list[str]) -> Json:
             path |= {"factor": draw.number(0.0, 2.0)} if draw.chance(0.4) else {}
         else:
             path = {"between": between, "flow": draw.log(0.001, 0.5)}
+        if way:
+            path |= _density(draw)
         if way and draw.chance(0.3):
             path["one_way"] = True
         paths_by_name[f"path_{at}"] = path | schedules.maybe("on", 0.4)
@@ -172,8 +191,8 @@ def _flow(draw: Draw, schedules: Schedules) -> Any:
         return draw.log(0.001, 0.2)
     if draw.chance(0.4):
         flow: Json = {"column": "Q_fan", "unit": "m3/h"}
-        return flow | ({"factor": draw.number(0.1, 2.0)} if draw.chance(0.5) else {})
-    return {"flow": draw.log(0.001, 0.2)} | schedules.maybe("on", 0.5)
+        return flow | ({"factor": draw.number(0.1, 2.0)} if draw.chance(0.5) else {}) | _density(draw)
+    return {"flow": draw.log(0.001, 0.2)} | schedules.maybe("on", 0.5) | _density(draw)
 
 
 def moved(made_paths: Json, made_units: Json) -> set[str]:

@@ -217,6 +217,12 @@ class _Maker:
     def _window(self, wall: str, area: float, between: bool, glazings: list[str]) -> None:
         window = random_shells.window(self.draw, self.schedules, wall, between, glazings)
         window["area"] = self.draw.noted(four(area * self.draw.number(0.02, 0.9)), 0.0)
+        steep = 60.0 <= self.tree["surfaces"][wall].get("tilt", 0.0) <= 120.0
+        if steep and not between and self.draw.chance(0.2):
+            depth = self.draw.log(0.1, 2.0)
+            gap, extension = self.draw.number(0.0, 1.0), self.draw.number(0.0, 1.0)
+            whole = {"depth": depth, "gap": gap, "extension": extension}
+            window["overhang"] = self.draw.of(depth, whole, {"depth": depth})
         self.tree["windows"][f"{wall}_pane"] = window
 
     # --- what depends on the surfaces -----------------------------------------------------------------------

@@ -54,6 +54,8 @@ def _infiltration(draw: Draw) -> Json:
         "w": draw.number(0.0, 0.02),
     }
     law = _law(draw, "c*sqrt(s*abs(dT) + w*V^2)", "abs(dT) < 40 and V < 30", numbers)
+    if draw.chance(0.3):
+        law["density"] = draw.of("outdoors", "zone", 1.2)
     law |= {"kind": "text"} if draw.chance(0.5) else {}
     for key, low, high in (("constant", 0.0, 1.0), ("temperature", 0.0, 0.02), ("wind", 0.0, 0.1)):
         law |= {key: draw.number(low, high)} if draw.chance(0.3) else {}

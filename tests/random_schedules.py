@@ -19,6 +19,8 @@ COLUMNS: dict[str, tuple[float, float]] = {
     "P_heater": (0.0, 2500.0),  # [W]
     "P_kilo": (-0.5, 1.5),  # [kW]
     "Q_fan": (0.0, 200.0),  # [m3/h]
+    "n_fan": (0.0, 40.0),  # [1/h]
+    "q_foil": (-15.0, 30.0),  # [W/m2]
     "G_wall": (0.0, 900.0),  # [W/m2]
     "G_pane": (0.0, 900.0),
     "h_film": (0.5, 25.0),  # [W/(m2 K)]

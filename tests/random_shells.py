@@ -118,6 +118,15 @@ def inside(draw: Draw, zone: str) -> Json:
     }
 
 
+def _heat_flux(draw: Draw, schedules: Schedules) -> Any:
+    if draw.chance(0.3):
+        return draw.number(-15.0, 30.0)
+    if draw.chance(0.5):
+        column: Json = {"column": "q_foil"} | ({"unit": "W/m2"} if draw.chance(0.5) else {})
+        return column | ({"factor": draw.number(-0.5, 1.0)} if draw.chance(0.5) else {})
+    return {"flux": draw.number(-15.0, 30.0)} | schedules.maybe("on", 0.5)
+
+
 def beyond(draw: Draw, schedules: Schedules) -> Json:
     """A side that faces neither the weather nor a zone."""
     ground: Json = draw.of(
@@ -132,6 +141,8 @@ def beyond(draw: Draw, schedules: Schedules) -> Json:
     way = draw.whole(0, 4)
     if way == 0:
         return {"adiabatic": True}
+    if draw.chance(0.1):
+        return {"heat_flux": _heat_flux(draw, schedules)}
     side: Json = (
         {"measured": draw.of("T_a", "T_b", ["T_a", "T_b"])}
         if way == 1
@@ -191,6 +202,8 @@ def window(draw: Draw, schedules: Schedules, surface: str, between: bool, glazin
         tree["frame"] = {"fraction": draw.number(0.05, 0.6), "u_value": draw.log(0.6, 5.5)}
         if draw.chance(0.3):
             tree["frame"] |= {"absorptance": draw.number(0.1, 0.9), "emissivity": draw.number(0.1, 0.95)}
+    if not between and draw.chance(0.2):
+        tree["reveal"] = draw.log(0.02, 0.5)
     if draw.chance(0.2):
         tree["cavity_height"] = draw.log(0.2, 3.0)
     return tree | {"outside": outer, "inside": {"convection": film(draw, "zone")}}

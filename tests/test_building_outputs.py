@@ -15,6 +15,7 @@ def test_the_results_of_a_room() -> None:
         ("room.operative_temperature", "degC"),
         ("room.globe_temperature", "degC"),
         ("room.air_changes", "1/h"),
+        ("room.total_air_changes", "1/h"),
         ("south.outside_temperature", "degC"),
         ("south.inside_temperature", "degC"),
         ("south.outside_flux", "W/m2"),

@@ -147,7 +147,10 @@ def test_a_whole_part_may_be_replaced() -> None:
         ({"materials.concrete.density": float("nan")}, "nan"),
         ({"sensors.core.depth": 0.5}, "at most 0.2 m"),
         ({"surfaces.south.colour": 1}, "found no such parameter"),
-        ({"zones.attic": {"volume": 3}}, "a zone that no surface faces"),
+        (
+            {"zones.attic": {"volume": 3, "gains": {"lamp": {"power": 5, "radiative": 0.5}}}},
+            "0.5 in a zone that no surface faces",
+        ),
         ({"surfaces.south.outside.convection": "trap"}, "Did you mean 'tarp'"),
     ],
 )

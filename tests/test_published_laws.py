@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import mascarin as mc
 from mascarin.building import FormulaLaw
+from mascarin.building.checks.overview import check
+from mascarin.building.parameters.unused_parameters import without_effect
 from mascarin.building.parts.envelope.published_laws import published_laws
 from mascarin.errors import InputError
 from mascarin.examples import box, clear_days
+from mascarin.simulation.preparation.objectives import Mean
 
 FACADE = "surfaces.facade.inside.convection"
+MIXING = "zones.room.mixing_air_change.air_changes"
 
+MIXED = "beausoleil_morrison"
 #: Law, numbers, tilt [deg], difference [K], coefficient by hand [W/(m2 K)].
 BY_HAND = [
     # 20.7 air changes an hour: 20.7^0.604 = 6.2351, 20.7^0.98 = 19.4828, 20.7^0.503 = 4.5913.
@@ -23,6 +30,16 @@ BY_HAND = [
     ("awbi_hatton", {"perimeter": 12.0}, 90, 10.0, 1.823 * 10**0.293 / 3**0.121),
     ("awbi_hatton", {"perimeter": 12.0}, 0, 10.0, 2.175 * 10**0.308 / 3**0.076),
     ("awbi_hatton", {"factor": 2.0, "perimeter": 12.0}, 180, 10.0, 2.0 * 0.704 * 10**0.133 / 3**0.601),
+    # 2 air changes an hour: 2^0.8 = 1.741101; floor 0.360968, ceiling 0.676693, wall 0.131809. 1 K over 2 m:
+    # 0.5^(1/4) = 0.840896, 0.5^(1/5) = 0.870551; cubes of the natural parts 2.736790 (walls) and 4.627900.
+    # Forced parts as in the tests of EnergyPlus: a floor of -4.3290 = cbrt(0.1425 - (12 0.360968)^3).
+    (MIXED, {"mixing": 2.0, "length": 2.0}, 90, 1.0, (2.736790 + 0.131809**3) ** (1 / 3)),
+    (MIXED, {"mixing": 2.0, "length": 2.0}, 0, -1.0, ((0.6 * 0.870551) ** 3 + 0.360968**3) ** (1 / 3)),
+    (MIXED, {"mixing": 2.0, "length": 2.0}, 0, 1.0, (4.627900 + 0.360968**3) ** (1 / 3)),
+    (MIXED, {"mixing": 2.0, "length": 2.0}, 180, 1.0, ((0.6 * 0.870551) ** 3 + 0.676693**3) ** (1 / 3)),
+    (MIXED, {"mixing": 2.0, "length": 2.0}, 180, -1.0, (4.627900 + 0.676693**3) ** (1 / 3)),
+    # 50 air changes: 50^0.8 = 22.8653; wall 4.145398. Opposed: the cubic difference.
+    (MIXED, {"mixing": 50.0, "length": 2.0, "opposing": 1}, 90, 1.0, (4.145398**3 - 2.736790) ** (1 / 3)),
 ]
 
 
@@ -64,6 +81,72 @@ def test_a_word_is_enough_and_its_numbers_are_parameters() -> None:
     for found, mixing in ((calm, 5.0), (blown, 20.0)):
         assert found == pytest.approx(1.208 + 1.012 * (change + mixing) ** 0.604, rel=1e-9)
     assert np.all(np.isfinite(runs[0][output].values))
+
+
+def test_the_air_of_the_zone_drives_the_laws() -> None:
+    """Mixing by a number and by a schedule: the coefficient is that by hand."""
+    fan = {FACADE: "fisher_ceiling_diffuser"}
+    building = box()
+    climate = clear_days(
+        float(building.site.latitude), float(building.site.longitude), timezone="UTC-7", start="2024-02-01",
+        days=2, mean=5, altitude=1829,
+    )  # fmt: skip
+    outputs = ["facade.inside_convection", "room.total_air_changes", "room.air_changes"]
+    stated: dict[str, Any] = {"number": 12.0, "half": {"air_changes": 24.0, "schedule": "half"}}
+    for source in stated.values():
+        extra = {"schedules.half": {"kind": "fraction", "value": 0.5}} if isinstance(source, dict) else {}
+        moved = box().replace(extra | fan | {"zones.room.mixing_air_change": source})
+        run = mc.simulate(moved, climate, outputs=outputs, initial=20.0)
+        total = 12.0 + run["room.air_changes"].values
+        assert run["room.total_air_changes"].values == pytest.approx(total, rel=1e-12)
+        # The law follows the air at the start of a step; infiltration is constant here.
+        h = run["facade.inside_convection"].values[1:]
+        assert h == pytest.approx(1.208 + 1.012 * total[1:] ** 0.604, rel=1e-9)
+
+
+def test_fans_and_vents_drive_the_laws() -> None:
+    unit = {"supply": {"room": 0.02}, "exhaust": {"room": 0.02}}
+    building = box().replace({"ventilation_units": {"fan": unit}, FACADE: "fisher_ceiling_diffuser"})
+    climate = clear_days(
+        float(building.site.latitude), float(building.site.longitude), timezone="UTC-7", start="2024-02-01",
+        days=2, mean=5, altitude=1829,
+    )  # fmt: skip
+    outputs = ["facade.inside_convection", "room.total_air_changes", "room.air_changes"]
+    run = mc.simulate(building, climate, outputs=outputs, initial=20.0)
+    total = run["room.total_air_changes"].values[1:]
+    assert total == pytest.approx(run["room.air_changes"].values[1:], rel=1e-12)
+    supplied = 0.02 * 3600 / float(building.zones["room"].volume or 0.0)
+    assert total == pytest.approx(supplied + float(building.zones["room"].infiltration.constant), rel=1e-9)
+    h = run["facade.inside_convection"].values[1:]
+    assert h == pytest.approx(1.208 + 1.012 * total**0.604, rel=1e-9)
+
+
+def test_slopes_by_mixing_agree_with_differences() -> None:
+    path = MIXING
+    building = box().replace({"zones.room.mixing_air_change": 15.0, FACADE: MIXED})
+    climate = clear_days(
+        float(building.site.latitude), float(building.site.longitude), timezone="UTC-7", start="2024-02-01",
+        days=2, mean=5, altitude=1829,
+    )  # fmt: skip
+    simulation = mc.Simulation(building, climate, outputs=["room.air_temperature"])
+    slopes = simulation.gradient(Mean("room.air_temperature")).slopes
+    high, low = (
+        float(simulation.run({path: 15.0 + sign * 1e-3})["room.air_temperature"].mean()) for sign in (1, -1)
+    )
+    assert slopes[path] == pytest.approx((high - low) / 2e-3, rel=1e-3)
+    assert abs(slopes[path]) > 1e-6
+
+
+def test_a_law_by_flow_needs_a_flow() -> None:
+    still = {"zones.room.infiltration": 0.0, FACADE: "fisher_ceiling_diffuser"}
+    with pytest.raises(InputError, match=r"zone 'room' where nothing moves any(?s:.)*mixing_air_change: 10"):
+        box().replace(still)
+    moved = box().replace(still | {"zones.room.mixing_air_change": 10})
+    text = "\n".join(check(moved))
+    assert "zone room: forced convection by 10 1/h of mixing at surfaces.facade.inside" in text
+    assert box().replace(still | {FACADE: {"kind": "fisher_ceiling_diffuser", "mixing": 5}}) is not None
+    unused = box().replace({"zones.room.mixing_air_change": 10})
+    assert "no law of convection depends on" in without_effect(unused)[MIXING]
 
 
 def test_what_a_law_does_not_have_is_refused() -> None:

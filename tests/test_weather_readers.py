@@ -254,7 +254,7 @@ def test_a_missing_value_is_named_with_its_own_line(
 def test_impossible_values_are_refused_where_they_are_used(epw_lines: list[str], tmp_path: Path) -> None:
     climate = changed_epw(epw_lines, 100, 6, "83.15", tmp_path)
     assert climate.site is not None
-    words = r"^site.epw:100: air_temperature is 83.15 at 2001-01-04 20:00, expected -90 .. 65 degC; correct"
+    words = r"^site.epw:100: air_temperature is 83.15 at 2001-01-04 20:00, expected -90 .. 80 degC; correct"
     with pytest.raises(InputError, match=words):
         climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)
     assert climate.forcing(climate.site, "2001-02-01", "2001-03-01", 3600.0).shape[0] == 28 * 24

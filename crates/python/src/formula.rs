@@ -51,7 +51,7 @@ pub fn check_formula(
 }
 
 /// Coefficients of such a law, windward, as written [W/(m2 K)]. `points`: differences [K], winds [m/s], temperatures of the air [degC],
-/// angles of the wind [deg], irradiances [W/m2] and air changes [1/h].
+/// angles of the wind [deg], irradiances [W/m2], air changes and all air changes [1/h].
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
 pub fn formula_values<'py>(
@@ -59,7 +59,7 @@ pub fn formula_values<'py>(
     formula: &str,
     given: Vec<Number>,
     side: (f64, f64, f64, Option<f64>),
-    points: [PyReadonlyArray1<'py, f64>; 6],
+    points: [PyReadonlyArray1<'py, f64>; 7],
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     caught(|| {
         let side = law_side(((true, true, true), side));
@@ -74,6 +74,7 @@ pub fn formula_values<'py>(
                 angle: columns[3][k],
                 sun: columns[4][k],
                 air_change: columns[5][k],
+                total_air_change: columns[6][k],
             },
         };
         let values = law.values(&(0..count).map(point).collect::<Vec<_>>());

@@ -166,7 +166,7 @@ def _window(building: Description, name: str) -> float:
 
 def _destination(surface: Surface) -> str | None:
     """What a surface loses heat to; None within the zones and where a side is adiabatic."""
-    if surface.outside.zone is not None or surface.outside.adiabatic or surface.inside.adiabatic:
+    if surface.outside.zone is not None or surface.outside.closed or surface.inside.closed:
         return None
     faces = surface.outside.faces
     return faces if faces in ("outdoors", "ground") else "measured"

@@ -45,6 +45,8 @@ pub(crate) struct ImposedSurface<S> {
 pub(crate) struct FlowIndex<S> {
     pub(crate) outdoors: Vec<Outdoors<S>>,
     pub(crate) lit: Vec<Lit<S>>,
+    /// Surfaces with a given heat flux, and their areas.
+    pub(crate) heated: Vec<(SurfaceId, S)>,
     /// Other surfaces that sun reaches through windows, and their areas.
     pub(crate) indirectly_lit: Vec<(SurfaceId, S)>,
     pub(crate) imposed: Vec<ImposedSurface<S>>,
@@ -89,7 +91,9 @@ impl<S: Real> FlowIndex<S> {
             }
         });
         let zones = |has: &dyn Fn(usize) -> bool| (0..plan.zones.len()).filter(|&zone| has(zone)).collect();
+        let heated = weather.heated.iter().map(|&(surface, ..)| (surface, of(surface).0));
         Self {
+            heated: heated.collect(),
             outdoors: outdoors.collect(),
             lit,
             indirectly_lit,

@@ -12,7 +12,7 @@ pub enum Flow {
     Convection,
     /// Long-wave exchange with sky, outdoor air and ground.
     Longwave,
-    /// Imposed temperatures: ground and measured.
+    /// Imposed temperatures, ground and measured, and heat fluxes that are given.
     Boundary,
     /// Outdoor air entering zones.
     Infiltration,

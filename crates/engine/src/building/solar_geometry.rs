@@ -74,7 +74,8 @@ impl SolarGeometry {
         let walls = &description.surfaces;
         let traced = |zone: usize| matches!(description.zones[zone].sun, ZoneSun::Geometry);
         let any_traced = (0..zones.len()).any(traced);
-        let any_walls = walls.iter().any(|wall| sides(wall).iter().any(|side| !side.shaded_by.is_empty()));
+        let obstructed = |side: &&Side| !side.shaded_by.is_empty() || !side.own_shades.is_empty();
+        let any_walls = walls.iter().any(|wall| sides(wall).iter().any(obstructed));
         if description.shades.is_empty() && !any_traced && !any_walls {
             let none = (0..2 * walls.len()).map(|_| None).collect();
             return Self { receivers: none, tracers: windows.iter().map(|_| None).collect(), size: 0 };
@@ -227,16 +228,22 @@ impl Drawn {
         Self { whole, net, shades: description.shades.iter().map(|shade| PlaneSurface::of(shade)).collect() }
     }
 
-    /// A surface, and what stands in front of it; none without vertices.
+    /// A surface, and what stands in front of it; none without vertices and without an outline of its own.
     fn receiver(&self, description: &Description, surface: SurfaceId) -> Option<Receiver> {
-        let net = self.net[surface.wall()].as_ref()?;
-        let walls: Vec<&PlaneSurface> = side(description, surface)
-            .shaded_by
-            .iter()
-            .filter_map(|&wall| self.whole[wall].as_ref())
-            .collect();
+        let side = side(description, surface);
+        let own = side.own_shades.iter().map(|shade| PlaneSurface::of(shade));
+        let Some(net) = self.net[surface.wall()].as_ref() else {
+            let outline = (side.outline.len() > 2).then(|| PlaneSurface::of(&side.outline))?;
+            return Some(Receiver::new(outline, &own.collect::<Vec<_>>(), &[]));
+        };
+        let walls: Vec<&PlaneSurface> =
+            side.shaded_by.iter().filter_map(|&wall| self.whole[wall].as_ref()).collect();
         let net = if surface.is_outside() { net.clone() } else { net.reversed() };
-        Some(Receiver::new(net, &self.shades, &walls))
+        if side.own_shades.is_empty() {
+            return Some(Receiver::new(net, &self.shades, &walls));
+        }
+        let shades: Vec<PlaneSurface> = self.shades.iter().cloned().chain(own).collect();
+        Some(Receiver::new(net, &shades, &walls))
     }
 }
 

@@ -7,12 +7,12 @@ use core::fmt::{Display, Write};
 
 use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth,
-    DerivedOutput, Description, DirectedFlow, Door, Drying, Facing, FormulaNumber, FrameShare, Gain, Gap,
-    Glazing, Humidity, HumidityControl, HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material,
-    MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, Sensor, SetPoint, Side, Site,
-    Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl,
-    Ventilation, VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave,
-    ZoneSun,
+    DerivedOutput, Description, DirectedFlow, Door, Drying, Facing, FlowDensity, FormulaNumber, FrameShare,
+    Gain, Gap, Glazing, HeatFlux, Humidity, HumidityControl, HumiditySetPoint, IdealLoad, Infiltration,
+    Layer, Leakage, Material, MeltingCurve, Mixing, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId,
+    PcmLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge,
+    UnitFlow, VapourGain, Vent, VentControl, Ventilation, VentilationUnit, WindOnVent, WindPressure,
+    WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -171,9 +171,15 @@ walk!(Angular { transmittance_scale, absorptance_scale }
     plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance, back_transmittance,
         back_absorptance });
 
-walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, heating, cooling }
+walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, heating, cooling }
     plain { name, view_weights });
-walk!(Infiltration { constant, temperature, wind, leakage, law } plain {});
+walk!(Mixing { air_changes } plain { schedule });
+walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain {});
+walk!(FlowDensity by variant {
+    Outdoors {} plain {},
+    Zone {} plain {},
+    Constant { value } plain {},
+});
 walk!(DerivedOutput { law } plain { name, of });
 walk!(TextLaw { numbers } plain { formula });
 walk!(Leakage by variant {
@@ -193,16 +199,16 @@ walk!(ZoneSun by variant {
 });
 walk!(SunShares { faces, lost } plain {});
 walk!(Gain { power, radiative } plain { name, schedule });
-walk!(Ventilation { air_changes, flow } plain { name, schedule });
+walk!(Ventilation { air_changes, flow, density } plain { name, schedule });
 walk!(IdealLoad { setpoint, capacity, radiative } plain { schedule });
 walk!(SetPoint by variant {
     Constant { temperature } plain {},
     Scheduled {} plain { channel },
 });
-walk!(AirPath { flow } plain { name, between, schedule });
-walk!(DirectedFlow { flow } plain { name, from, to, schedule });
+walk!(AirPath { flow, density } plain { name, between, schedule });
+walk!(DirectedFlow { flow, density } plain { name, from, to, schedule });
 walk!(Door { width, height, discharge, open } plain { name, between, schedule });
-walk!(UnitFlow { flow } plain { zone, schedule });
+walk!(UnitFlow { flow, density } plain { zone, schedule });
 walk!(VentilationUnit { supply, exhaust, temperature, recovery } plain { name });
 walk!(ThermalBridge { coefficient, size, to } plain { name, zone });
 walk!(Opening { area, height, discharge, wind_coefficient } plain { name, zone, schedule, control });
@@ -220,8 +226,9 @@ walk!(ChannelBand { band } plain { channel });
 walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }
     plain { name, construction, vertices });
 walk!(FrameShare { fraction } plain { is_frame });
-walk!(Side { facing, convection, emissivity, absorptance, area_factor, sky_view, height, longwave }
-    plain { irradiance, behind_obstacles, exposure, shaded_by });
+walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, height, longwave }
+    plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline });
+walk!(HeatFlux { flux } plain { schedule });
 walk!(Facing by variant {
     Outdoors {} plain {},
     Zone {} plain { zone },

@@ -421,7 +421,9 @@ pub(crate) fn exterior_balance<S: Real>(
     let (at, laws) = (&conditions.surfaces[index], &laws.surfaces[index]);
     match surface.boundary {
         Boundary::Imposed(_) if surface.convection.is_none() => ExteriorBalance::Fixed(at.temperature),
-        Boundary::Adiabatic => ExteriorBalance::Gain(Line { offset: at.solar, slope: S::zero() }),
+        Boundary::Adiabatic => {
+            ExteriorBalance::Gain(Line { offset: at.solar + at.longwave, slope: S::zero() })
+        }
         _ => ExteriorBalance::Gain(Line {
             offset: at.solar + at.longwave + laws.convection.slope * at.temperature
                 - laws.convection.offset

@@ -282,8 +282,8 @@ impl Sink<f64> for Network<'_> {
             }
             (Origin::ConvectiveGains { zone }, _) => self.drive_by_gains(node, zone, 0, size),
             (Origin::RadiantGains { zone }, _) => self.drive_by_gains(node, zone, 1, size),
-            // A linear building has neither windows nor ideal loads.
-            (Origin::Sun { .. } | Origin::Window | Origin::IdealLoad, _) => {}
+            // A linear building has neither windows nor ideal loads, and no heat fluxes that are given.
+            (Origin::Sun { .. } | Origin::Window | Origin::HeatFlux | Origin::IdealLoad, _) => {}
         }
     }
 

@@ -48,7 +48,7 @@ pub(super) fn require_linear(
     }
     let flows = coefficients.mechanical_air.directed.iter().zip(&plan.description.directed_flows);
     if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
-        return refuse(&format!("air path {}", flow.name), "remove its schedule");
+        return refuse(&format!("air path {}", flow.name), "remove its schedule, and a density that varies");
     }
     let bridges = coefficients.bridges.iter().zip(&plan.description.thermal_bridges);
     let imposed = |bridge: &Bridge<f64>| matches!(bridge.to, BridgeEnd::Imposed(_));
@@ -60,7 +60,7 @@ pub(super) fn require_linear(
     }
     let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
     if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
-        return refuse(&format!("air path {}", path.name), "remove its schedule");
+        return refuse(&format!("air path {}", path.name), "remove its schedule, and a density that varies");
     }
     Ok(())
 }
@@ -70,6 +70,9 @@ fn require_linear_surfaces(plan: &Plan, coefficients: &Coefficients<f64>) -> Res
         let name = plan.surface_name(index);
         if surface.convection.as_ref().is_some_and(|convection| convection.constant().is_none()) {
             return refuse(&format!("convection at {name}"), "use a constant coefficient");
+        }
+        if surface.heat_flux.is_some() {
+            return refuse(&format!("heat flux at {name}"), "hold the surface at a measured temperature");
         }
         if let Boundary::Outdoors(outdoors) = &surface.boundary
             && matches!(outdoors.emission, Some(Emission::Exact))
@@ -103,6 +106,12 @@ fn require_linear_zones(
                 "keep only its constant part",
             );
         }
+        if zone.infiltrated_capacity.as_ref().is_some_and(|capacity| capacity.whole().is_none()) {
+            return refuse(
+                &format!("infiltration of zone {}, whose density varies", definition.name),
+                "write `density: site`, or a number",
+            );
+        }
         if definition.heating.is_some() || definition.cooling.is_some() {
             return refuse(
                 &format!("heating or cooling of zone {}", definition.name),
@@ -113,7 +122,7 @@ fn require_linear_zones(
         if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
             return refuse(
                 &format!("ventilation {} of zone {}", flow.name, definition.name),
-                "remove its schedule",
+                "remove its schedule, and a density that varies",
             );
         }
     }

@@ -1,7 +1,8 @@
 //! Outdoor air that enters a zone, and air that two zones exchange.
 //!
 //! Every law gives the heat that the air carries as a function of the temperature difference that drives it, or the flow of heat
-//! capacity where there is no such dependence. Flows are counted at the density of the site.
+//! capacity where there is no such dependence. Flows are counted at the density of the site, or at another one that is asked for
+//! (`physics/flow_density.rs`).
 //!
 //! Sources:
 //! - Infiltration `n0 + n1 |d| + n2 V`: Coblentz & Achenbach (1963), ASHRAE Trans. 69, 358-365.
@@ -13,6 +14,7 @@ use crate::input::values::Values;
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::physics::constants::{GRAVITY, KELVIN};
+use crate::physics::flow_density::{AirDensities, AirFlow, SiteAir};
 use crate::physics::formula::function::Function;
 
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
@@ -20,35 +22,17 @@ const ROUND_OFF: f64 = 0.01;
 /// Least mean of both temperatures [K]: colder than any air, so that the flow is finite about an iterate that is far off.
 const COLDEST: f64 = 150.0;
 
-/// A flow of heat capacity, constant or by schedule.
-#[derive(Debug, Clone)]
-pub struct AirFlow<S> {
-    /// [W/K].
-    conductance: S,
-    schedule: Schedule,
-}
-
-impl<S: Real> AirFlow<S> {
-    /// Ventilation by air changes or by volume flow.
-    ///
-    /// `heat` is that of a cubic metre of air [J/(m3 K)], `air_capacity` that of the zone's air [J/K].
-    #[must_use]
-    pub fn new(flow: &description::Ventilation, values: &Values<'_, S>, heat: S, air_capacity: S) -> Self {
-        let changes = values.get_or(flow.air_changes, 0.0).scale(1.0 / 3600.0) * air_capacity;
-        let conductance = changes + values.get_or(flow.flow, 0.0) * heat;
-        Self { conductance, schedule: Schedule::new(flow.schedule) }
-    }
-
-    /// Heat carried per degree, where no schedule changes it [W/K].
-    pub(crate) fn whole(&self) -> Option<S> {
-        self.schedule.is_constant().then_some(self.conductance)
-    }
-
-    /// Heat carried per degree in a forcing row [W/K].
-    #[inline(always)]
-    pub(crate) fn at(&self, row: &[f64]) -> S {
-        scheduled(self.conductance, self.schedule, row)
-    }
+/// Ventilation of a zone by air changes or by volume flow; `air_capacity` of the zone's air [J/K].
+pub(crate) fn ventilation<S: Real>(
+    flow: &description::Ventilation,
+    zone: usize,
+    values: &Values<'_, S>,
+    site: &SiteAir<S>,
+    air_capacity: S,
+) -> AirFlow<S> {
+    let changes = values.get_or(flow.air_changes, 0.0).scale(1.0 / 3600.0) * air_capacity;
+    let at_site = changes + values.get_or(flow.flow, 0.0) * site.heat;
+    AirFlow::new(at_site, flow.schedule, (flow.density.as_ref(), [zone; 2]), values, site)
 }
 
 /// Air that two zones exchange.
@@ -60,21 +44,26 @@ pub struct Path<S> {
 }
 
 impl<S: Real> Path<S> {
-    /// Evaluates a path at a parameter vector; `heat` is that of a cubic metre of air [J/(m3 K)].
-    #[must_use]
-    pub fn new(path: &description::AirPath, values: &Values<'_, S>, heat: S) -> Self {
-        let flow =
-            AirFlow { conductance: values.get(path.flow) * heat, schedule: Schedule::new(path.schedule) };
+    /// Evaluates a path at a parameter vector.
+    pub(crate) fn new(path: &description::AirPath, values: &Values<'_, S>, site: &SiteAir<S>) -> Self {
+        let density = (path.density.as_ref(), path.between);
+        let flow = AirFlow::new(values.get(path.flow) * site.heat, path.schedule, density, values, site);
         Self { between: path.between, flow }
     }
 
     /// Heat carried per degree between the zones [W/K].
     #[inline(always)]
-    pub fn conductance(&self, row: &[f64]) -> S {
-        self.flow.at(row)
+    pub(crate) fn conductance(&self, row: &[f64], densities: &AirDensities<S>) -> S {
+        self.flow.at(row, densities)
     }
 
-    /// Heat carried per degree, where no schedule changes it [W/K].
+    /// The same at the density of the site, where a third does not matter [W/K].
+    #[inline(always)]
+    pub(crate) fn about(&self, row: &[f64]) -> S {
+        self.flow.about(row)
+    }
+
+    /// Heat carried per degree, where nothing changes it [W/K].
     pub(crate) fn whole(&self) -> Option<S> {
         self.flow.whole()
     }

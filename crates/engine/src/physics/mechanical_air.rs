@@ -2,7 +2,7 @@
 //!
 //! Heat is counted against the outdoor temperature `T_o`: air of `G` [W/K] that enters a zone brings `G (T - T_o)`, air that
 //! leaves it takes `G (T_zone - T_o)` away. Outdoor air that makes up a balance brings nothing. Flows are volumes at the density
-//! of the site, so that masses balance where volumes do:
+//! of the site, or at another one that is asked for; masses are balanced:
 //!
 //! `leaves to outdoors = max(exhaust, supply + from zones - to zones)`.
 //!
@@ -14,9 +14,10 @@
 //! eq. 2; Kays & London 1984, Compact heat exchangers, 3rd ed., ch. 2).
 
 use crate::input::description;
-use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
+use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::flow_density::{AirDensities, AirFlow, SiteAir};
 
 /// Effectiveness is divided by the product of two flows [(W/K)^2], which may be zero.
 const LEAST: f64 = 1e-12;
@@ -25,19 +26,20 @@ const LEAST: f64 = 1e-12;
 #[derive(Debug, Clone)]
 pub struct ZoneFlow<S> {
     pub(crate) zone: usize,
-    whole: S,
-    schedule: Schedule,
+    flow: AirFlow<S>,
 }
 
 impl<S: Real> ZoneFlow<S> {
-    fn new(flow: &description::UnitFlow, values: &Values<'_, S>, heat: S) -> Self {
-        Self { zone: flow.zone, whole: values.get(flow.flow) * heat, schedule: Schedule::new(flow.schedule) }
+    fn new(flow: &description::UnitFlow, values: &Values<'_, S>, site: &SiteAir<S>) -> Self {
+        let (at_site, density) = (values.get(flow.flow) * site.heat, flow.density.as_ref());
+        let of_zone = (density, [flow.zone; 2]);
+        Self { zone: flow.zone, flow: AirFlow::new(at_site, flow.schedule, of_zone, values, site) }
     }
 
     /// In a forcing row [W/K].
     #[inline(always)]
-    pub(crate) fn at(&self, row: &[f64]) -> S {
-        scheduled(self.whole, self.schedule, row)
+    pub(crate) fn at(&self, row: &[f64], densities: &AirDensities<S>) -> S {
+        self.flow.at(row, densities)
     }
 }
 
@@ -61,11 +63,14 @@ pub struct Unit<S> {
 }
 
 impl<S: Real> Unit<S> {
-    /// Evaluates a unit at a parameter vector; `heat` is that of a cubic metre of air [J/(m3 K)].
-    #[must_use]
-    pub fn new(unit: &description::VentilationUnit, values: &Values<'_, S>, heat: S) -> Self {
+    /// Evaluates a unit at a parameter vector.
+    pub(crate) fn new(
+        unit: &description::VentilationUnit,
+        values: &Values<'_, S>,
+        site: &SiteAir<S>,
+    ) -> Self {
         let flows = |flows: &[description::UnitFlow]| {
-            flows.iter().map(|flow| ZoneFlow::new(flow, values, heat)).collect()
+            flows.iter().map(|flow| ZoneFlow::new(flow, values, site)).collect()
         };
         let supplied = match &unit.temperature {
             Some(description::SetPoint::Constant { temperature }) => {
@@ -97,15 +102,16 @@ impl<S: Real> Unit<S> {
     /// Heat that recovery brings from an extracted to a supplied flow, per degree and by the product of both flows [K/W]; zero
     /// without recovery.
     #[inline(always)]
-    pub(crate) fn recovery(&self, row: &[f64]) -> S {
+    pub(crate) fn recovery(&self, row: &[f64], densities: &AirDensities<S>) -> S {
         let Supplied::Outdoor(Some(effectiveness)) = self.supplied else { return S::zero() };
-        self.recovery_with(effectiveness, row)
+        self.recovery_with(effectiveness, row, densities)
     }
 
     /// The same with an effectiveness [-]: by it `effectiveness C_min` is exchanged between all extracted and all supplied air.
     #[inline(always)]
-    pub(crate) fn recovery_with(&self, effectiveness: S, row: &[f64]) -> S {
-        let sum = |flows: &[ZoneFlow<S>]| flows.iter().fold(S::zero(), |sum, flow| sum + flow.at(row));
+    pub(crate) fn recovery_with(&self, effectiveness: S, row: &[f64], densities: &AirDensities<S>) -> S {
+        let sum =
+            |flows: &[ZoneFlow<S>]| flows.iter().fold(S::zero(), |sum, flow| sum + flow.at(row, densities));
         let (supply, exhaust) = (sum(&self.supply), sum(&self.exhaust));
         effectiveness * supply.min(exhaust) / (supply * exhaust).max(S::constant(LEAST))
     }
@@ -115,29 +121,25 @@ impl<S: Real> Unit<S> {
 #[derive(Debug, Clone)]
 pub struct DirectedFlow<S> {
     pub(crate) ends: [usize; 2],
-    whole: S,
-    schedule: Schedule,
+    flow: AirFlow<S>,
 }
 
 impl<S: Real> DirectedFlow<S> {
-    /// Evaluates a flow at a parameter vector; `heat` is that of a cubic metre of air [J/(m3 K)].
-    #[must_use]
-    pub fn new(flow: &description::DirectedFlow, values: &Values<'_, S>, heat: S) -> Self {
-        Self {
-            ends: [flow.from, flow.to],
-            whole: values.get(flow.flow) * heat,
-            schedule: Schedule::new(flow.schedule),
-        }
+    /// Evaluates a flow at a parameter vector; the air of a zone that its density may be of is that of the zone which it leaves.
+    pub(crate) fn new(flow: &description::DirectedFlow, values: &Values<'_, S>, site: &SiteAir<S>) -> Self {
+        let (at_site, density) = (values.get(flow.flow) * site.heat, flow.density.as_ref());
+        let of_zone = (density, [flow.from; 2]);
+        Self { ends: [flow.from, flow.to], flow: AirFlow::new(at_site, flow.schedule, of_zone, values, site) }
     }
 
     /// In a forcing row [W/K].
     #[inline(always)]
-    pub(crate) fn at(&self, row: &[f64]) -> S {
-        scheduled(self.whole, self.schedule, row)
+    pub(crate) fn at(&self, row: &[f64], densities: &AirDensities<S>) -> S {
+        self.flow.at(row, densities)
     }
 
-    /// Where no schedule changes it [W/K].
+    /// Where nothing changes it [W/K].
     pub(crate) fn whole(&self) -> Option<S> {
-        self.schedule.is_constant().then_some(self.whole)
+        self.flow.whole()
     }
 }

@@ -7,6 +7,7 @@ mod borders;
 pub mod constants;
 pub mod convection;
 pub mod doors;
+pub mod flow_density;
 pub(crate) mod formula;
 pub mod gains;
 pub mod globe;

@@ -293,6 +293,10 @@ fn supplied<S: Real>(stepper: &Stepper<'_, S>, state: &State<S>) -> [S::Mask; 2]
         heat = heat.max(zone.convective).max(zone.radiant);
         cooling = cooling.min(zone.convective).min(zone.radiant);
     }
+    for &(surface, ..) in &weather.index.heated {
+        let flux = weather.conditions.surfaces[surface].longwave;
+        (heat, cooling) = (heat.max(flux), cooling.min(flux));
+    }
     for &zone in &stepper.model.plan.ideal_loads {
         heat = heat.max(state.load[zone]);
         cooling = cooling.min(state.load[zone]);

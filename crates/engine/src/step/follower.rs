@@ -214,7 +214,7 @@ impl<'a, S: Real> Follower<'a, S> {
 
     #[inline(always)]
     fn drive_vents(&mut self, state: &State<S>) {
-        drive_vents(&self.model, &mut self.weather.conditions, self.vents.as_deref_mut(), state);
+        drive_vents(&self.model, &mut self.weather, self.vents.as_deref_mut(), state);
     }
 
     /// Heat stored when a stage begins; after [`Self::store_first_stage`] in the second one.

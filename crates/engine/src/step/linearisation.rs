@@ -126,15 +126,17 @@ impl<S: Real> Linearisation<S> {
         }
         for (zone, numbers) in model.coefficients.zones.iter().enumerate() {
             let (wind, outdoor, air) = (conditions.wind, conditions.outdoor_air, iterate.air[zone]);
+            let of_zone = &conditions.zones[zone];
+            let capacity = of_zone.infiltrated_capacity(numbers);
             self.laws.infiltration[zone] =
-                air_flow::infiltration(&numbers.infiltration, numbers.air_capacity, wind, outdoor, air);
-            self.laws.ventilation[zone] = conditions.zones[zone].outdoor_heat(numbers, wind, outdoor, air);
+                air_flow::infiltration(&numbers.infiltration, capacity, wind, outdoor, air);
+            self.laws.ventilation[zone] = of_zone.outdoor_heat(numbers, wind, outdoor, air);
             if let Some(law) = &numbers.leakage {
-                let heat = law.heat(numbers.air_capacity, wind, outdoor, air);
+                let heat = law.heat(capacity, wind, outdoor, air);
                 self.laws.infiltration[zone] = self.laws.infiltration[zone].plus(&heat);
             }
             if let Some(law) = &numbers.infiltration_law {
-                let heat = air_flow::heat_of_law(law, numbers.air_capacity, wind, outdoor, air);
+                let heat = air_flow::heat_of_law(law, capacity, wind, outdoor, air);
                 self.laws.infiltration[zone] = self.laws.infiltration[zone].plus(&heat);
             }
         }

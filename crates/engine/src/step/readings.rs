@@ -51,6 +51,11 @@ impl<S: Real> Readings<'_, S> {
         fans.map_or(rate, |fans| rate + fans.fresh.scale(3600.0) / numbers.air_capacity)
     }
 
+    /// All air that flows into a zone by what is not a door, or moves within it, in the weather of the last stage [1/h].
+    pub(crate) fn total_air_changes(&self, zone: usize, air: S) -> S {
+        self.weather.conditions.total_air_changes(&self.model.coefficients, zone, air)
+    }
+
     /// Openings of the pressure network in the last stage.
     pub(crate) fn vents_now(&self) -> &VentConditions<S> {
         &self.weather.conditions.vents

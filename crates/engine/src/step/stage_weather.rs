@@ -43,20 +43,27 @@ impl<'a, S: Real> StageWeather<'a, S> {
     }
 
     #[inline(always)]
-    fn evaluate(&self, model: &Model<'_, S>, now: &Instant<'_>, conditions: &mut Conditions<S>) {
+    fn evaluate(
+        &self,
+        model: &Model<'_, S>,
+        (now, airs): (&Instant<'_>, &[S]),
+        conditions: &mut Conditions<S>,
+    ) {
+        conditions.weigh(&model.coefficients, now, airs);
         conditions.update(model.plan, &model.coefficients, &self.index, self.parameters, now);
     }
 
     /// The weather of one moment, no step; `airs` of the zones [degC].
     #[inline(always)]
     pub(crate) fn set_instant(&mut self, model: &Model<'_, S>, now: &Instant<'_>, airs: &[S]) {
-        self.evaluate_now(model, now);
+        self.evaluate_now(model, now, airs);
         self.conditions.surround(&model.coefficients, &self.index, airs);
     }
 
     #[inline(always)]
-    fn evaluate_now(&mut self, model: &Model<'_, S>, now: &Instant<'_>) {
+    fn evaluate_now(&mut self, model: &Model<'_, S>, now: &Instant<'_>, airs: &[S]) {
         let Self { index, parameters, conditions, .. } = self;
+        conditions.weigh(&model.coefficients, now, airs);
         conditions.update(model.plan, &model.coefficients, index, parameters, now);
     }
 
@@ -82,7 +89,7 @@ impl<'a, S: Real> StageWeather<'a, S> {
         airs: &[S],
     ) {
         let Tableau { weights, nodes, .. } = *tableau;
-        self.evaluate_now(model, &weather.at(part.step, stage));
+        self.evaluate_now(model, &weather.at(part.step, stage), airs);
         if stage == 0 {
             self.restart_means();
         }
@@ -90,8 +97,8 @@ impl<'a, S: Real> StageWeather<'a, S> {
             self.add_to_means(model, weights[stage]);
         } else {
             let (mut first, mut second) = (self.conditions.clone(), self.conditions.clone());
-            self.evaluate(model, &weather.at(part.step, 0), &mut first);
-            self.evaluate(model, &weather.at(part.step, 1), &mut second);
+            self.evaluate(model, (&weather.at(part.step, 0), airs), &mut first);
+            self.evaluate(model, (&weather.at(part.step, 1), airs), &mut second);
             if stage == 0 {
                 // The mean is that of the whole step.
                 self.sun.add(&first.sun, weights[0]);

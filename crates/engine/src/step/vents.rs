@@ -13,6 +13,7 @@ use crate::input::forcing::channel;
 use crate::linear::vent_network::{LEAK, Link, VentNetwork};
 use crate::number::real::Real;
 use crate::physics::constants::KELVIN;
+use crate::step::stage_weather::StageWeather;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Conditions;
@@ -27,7 +28,7 @@ impl<S: Real> Stepper<'_, S> {
     /// Closes what controls have closed, and finds the flows in the weather that is set.
     #[inline(always)]
     pub(crate) fn drive_vents(&mut self, state: &State<S>) {
-        drive_vents(&self.model, &mut self.weather.conditions, self.vents.as_deref_mut(), state);
+        drive_vents(&self.model, &mut self.weather, self.vents.as_deref_mut(), state);
     }
 }
 
@@ -49,12 +50,12 @@ pub(super) fn control_vents<S: Real>(model: &Model<'_, S>, state: &mut State<S>,
 #[inline(always)]
 pub(super) fn drive_vents<S: Real>(
     model: &Model<'_, S>,
-    conditions: &mut Conditions<S>,
+    weather: &mut StageWeather<'_, S>,
     network: Option<&mut VentNetwork<'_, S>>,
     state: &State<S>,
 ) {
     if !model.coefficients.vents.is_empty() {
-        find_vent_flows(model, conditions, network, state);
+        find_vent_flows(model, weather, network, state);
     }
 }
 
@@ -62,11 +63,12 @@ pub(super) fn drive_vents<S: Real>(
 #[inline(never)]
 fn find_vent_flows<S: Real>(
     model: &Model<'_, S>,
-    conditions: &mut Conditions<S>,
+    weather: &mut StageWeather<'_, S>,
     network: Option<&mut VentNetwork<'_, S>>,
     state: &State<S>,
 ) {
     let numbers = &model.coefficients;
+    let StageWeather { conditions, index, .. } = weather;
     for (at, zone) in conditions.zones.iter_mut().zip(&numbers.zones) {
         at.control(zone, &state.opened);
     }
@@ -81,6 +83,8 @@ fn find_vent_flows<S: Real>(
             },
         );
     }
+    // Laws of convection that depend on the air that flows in see what has been opened.
+    conditions.surround(numbers, index, &state.air);
 }
 
 /// Wind and stack on all parts of openings, and the density of the air on both of their sides.
@@ -130,7 +134,9 @@ fn spread<S: Real>(network: &VentNetwork<'_, S>, model: &Model<'_, S>, condition
             link += 1;
         }
         let heat = flows.map(|flow| flow * numbers.heat);
-        if vent.to.is_some() {
+        if let Some(to) = vent.to {
+            zones[to].from_zones += heat[0];
+            zones[vent.zone].from_zones += heat[1];
             carried[pair..pair + 2].copy_from_slice(&heat);
             pair += 2;
         } else {

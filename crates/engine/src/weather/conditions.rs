@@ -4,10 +4,11 @@ use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
 use crate::building::humidity::HumidityPlan;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
-use crate::input::forcing::channel;
+use crate::input::forcing::{channel, scheduled};
 use crate::input::values::Values;
-use crate::number::real::{Mask, Real};
-use crate::physics::convection::{SurfaceConvection, Surroundings, Wind, WindTerms};
+use crate::number::real::Real;
+use crate::physics::convection::SurfaceConvection;
+use crate::physics::flow_density::AirDensities;
 use crate::physics::longwave::sky_emission;
 use crate::weather::humidity::HumidityConditions;
 use crate::weather::index::WeatherIndex;
@@ -36,6 +37,8 @@ pub struct Conditions<S: Real> {
     pub vents: VentConditions<S>,
     /// Humidity, in a building with vapour balances.
     pub(crate) humidity: Option<HumidityConditions<S>>,
+    /// Densities of the air that flows are volumes of.
+    pub(crate) densities: AirDensities<S>,
     /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
     pub bridges: Vec<Option<S>>,
     /// Outdoor air [degC].
@@ -74,6 +77,7 @@ impl<S: Real> Conditions<S> {
             humidity: coefficients.humidity.as_ref().map(|humidity| {
                 HumidityConditions::new(humidity, plan.humidity.as_ref().map_or(0, HumidityPlan::recovered))
             }),
+            densities: AirDensities::of_site(plan.zones.len()),
             bridges: coefficients
                 .bridges
                 .iter()
@@ -170,6 +174,14 @@ impl<S: Real> Conditions<S> {
         S::select(turn.lt(S::one()), turned, S::constant(fraction))
     }
 
+    /// Densities of the air at an instant and at airs of the zones [degC], before [`Self::update`] needs them.
+    #[inline(always)]
+    pub(crate) fn weigh(&mut self, coefficients: &Coefficients<S>, now: &Instant<'_>, airs: &[S]) {
+        if let Some(site) = &coefficients.densities {
+            self.densities.update(site, now.row, airs);
+        }
+    }
+
     /// Evaluates the weather at an instant.
     // Never inlined, one copy only: it is large and called in several places, where inlining multiplies compile time.
     #[inline(never)]
@@ -205,10 +217,10 @@ impl<S: Real> Conditions<S> {
         self.sun.irradiate(plan, coefficients, weather_index, now);
         self.update_surfaces(coefficients, weather_index, now);
         for (at, zone) in self.zones.iter_mut().zip(&coefficients.zones) {
-            at.update(zone, now.row);
+            at.update(zone, now.row, &self.densities);
         }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
-            *at = path.conductance(now.row);
+            *at = path.conductance(now.row, &self.densities);
         }
         self.update_airs(coefficients, now);
         if !self.sun.windows.is_empty() {
@@ -232,13 +244,18 @@ impl<S: Real> Conditions<S> {
             *at = door.at(now.row);
         }
         if !coefficients.mechanical_air.is_empty() {
-            self.mechanical_air.update(&coefficients.mechanical_air, now.row, self.outdoor_air);
+            self.mechanical_air.update(
+                &coefficients.mechanical_air,
+                now.row,
+                self.outdoor_air,
+                &self.densities,
+            );
         }
         if !coefficients.vents.is_empty() {
             self.vents.update(&coefficients.vents, now.row);
         }
         if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
-            at.update(humidity, &coefficients.mechanical_air.units, now);
+            at.update(humidity, (&coefficients.mechanical_air.units, &self.densities), now);
         }
         for (at, bridge) in self.bridges.iter_mut().zip(&coefficients.bridges) {
             *at = match &bridge.to {
@@ -280,6 +297,9 @@ impl<S: Real> Conditions<S> {
         for &(index, channel, factor) in &weather_index.measured {
             self.surfaces[index].forced = [factor.scale(now.row[channel]); 4];
         }
+        for &(index, flux, schedule) in &weather_index.heated {
+            self.surfaces[index].longwave = scheduled(flux, schedule, now.row);
+        }
         for &index in &weather_index.imposed {
             if let Boundary::Imposed(imposed) = &coefficients.surfaces[index].boundary {
                 self.surfaces[index].temperature = imposed_temperature(imposed, now);
@@ -289,44 +309,6 @@ impl<S: Real> Conditions<S> {
             let sun = source.map_or_else(S::zero, |source| self.sun.irradiances[source]);
             let around = (self.surfaces[index].temperature, sun);
             self.surfaces[index].forced = driven_outside(coefficients, index, now, around);
-        }
-    }
-
-    /// Laws of convection in zones that depend on their air, by the airs at the start of a step [degC].
-    ///
-    /// Within a step they do not change with it: the coefficient is that of a slowly changing air, and the balances stay those of a
-    /// coefficient that depends on a temperature difference.
-    #[inline(always)]
-    pub(crate) fn surround(
-        &mut self,
-        coefficients: &Coefficients<S>,
-        weather_index: &WeatherIndex<S>,
-        airs: &[S],
-    ) {
-        if !weather_index.surrounded_in_zones.is_empty() {
-            self.surround_in_zones(coefficients, weather_index, airs);
-        }
-    }
-
-    // One copy only: few buildings have such laws.
-    #[inline(never)]
-    fn surround_in_zones(
-        &mut self,
-        coefficients: &Coefficients<S>,
-        weather_index: &WeatherIndex<S>,
-        airs: &[S],
-    ) {
-        let calm = Wind::new(0.0, WindTerms::default());
-        for &(surface, zone, needs_air_change) in &weather_index.surrounded_in_zones {
-            let mut around = Surroundings { air: airs[zone], ..Surroundings::calm() };
-            if needs_air_change {
-                let numbers = &coefficients.zones[zone];
-                around.air_change =
-                    self.zones[zone].air_changes(numbers, self.wind, self.outdoor_air, airs[zone]);
-            }
-            if let Some(law) = &coefficients.surfaces[surface].convection {
-                self.surfaces[surface].forced = law.driven(&calm, S::Mask::splat(true), &around);
-            }
         }
     }
 }

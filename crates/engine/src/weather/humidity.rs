@@ -3,6 +3,7 @@
 use crate::building::coefficients::HumidityCoefficients;
 use crate::building::coefficients::humidity::{Control, Dryer};
 use crate::number::real::Real;
+use crate::physics::flow_density::AirDensities;
 use crate::physics::mechanical_air::Unit;
 use crate::physics::psychrometrics::humidity_ratio;
 use crate::weather::instant::Instant;
@@ -94,7 +95,7 @@ impl<S: Real> HumidityConditions<S> {
     pub(crate) fn update(
         &mut self,
         humidity: &HumidityCoefficients<S>,
-        units: &[Unit<S>],
+        (units, densities): (&[Unit<S>], &AirDensities<S>),
         now: &Instant<'_>,
     ) {
         let row = now.row;
@@ -115,11 +116,11 @@ impl<S: Real> HumidityConditions<S> {
         let mut places = self.recovered.iter_mut();
         for (unit, effectiveness) in units.iter().zip(&humidity.recoveries) {
             let Some(effectiveness) = *effectiveness else { continue };
-            let share = unit.recovery_with(effectiveness, row);
+            let share = unit.recovery_with(effectiveness, row, densities);
             for exhaust in &unit.exhaust {
                 for supply in &unit.supply {
                     if let Some(place) = places.next() {
-                        *place = share * exhaust.at(row) * supply.at(row);
+                        *place = share * exhaust.at(row, densities) * supply.at(row, densities);
                     }
                 }
             }

@@ -3,6 +3,7 @@
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::{Plan, SurfaceRole};
+use crate::input::forcing::Schedule;
 use crate::number::real::{Real, same};
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
@@ -51,6 +52,8 @@ pub(crate) struct WeatherIndex<S> {
     pub(crate) surrounded: Vec<(SurfaceId, Option<usize>)>,
     /// Surfaces in zones with such a law, their zone, and whether the law depends on its air change.
     pub(crate) surrounded_in_zones: Vec<(SurfaceId, usize, bool)>,
+    /// Surfaces with a given heat flux [W/m2], and its schedule.
+    pub(crate) heated: Vec<(SurfaceId, S, Schedule)>,
     /// Surfaces at imposed temperatures.
     pub(crate) imposed: Vec<SurfaceId>,
     /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
@@ -69,6 +72,7 @@ impl<S: Real> WeatherIndex<S> {
             windy: Vec::new(),
             surrounded: Vec::new(),
             surrounded_in_zones: Vec::new(),
+            heated: Vec::new(),
             imposed: Vec::new(),
             irradiated: Vec::new(),
             measured: Vec::new(),
@@ -77,6 +81,7 @@ impl<S: Real> WeatherIndex<S> {
             let source = all.add_source(plan, coefficients, index);
             let measured = surface.convection.as_ref().and_then(SurfaceConvection::measured);
             all.measured.extend(measured.map(|(channel, factor)| (index, channel, factor)));
+            all.heated.extend(surface.heat_flux.map(|(flux, schedule)| (index, flux, schedule)));
             let text = surface.convection.as_ref().filter(|law| law.surrounded());
             match (text, plan.surfaces[index].role) {
                 (Some(law), SurfaceRole::Zone { zone, .. }) => {

@@ -3,6 +3,7 @@
 use crate::building::coefficients::MechanicalAir;
 use crate::number::line::Line;
 use crate::number::real::Real;
+use crate::physics::flow_density::AirDensities;
 use crate::physics::mechanical_air::Unit;
 
 /// Mechanical ventilation and air from zone to zone in one stage.
@@ -25,9 +26,10 @@ pub struct ZoneBalance<S> {
     pub outward: S,
     /// Outdoor air that enters, supplied or by leaks [W/K].
     pub fresh: S,
-    /// Supplied, from other zones, to other zones, extracted, and recovered from it for other zones or itself [W/K].
+    /// From other zones, by fans [W/K].
+    pub(crate) from_zones: S,
+    /// Supplied, to other zones, extracted, and recovered from it for other zones or itself [W/K].
     supply: S,
-    from_zones: S,
     to_zones: S,
     exhaust: S,
     recovered: S,
@@ -91,16 +93,23 @@ impl<S: Real> MechanicalConditions<S> {
             at.leaving = rate(a.leaving, b.leaving);
             at.outward = rate(a.outward, b.outward);
             at.fresh = rate(a.fresh, b.fresh);
+            at.from_zones = rate(a.from_zones, b.from_zones);
         }
     }
 
     /// Evaluates all flows in a forcing row, with the outdoor temperature [degC].
     // Most buildings have none: one copy of it is enough.
     #[inline(never)]
-    pub(crate) fn update(&mut self, air: &MechanicalAir<S>, row: &[f64], outdoor: S) {
+    pub(crate) fn update(
+        &mut self,
+        air: &MechanicalAir<S>,
+        row: &[f64],
+        outdoor: S,
+        densities: &AirDensities<S>,
+    ) {
         self.zones.fill(ZoneBalance::none());
         for (flow, carried) in air.directed.iter().zip(&mut self.carried) {
-            *carried = flow.at(row);
+            *carried = flow.at(row, densities);
             let [from, to] = flow.ends;
             self.zones[from].to_zones += *carried;
             self.zones[to].from_zones += *carried;
@@ -109,15 +118,15 @@ impl<S: Real> MechanicalConditions<S> {
         for unit in &air.units {
             let excess = unit.excess(row, outdoor);
             for supply in &unit.supply {
-                let (flow, zone) = (supply.at(row), &mut self.zones[supply.zone]);
+                let (flow, zone) = (supply.at(row, densities), &mut self.zones[supply.zone]);
                 zone.supply += flow;
                 zone.supplied += flow * excess;
             }
             for exhaust in &unit.exhaust {
-                self.zones[exhaust.zone].exhaust += exhaust.at(row);
+                self.zones[exhaust.zone].exhaust += exhaust.at(row, densities);
             }
             if unit.recovers() {
-                self.recover(unit, row, &mut pair);
+                self.recover(unit, (row, densities), &mut pair);
             }
         }
         for zone in &mut self.zones {
@@ -126,12 +135,12 @@ impl<S: Real> MechanicalConditions<S> {
     }
 
     /// Heat recovery: a part of the heat of each extracted flow goes to the zone of each supplied flow.
-    fn recover(&mut self, unit: &Unit<S>, row: &[f64], pair: &mut usize) {
-        let share = unit.recovery(row);
+    fn recover(&mut self, unit: &Unit<S>, (row, densities): (&[f64], &AirDensities<S>), pair: &mut usize) {
+        let share = unit.recovery(row, densities);
         for supply in &unit.supply {
-            let by_supply = share * supply.at(row);
+            let by_supply = share * supply.at(row, densities);
             for exhaust in &unit.exhaust {
-                let heat = by_supply * exhaust.at(row);
+                let heat = by_supply * exhaust.at(row, densities);
                 self.zones[exhaust.zone].recovered += heat;
                 if exhaust.zone != supply.zone {
                     self.carried[*pair] = heat;

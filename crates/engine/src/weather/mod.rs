@@ -8,5 +8,6 @@ pub(crate) mod mechanical_air;
 pub(crate) mod solar_means;
 pub(crate) mod sun;
 pub(crate) mod surface;
+mod surroundings;
 pub(crate) mod vents;
 pub mod zone_conditions;

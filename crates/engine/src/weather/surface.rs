@@ -19,7 +19,7 @@ const FLAT: f64 = 0.98;
 pub struct SurfaceConditions<S: Real> {
     /// Absorbed short-wave radiation [W/m2].
     pub solar: S,
-    /// Long-wave radiation absorbed from sky, air and ground [W/m2].
+    /// Long-wave radiation absorbed from sky, air and ground, or the heat flux that is given [W/m2].
     pub longwave: S,
     /// Temperature of the air, or the imposed temperature [degC].
     pub temperature: S,

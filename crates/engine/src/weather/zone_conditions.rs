@@ -1,9 +1,11 @@
 //! What acts on the air of a zone in one stage beside its walls: internal gains, ventilation and openings.
 
 use crate::building::coefficients::ZoneCoefficients;
+use crate::input::forcing::scheduled;
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::physics::air_flow::{self, Intake};
+use crate::physics::flow_density::AirDensities;
 
 /// What acts on the air of a zone in one stage.
 #[derive(Debug, Clone)]
@@ -14,6 +16,10 @@ pub struct ZoneConditions<S> {
     pub radiant: S,
     /// Heat carried by ventilation per degree [W/K].
     pub ventilation: S,
+    /// Heat capacity of the zone's volume of the air that infiltrates [J/K]; none: at the density of the site.
+    infiltrated_capacity: Option<S>,
+    /// Air that moves within the zone [1/h]; none: no fan moves any.
+    mixing: Option<S>,
     /// Open fraction of each opening [-].
     open: Vec<S>,
 }
@@ -23,7 +29,14 @@ impl<S: Real> ZoneConditions<S> {
     #[must_use]
     pub fn new(zone: &ZoneCoefficients<S>) -> Self {
         let zero = S::zero();
-        Self { convective: zero, radiant: zero, ventilation: zero, open: vec![zero; zone.openings.len()] }
+        Self {
+            convective: zero,
+            radiant: zero,
+            ventilation: zero,
+            infiltrated_capacity: zone.infiltrated_capacity.as_ref().map(|_| zero),
+            mixing: zone.mixing.as_ref().map(|_| zero),
+            open: vec![zero; zone.openings.len()],
+        }
     }
 
     /// Linear interpolation or extrapolation of two others: `fraction` 0 at the first, 1 at the second.
@@ -34,6 +47,14 @@ impl<S: Real> ZoneConditions<S> {
         self.convective = line(first.convective, second.convective);
         self.radiant = line(first.radiant, second.radiant);
         self.ventilation = line(first.ventilation, second.ventilation).max(S::zero());
+        if let (Some(at), Some(a), Some(b)) =
+            (&mut self.infiltrated_capacity, first.infiltrated_capacity, second.infiltrated_capacity)
+        {
+            *at = line(a, b).max(S::zero());
+        }
+        if let (Some(at), Some(a), Some(b)) = (&mut self.mixing, first.mixing, second.mixing) {
+            *at = line(a, b).max(S::zero());
+        }
         for (at, (&a, &b)) in self.open.iter_mut().zip(first.open.iter().zip(&second.open)) {
             *at = line(a, b).max(S::zero()).min(S::one());
         }
@@ -41,7 +62,7 @@ impl<S: Real> ZoneConditions<S> {
 
     /// Evaluates gains, ventilation and openings in a forcing row.
     #[inline(always)]
-    pub(crate) fn update(&mut self, zone: &ZoneCoefficients<S>, row: &[f64]) {
+    pub(crate) fn update(&mut self, zone: &ZoneCoefficients<S>, row: &[f64], densities: &AirDensities<S>) {
         (self.convective, self.radiant) = (S::zero(), S::zero());
         for gain in &zone.gains {
             let [convective, radiant] = gain.at(row);
@@ -50,7 +71,13 @@ impl<S: Real> ZoneConditions<S> {
         }
         self.ventilation = S::zero();
         for flow in &zone.ventilation {
-            self.ventilation += flow.at(row);
+            self.ventilation += flow.at(row, densities);
+        }
+        if let Some(capacity) = &zone.infiltrated_capacity {
+            self.infiltrated_capacity = Some(capacity.at(row, densities));
+        }
+        if let Some((air_changes, schedule)) = zone.mixing {
+            self.mixing = Some(scheduled(air_changes, schedule, row));
         }
         for (open, opening) in self.open.iter_mut().zip(&zone.openings) {
             *open = opening.open_fraction(row);
@@ -77,10 +104,33 @@ impl<S: Real> ZoneConditions<S> {
         self.intake(zone).heat(wind, outdoor, air)
     }
 
-    /// Flow of outdoor air into the zone, infiltration included [1/h].
+    /// Air that moves within the zone [1/h].
+    pub(crate) fn mixing(&self) -> S {
+        self.mixing.unwrap_or_else(S::zero)
+    }
+
+    /// Heat capacity of the zone's volume of the air that infiltrates [J/K].
+    #[inline(always)]
+    pub(crate) fn infiltrated_capacity(&self, zone: &ZoneCoefficients<S>) -> S {
+        self.infiltrated_capacity.unwrap_or(zone.air_capacity)
+    }
+
+    /// Flow of outdoor air into the zone, infiltration included, as volumes at the density of the site [1/h].
     pub(crate) fn air_changes(&self, zone: &ZoneCoefficients<S>, wind: S, outdoor: S, air: S) -> S {
         let intake = self.intake(zone);
-        let rate = air_flow::air_changes(&zone.infiltration, zone.air_capacity, &intake, wind, outdoor, air);
+        if let Some(capacity) = self.infiltrated_capacity {
+            let none = Intake { ventilation: S::zero(), openings: &[], open: &[] };
+            let leaks = Self::with_leaks(zone, &none, wind, outdoor, air) * capacity / zone.air_capacity;
+            let rates = [S::zero(); 3];
+            return leaks + air_flow::air_changes(&rates, zone.air_capacity, &intake, wind, outdoor, air);
+        }
+        Self::with_leaks(zone, &intake, wind, outdoor, air)
+    }
+
+    /// Infiltration at the density of the site, and an intake [1/h].
+    #[inline(always)]
+    fn with_leaks(zone: &ZoneCoefficients<S>, intake: &Intake<'_, S>, wind: S, outdoor: S, air: S) -> S {
+        let rate = air_flow::air_changes(&zone.infiltration, zone.air_capacity, intake, wind, outdoor, air);
         let rate = zone.leakage.as_ref().map_or(rate, |law| rate + law.air_changes(wind, outdoor - air));
         let law = zone.infiltration_law.as_ref();
         law.map_or(rate, |law| rate + air_flow::air_changes_of_law(law, wind, outdoor, air))
@@ -113,6 +163,7 @@ mod tests {
             air_changes: Some(air_changes),
             flow: None,
             schedule: Some(0),
+            density: None,
         }];
         description.channels = vec![name];
         let plan = Plan::new(description).unwrap();
@@ -125,7 +176,7 @@ mod tests {
         let mut at = ZoneConditions::new(&zone);
         let mut row = [0.0; CLIMATE_CHANNELS + 1];
         row[CLIMATE_CHANNELS] = 0.5;
-        at.update(&zone, &row);
+        at.update(&zone, &row, &AirDensities::of_site(1));
         assert_eq!((at.convective, at.radiant), (60.0, 40.0));
         assert!((at.ventilation / (zone.air_capacity / 3600.0) - 1.0).abs() < 1e-14);
         // 0.5 1/h of infiltration and 1 1/h of ventilation.

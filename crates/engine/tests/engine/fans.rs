@@ -21,7 +21,7 @@ const FLOW: f64 = 0.03;
 const OUTDOOR: f64 = 5.0;
 
 fn flow(zone: usize, flow: mascarin_engine::description::ParamId) -> UnitFlow {
-    UnitFlow { zone, flow, schedule: None }
+    UnitFlow { zone, flow, schedule: None, density: None }
 }
 
 /// Three zones whose only walls are adiabatic: living room, corridor, bath. A unit supplies the first and extracts from the last.
@@ -56,6 +56,7 @@ fn row_of_zones(supplied: Option<f64>, recovery: Option<f64>) -> Builder {
             to: from + 1,
             flow: number,
             schedule: None,
+            density: None,
         });
     }
     b

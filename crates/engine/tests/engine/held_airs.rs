@@ -69,6 +69,7 @@ fn row(rooms: usize, flow: f64) -> Row {
             between: [room - 1, room],
             flow: flow_number,
             schedule: None,
+            density: None,
         };
         d.air_paths.push(path);
     }

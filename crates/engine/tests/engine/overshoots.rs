@@ -31,12 +31,19 @@ fn rooms(power: f64) -> Description {
     let mut d = b.describe();
     d.channels.push("window".to_owned());
     let air_changes = Some(number(&mut d, "window.air_changes", 60.0));
-    let window = Ventilation { name: "window".to_owned(), air_changes, flow: None, schedule: Some(0) };
+    let window =
+        Ventilation { name: "window".to_owned(), air_changes, flow: None, schedule: Some(0), density: None };
     d.zones[0].ventilation.push(window);
     let (power, radiative) = (number(&mut d, "gain.power", power), number(&mut d, "gain.radiative", 0.0));
     d.zones[0].gains.push(Gain { name: "lamp".to_owned(), power, radiative, schedule: None });
     let flow = number(&mut d, "hatch.flow", 0.05);
-    d.air_paths.push(AirPath { name: "hatch".to_owned(), between: [0, 1], flow, schedule: None });
+    d.air_paths.push(AirPath {
+        name: "hatch".to_owned(),
+        between: [0, 1],
+        flow,
+        schedule: None,
+        density: None,
+    });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     d
 }

@@ -204,7 +204,13 @@ fn coupled_loads_by_hand() {
     d.zones[1].heating = Some(ideal_load(&mut d, "b.heating", 18.0, 1e5));
     d.zones[1].cooling = Some(ideal_load(&mut d, "b.cooling", 18.0, 1e5));
     let flow = number(&mut d, "door.flow", 0.02);
-    d.air_paths.push(AirPath { name: "door".to_owned(), between: [0, 1], flow, schedule: None });
+    d.air_paths.push(AirPath {
+        name: "door".to_owned(),
+        between: [0, 1],
+        flow,
+        schedule: None,
+        density: None,
+    });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
     let plan = Plan::new(d).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 20 * 96, STEP, |_, row| row[0] = 5.0);

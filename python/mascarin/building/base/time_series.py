@@ -10,7 +10,17 @@ from pydantic import AfterValidator
 
 from mascarin.building.base.number import problem
 
-CourseKind = Literal["temperature", "power", "flow", "vapour", "rain", "relative_humidity", "humidity_ratio"]
+CourseKind = Literal[
+    "temperature",
+    "power",
+    "heat_flux",
+    "flow",
+    "air_change",
+    "vapour",
+    "rain",
+    "relative_humidity",
+    "humidity_ratio",
+]
 
 
 def _named(columns: str | tuple[str, ...]) -> str | tuple[str, ...]:
@@ -33,7 +43,9 @@ VAPOUR_UNITS: Final[Mapping[str, float]] = {"kg/s": 1.0, "kg/h": 1.0 / 3600.0, "
 _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "temperature": {"degC": 1.0},
     "power": POWER_UNITS,
+    "heat_flux": {"W/m2": 1.0, "kW/m2": 1000.0},
     "flow": FLOW_UNITS,
+    "air_change": {"1/h": 1.0},
     "vapour": VAPOUR_UNITS,
     "rain": {"mm/h": 1.0},
     "relative_humidity": {"-": 1.0, "%": 0.01},

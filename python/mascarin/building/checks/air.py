@@ -6,14 +6,16 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from mascarin.building.base.part import fault
+from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.building.parts.air.vent import LowRise
 from mascarin.building.parts.defaults import outlines
+from mascarin.building.parts.site_air import density as site_density
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
-    from mascarin.building.parts.air.measured_values import Driven
     from mascarin.building.parts.description import Description
+    from mascarin.building.parts.envelope.measured_values import Driven
     from mascarin.building.parts.envelope.surface import Surface
 
 #: Largest difference of what enters and what leaves a zone, over the larger of the two [-].
@@ -22,44 +24,65 @@ BALANCED: Final = 1e-3
 #: Tilts of surfaces that count as walls [deg].
 STEEP: Final = (60.0, 120.0)
 
-#: A flow of a zone: its path, its part, and 1 where it enters the zone, -1 where it leaves.
+#: A flow of a zone: its path, its part, and how many cubic metres of the air that is compared a cubic metre
+#: of it is: positive where it enters the zone, negative where it leaves.
 ZoneFlowAt = tuple[str, "Driven", float]
+#: A zone, and the air whose volumes are compared.
+ZoneAir = tuple[str, str]
 
 
-def flows_of_zones(building: Description) -> dict[str, list[ZoneFlowAt]]:
-    """Flows that fans drive, by the zones that they enter and leave; zones without any are left out."""
-    flows: dict[str, list[ZoneFlowAt]] = {}
+def flows_of_zones(building: Description) -> dict[ZoneAir, list[ZoneFlowAt]]:
+    """Flows that fans drive, by the zones that they enter and leave; zones without any are left out.
+
+    What enters and leaves is compared as masses: flows of constant densities as volumes at the density of the
+    site, those of air whose density changes among themselves.
+    """
+    flows: dict[ZoneAir, list[ZoneFlowAt]] = {}
+
+    def add(zone: str, air_of: str, path: str, part: Driven, sign: float) -> None:
+        density = getattr(part, "density", None)
+        air, ratio = "site", 1.0
+        if isinstance(density, ConstantDensity):
+            ratio = float(density.constant) / site_density(building.site)
+        elif density is not None:
+            air = density.kind if density.kind != "zone" else f"zone '{air_of}'"
+        flows.setdefault((zone, air), []).append((path, part, sign * ratio))
+
     for name, unit in building.ventilation_units.items():
         for section, sign in (("supply", 1.0), ("exhaust", -1.0)):
             for zone, flow in getattr(unit, section).items():
-                flows.setdefault(zone, []).append((f"ventilation_units.{name}.{section}.{zone}", flow, sign))
+                add(zone, zone, f"ventilation_units.{name}.{section}.{zone}", flow, sign)
     for name, path in building.air_paths.items():
         if path.one_way:
             for zone, sign in zip(path.between, (-1.0, 1.0), strict=True):
-                flows.setdefault(zone, []).append((f"air_paths.{name}", path, sign))
+                add(zone, path.between[0], f"air_paths.{name}", path, sign)
     return flows
 
 
-def imbalance(flows: Mapping[str, float]) -> str | None:
+def imbalance(flows: Mapping[str, float], air: str = "site") -> str | None:
     """What is wrong with the balance of a zone, in words; None where it balances.
 
     Parameters
     ----------
     flows : mapping of str to float
         Flows by path; those that leave the zone are negative. [m3/s]
+    air : str
+        Air whose volumes they are.
     """
     enters = sum(flow for flow in flows.values() if flow > 0.0)
     leaves = -sum(flow for flow in flows.values() if flow < 0.0)
     if abs(enters - leaves) <= BALANCED * max(enters, leaves):
         return None
     parts = ", ".join(f"{path} {flow:+.5g}" for path, flow in flows.items())
-    return f"{enters:.5g} m3/s of air enters and {leaves:.5g} m3/s leaves ({parts})"
+    of = "" if air == "site" else f", volumes at 'density: {air.partition(' ')[0]}'"
+    return f"{enters:.5g} m3/s of air enters and {leaves:.5g} m3/s leaves ({parts}{of})"
 
 
 #: What to do about flows that do not balance.
 REMEDY: Final = (
     "Correct the flows, add 'air_paths' with 'one_way: true' to or from another zone, or write 'makeup_air: "
-    "outdoors' in the zone if the rest comes and goes through leaks."
+    "outdoors' in the zone if the rest comes and goes through leaks. Flows with different 'density:' do not "
+    "balance each other."
 )
 
 
@@ -67,7 +90,7 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
     """Constant flows that do not balance, and parts that nothing uses."""
     flows = flows_of_zones(building)
     for zone, part in building.zones.items():
-        if part.makeup_air is not None and zone not in flows:
+        if part.makeup_air is not None and all(zone != moved for moved, _ in flows):
             yield fault(
                 ("zones", zone, "makeup_air"),
                 "a zone that no fan moves air through",
@@ -78,12 +101,12 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
         if part.solar_to_air is not None:
             yield from _solar_to_air(building, zone)
     yield from vent_faults(building)
-    for zone, those in flows.items():
+    for (zone, air), those in flows.items():
         if building.zones[zone].makeup_air is not None:
             continue
         if any(part.column is not None or _schedule(part) is not None for _, part, _ in those):
             continue  # checked over the period of a run
-        wrong = imbalance({path: sign * part.number for path, part, sign in those})
+        wrong = imbalance({path: sign * part.number for path, part, sign in those}, air)
         if wrong is not None:
             yield fault(("zones", zone), wrong, "as much air in as out", REMEDY)
 

@@ -10,6 +10,7 @@ from mascarin._io.memory import amount
 from mascarin.building.base.part import Location, fault
 from mascarin.building.checks.air import air_faults
 from mascarin.building.checks.derived_outputs import derived_faults
+from mascarin.building.checks.forced_convection import forced_convection_faults
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.checks.humidity import humidity_faults
 from mascarin.building.checks.windows import windows_lie_in_walls
@@ -30,6 +31,7 @@ from mascarin.errors import did_you_mean
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
+    from mascarin.building.base.number import Number
     from mascarin.building.parts.description import Description
 
 Faults = Iterator["InitErrorDetails"]
@@ -51,7 +53,7 @@ def faults(building: Description) -> Faults:
     yield from _there_are_surfaces(building)
     yield from _one_namespace(building)
     yield from _layers_have_what_they_need(building)
-    yield from _zones_have_surfaces(building)
+    yield from _radiation_has_surfaces(building)
     yield from _zones_have_not_too_many_surfaces(building)
     yield from _emissivities_where_exchange_is(building)
     yield from _convection_suits_its_side(building)
@@ -61,6 +63,7 @@ def faults(building: Description) -> Faults:
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
     yield from air_faults(building)
+    yield from forced_convection_faults(building)
     yield from humidity_faults(building)
     yield from windows_lie_in_walls(building)
     yield from _sun_can_be_absorbed(building)
@@ -128,15 +131,21 @@ def _layers_have_what_they_need(building: Description) -> Faults:
                     )
 
 
-def _zones_have_surfaces(building: Description) -> Faults:
-    for zone in building.zones:
-        if not building.connections.sides(zone):
-            yield fault(
-                ("zones", zone),
-                "a zone that no surface faces",
-                "at least one side with 'zone: " + zone + "'",
-                "Add a surface that faces it, or remove the zone.",
-            )
+def _radiation_has_surfaces(building: Description) -> Faults:
+    """A zone that no surface faces is air alone: what is radiated in it would reach nothing."""
+    for name, zone in building.zones.items():
+        if building.connections.sides(name):
+            continue
+        parts: dict[str, Number | None] = {f"gains.{key}": gain.radiative for key, gain in zone.gains.items()}
+        parts |= {key: plant.radiative for key, plant in zone.loads.items()}
+        for key, radiative in parts.items():
+            if float(radiative or 0.0) > 0.0:
+                yield fault(
+                    ("zones", name, *key.split("."), "radiative"),
+                    f"{radiative:g} in a zone that no surface faces",
+                    "0: nothing is there that radiation could reach",
+                    f"Write 'radiative: 0', or add a side with 'zone: {name}'.",
+                )
 
 
 def _zones_have_not_too_many_surfaces(building: Description) -> Faults:
@@ -295,13 +304,8 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
             for part, keys in ((sun, ("sun",)), (sun.diffuse, ("sun", "diffuse"))):
                 if part is not None:
                     yield from _fractions_sum_to_one(("zones", zone, *keys), part, names)
-        if sun is not None and not has_glass:
-            yield fault(
-                ("zones", zone, "sun"),
-                "a zone without windows",
-                "a window through which the sun enters",
-                "Remove 'sun:'.",
-            )
+        if not has_glass:
+            continue  # no sun enters: its distribution does no harm
         if isinstance(sun, TracedSun):
             yield from _rays_end_on_surfaces(zone, surfaces)
         if isinstance(sun, FloorSun) and not any(floors(surfaces)):
@@ -311,7 +315,7 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
                 "a surface that faces up into the zone, within 30 deg",
                 "Correct 'tilt:' of the floor (180 deg for its inner side up), or write 'sun: area'.",
             )
-        if not has_glass or isinstance(sun, GivenSun):
+        if isinstance(sun, GivenSun):
             continue
         for item in surfaces:
             if item.surface is not None and getattr(item.surface, item.side).absorptance is None:

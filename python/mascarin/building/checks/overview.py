@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from mascarin._io.memory import uncollected
+from mascarin.building.checks.forced_convection import forced_convection_lines
 from mascarin.building.checks.humidity import humidity_lines
 from mascarin.building.checks.plausibility import warnings
 from mascarin.building.checks.u_values import (
@@ -20,10 +22,10 @@ from mascarin.building.engine_input.mesh import Mesh, choose
 from mascarin.building.engine_input.ratings import WindowRating, require_accepted, window_ratings
 from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parameters.unused_parameters import sides as every_side
-from mascarin.building.parts.air.measured_values import Driven
 from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, TextInfiltration, Zone
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.materials.closed_law import CUT, ClosedLaw
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
@@ -147,12 +149,15 @@ def _in_zones(building: Description) -> Iterator[str]:
             yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
         for key, air in zone.ventilation.items():
             flow = float(air.flow or 0.0) + float(air.air_changes or 0.0) * float(zone.volume or 0.0) / 3600.0
-            yield f"zone {name}: ventilation {key} of {flow * heat:.2f} W/K{_scheduled(air.schedule)}"
+            words = f"{flow * heat:.2f} W/K{_of_air(air)}{_scheduled(air.schedule)}"
+            yield f"zone {name}: ventilation {key} of {words}"
         for which, loads in zone.loads.items():
             target = loads.setpoint.words
             most = "without limit" if loads.capacity is None else f"at most {loads.capacity:g} W"
             yield f"zone {name}: {which} to {target}, {most}{_scheduled(loads.schedule)}"
         yield from _bridges(name, zone)
+        if zone.infiltration.density is not None:
+            yield f"zone {name}: infiltration{_of_air(zone.infiltration)}"
         test = zone.infiltration.blower_door
         if test is not None:
             yield f"zone {name}: infiltration of a pressure test, n50 {test.n50:g} 1/h ({test.kind})"
@@ -167,6 +172,7 @@ def _in_zones(building: Description) -> Iterator[str]:
         steered = _scheduled(opening.schedule) + _controlled(opening.control)
         yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{steered}"
     yield from _vents(building)
+    yield from forced_convection_lines(building)
 
 
 def _vents(building: Description) -> Iterator[str]:
@@ -200,7 +206,16 @@ def _flow(flow: Driven, heat: float) -> str:
     if isinstance(flow, AirPath) and flow.door is not None:
         door = flow.door
         return f"door of {door.width:g} m x {door.height:g} m, {100 * door.open:g} % open,"
-    return f"{flow.number * heat:.2f} W/K" if flow.column is None else f"flow of column {flow.column}"
+    words = f"{flow.number * heat:.2f} W/K" if flow.column is None else f"flow of column {flow.column}"
+    return words + _of_air(flow)
+
+
+def _of_air(part: Any) -> str:
+    """The air that a flow is a volume of, where it is not that of the site."""
+    density = getattr(part, "density", None)
+    if density is None or density.kind == "site":
+        return ""
+    return f" at the density of the site, counted as a volume of {density.words}"
 
 
 def _unit(name: str, unit: VentilationUnit, heat: float) -> Iterator[str]:

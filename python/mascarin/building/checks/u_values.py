@@ -131,7 +131,7 @@ def described_films(building: Description, surface: Surface) -> tuple[float, flo
 
 
 def _film(building: Description, side: Side, tilt: float) -> float:
-    if side.adiabatic:
+    if side.closed:
         return math.inf
     if side.convection is None:
         return 0.0
@@ -212,7 +212,7 @@ def layer_resistance(material: Material, thickness: float | None) -> float:
 
 def _surface_resistance(building: Description, side: Side, surface: Surface) -> tuple[float, str]:
     """Surface resistance [m2 K/W], and where it comes from."""
-    if side.adiabatic:
+    if side.closed:
         return math.inf, _CLOSED
     if side.convection is None:
         return 0.0, _NONE
@@ -300,7 +300,7 @@ def _least_surface_resistances(building: Description, construction: str) -> tupl
 
 
 def _nominal_resistance(side: Side, surface: Surface) -> float:
-    if side.adiabatic:
+    if side.closed:
         return math.inf
     if is_law(side.convection, "constant") and side.convection.coefficient > 0.0:
         return 1.0 / float(side.convection.coefficient)

@@ -7,6 +7,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from mascarin.building.base.part import Location, fault
+from mascarin.building.checks.air import STEEP
 from mascarin.building.parts.air.zone import GivenSun
 from mascarin.building.parts.defaults import drawn_areas, outlines, window_outlines
 from mascarin.building.parts.envelope.convection import ConvectionLaw
@@ -38,6 +39,14 @@ def windows_lie_in_walls(building: Description) -> Faults:
             )
         elif wall.outside.zone is not None:
             yield from _between_zones(building, location, window)
+        tilt = outlines({"": wall})[""].tilt if wall.vertices is not None else float(wall.tilt or 0.0)
+        if window.overhang is not None and not STEEP[0] <= tilt <= STEEP[1]:
+            yield fault(
+                (*location, "overhang"),
+                f"an overhang of a window of tilt {tilt:g} deg",
+                f"a window of {STEEP[0]:g} to {STEEP[1]:g} deg, which has an upper edge",
+                "Describe what shades it under 'shades:', with vertices.",
+            )
         if window.vertices is None:
             continue
         outline = wall_outlines.get(window.surface)
@@ -72,6 +81,14 @@ def _between_zones(building: Description, location: Location, window: Window) ->
                 f"'{key}' of a window between two zones",
                 "only what has an effect on this side",
                 f"Remove '{key}:': it has no effect here.",
+            )
+    for key in ("reveal", "overhang"):
+        if getattr(window, key) is not None:
+            yield fault(
+                (*location, key),
+                f"'{key}' of a window between two zones",
+                "only what has an effect on this window",
+                f"Remove '{key}:': no sky shines on it.",
             )
     if window.blind is not None:
         yield fault(

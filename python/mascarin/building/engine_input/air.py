@@ -7,12 +7,13 @@ from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper, fields_of
-from mascarin.building.parts.air.measured_values import Driven
+from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, Opening
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.bridge import ThermalBridge
+from mascarin.building.parts.envelope.measured_values import Driven
 
 
 def schedule_of(part: Any, positions: Positions) -> Json:
@@ -32,6 +33,16 @@ def driven(part: Driven, key: str, positions: Positions, ids: Ids) -> Json:
     return {key: ids("factor"), "schedule": positions[part.course.name]}
 
 
+def density_of(part: Any, ids: Ids, prefix: str = "") -> Json:
+    """Describe the density at which a flow is a volume; nothing where it is that of the site."""
+    if part.density is None or part.density.kind == "site":
+        return {}
+    written: Json = {"kind": part.density.kind}
+    if isinstance(part.density, ConstantDensity):
+        written["value"] = ids(f"{prefix}density.constant")
+    return {"density": written}
+
+
 def set_point(point: SetPoint, positions: Positions, ids: Ids) -> Json:
     """Describe a temperature that is a number, a schedule or a column."""
     if point.temperature is not None:
@@ -45,7 +56,7 @@ def describe_air_path(
     """Describe the air that two zones exchange, or that flows from one to the other."""
     first, second = _zones(building, path)
     ends = {"from": first, "to": second} if path.one_way else {"between": [first, second]}
-    return {"name": name, **ends, **driven(path, "flow", positions, ids)}
+    return {"name": name, **ends, **driven(path, "flow", positions, ids), **density_of(path, ids)}
 
 
 def describe_door(building: Description, positions: Positions, name: str, path: AirPath, ids: Ids) -> Json:
@@ -66,8 +77,13 @@ def describe_unit(
     zones = list(building.zones)
 
     def flows(section: str) -> list[Json]:
+        flow_ids = {zone: deeper(ids, f"{section}.{zone}") for zone in getattr(unit, section)}
         return [
-            {"zone": zones.index(zone), **driven(flow, "flow", positions, deeper(ids, f"{section}.{zone}"))}
+            {
+                "zone": zones.index(zone),
+                **driven(flow, "flow", positions, flow_ids[zone]),
+                **density_of(flow, flow_ids[zone]),
+            }
             for zone, flow in getattr(unit, section).items()
         ]
 

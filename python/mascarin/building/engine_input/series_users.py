@@ -22,6 +22,8 @@ def schedule_uses(building: Description) -> Iterator[Use]:
             for key, part in getattr(zone, section).items():
                 if part.schedule is not None:
                     yield part.schedule, (*location, section, key, "schedule"), "fraction"
+        if zone.mixing_air_change is not None and zone.mixing_air_change.schedule is not None:
+            yield zone.mixing_air_change.schedule, (*location, "mixing_air_change", "schedule"), "fraction"
         for which, loads in zone.loads.items():
             if loads.setpoint.schedule is not None:
                 yield loads.setpoint.schedule, (*location, which, "setpoint", "schedule"), "temperature"
@@ -29,6 +31,9 @@ def schedule_uses(building: Description) -> Iterator[Use]:
                 yield loads.schedule, (*location, which, "schedule"), "fraction"
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if side.heat_flux is not None and side.heat_flux.schedule is not None:
+                flux_location = ("surfaces", name, which, "heat_flux", "schedule")
+                yield side.heat_flux.schedule, flux_location, "fraction"
             if side.scheduled is not None:
                 yield side.scheduled, ("surfaces", name, which, "scheduled"), "temperature"
     for section in ("air_paths", "openings", "vents"):
@@ -76,6 +81,8 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
         for key, gain in zone.gains.items():
             if gain.course is not None:
                 yield gain.course, (*location, "gains", key, "column")
+        if zone.mixing_air_change is not None and zone.mixing_air_change.course is not None:
+            yield zone.mixing_air_change.course, (*location, "mixing_air_change", "column")
         for which, loads in zone.loads.items():
             if loads.setpoint.column is not None:
                 yield temperature_course(loads.setpoint.column), (*location, which, "setpoint", "column")
@@ -84,6 +91,8 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
                 yield temperature_course(bridge.measured), (*location, "thermal_bridges", key, "measured")
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if side.heat_flux is not None and side.heat_flux.course is not None:
+                yield side.heat_flux.course, ("surfaces", name, which, "heat_flux", "column")
             if isinstance(side.measured, tuple):
                 yield temperature_course(side.measured), ("surfaces", name, which, "measured")
     for name, path in building.air_paths.items():

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.base.time_series import temperature_course
+from mascarin.building.engine_input.air import driven
 from mascarin.building.engine_input.ids import Ids, Json, Positions, corners, deeper, fields_of
 from mascarin.building.parts.air.schedule import schedule_channel
 from mascarin.building.parts.description import Description
@@ -40,6 +41,9 @@ def describe_surface(
 def _side(side: Side, zones: list[str], channels: tuple[list[str], Positions], ids: Ids) -> Json:
     columns, positions = channels
     written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, positions, ids)}
+    if side.heat_flux is not None:
+        written["facing"] = {"kind": "adiabatic"}
+        written["heat_flux"] = driven(side.heat_flux, "flux", positions, deeper(ids, "heat_flux"))
     if side.convection is not None:
         written["convection"] = describe_convection(side.convection, columns, ids)
     if side.longwave is not None:

@@ -19,6 +19,7 @@ from mascarin.building.parts.openings.glazing import (
     TwoSides,
 )
 from mascarin.building.parts.openings.window import Window
+from mascarin.building.parts.window_shades import window_shades
 
 
 def framed(building: Description) -> list[str]:
@@ -112,7 +113,7 @@ def describe_window(
         emissivity = [outer[0], inner[1]]
     if window.blind is not None:
         emissivity[0 if window.blind.position == "outside" else 1] = ids("blind.emissivity")
-    written = _glazed(building, columns, all_ids, window, ids, emissivity) | {
+    written = _glazed(building, columns, all_ids, name, ids, emissivity) | {
         "name": name,
         "construction": _construction_of(building, name, window),
         "cavity_height": ids("cavity_height"),
@@ -154,8 +155,7 @@ def describe_blinded_glazing(
 def describe_frame(building: Description, columns: list[str], name: str, all_ids: Mapping[str, int]) -> Json:
     """Describe the frame of a window as a surface."""
     ids = below(all_ids, f"windows.{name}")
-    window = building.windows[name]
-    written = _glazed(building, columns, all_ids, window, ids, [ids("frame.emissivity")] * 2)
+    written = _glazed(building, columns, all_ids, name, ids, [ids("frame.emissivity")] * 2)
     written["outside"]["absorptance"] = written["inside"]["absorptance"] = ids("frame.absorptance")
     return written | {
         "name": f"{name}.frame",
@@ -174,11 +174,12 @@ def _glazed(
     building: Description,
     columns: list[str],
     all_ids: Mapping[str, int],
-    window: Window,
+    name: str,
     ids: Ids,
     emissivity: list[int],
 ) -> Json:
     """Describe what glass and frame of a window have in common."""
+    window = building.windows[name]
     wall = building.surfaces[window.surface]
     direction = {key: all_ids[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
     zones = list(building.zones)
@@ -195,6 +196,9 @@ def _glazed(
         outside["behind_obstacles"] = bool(window.outside.behind_obstacles)
     if window.outside.longwave is not None:
         outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
+    before = window_shades(building, name)
+    if before is not None:
+        outside |= {"own_shades": before.shades, "outline": before.outline}
     inside = {
         "facing": {"kind": "zone", "zone": zones.index(str(wall.inside.zone))},
         "emissivity": emissivity[1],

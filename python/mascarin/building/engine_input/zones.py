@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.building.engine_input.air import driven, schedule_of, set_point
+from mascarin.building.engine_input.air import density_of, driven, schedule_of, set_point
 from mascarin.building.engine_input.ids import Ids, Json, Positions, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
 from mascarin.building.parts.air.zone import (
@@ -13,9 +13,11 @@ from mascarin.building.parts.air.zone import (
     IdealLoads,
     SunShares,
     TextInfiltration,
+    TracedSun,
     Zone,
 )
 from mascarin.building.parts.description import Description
+from mascarin.building.parts.envelope.surface import NoLongwave
 from mascarin.building.parts.materials.text_law import numbers_of
 from mascarin.building.parts.zone_surfaces import closed, floors, surface_names
 from mascarin.errors import InputError
@@ -32,7 +34,12 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         for key, part in zone.gains.items()
     ]
     ventilation = [
-        {"name": key, **fields_of(part, ids, f"ventilation.{key}."), **schedule_of(part, positions)}
+        {
+            "name": key,
+            **fields_of(part, ids, f"ventilation.{key}."),
+            **schedule_of(part, positions),
+            **density_of(part, ids, f"ventilation.{key}."),
+        }
         for key, part in zone.ventilation.items()
     ]
     loads = {which: _ideal_loads(loads, positions, ids, which) for which, loads in zone.loads.items()}
@@ -40,6 +47,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         "name": name,
         "gains": gains,
         "ventilation": ventilation,
+        **_mixing(zone, positions, ids),
         **loads,
         "volume": ids("volume"),
         "capacity_factor": ids("capacity_factor"),
@@ -51,8 +59,16 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
     }
 
 
+def _mixing(zone: Zone, positions: Positions, ids: Ids) -> Json:
+    if zone.mixing_air_change is None:
+        return {}
+    written = driven(zone.mixing_air_change, "air_changes", positions, deeper(ids, "mixing_air_change"))
+    return {"mixing": written}
+
+
 def _infiltration(zone: Zone, ids: Ids) -> Json:
     written = fields_of(zone.infiltration, ids, "infiltration.")
+    written |= density_of(zone.infiltration, ids, "infiltration.")
     test = zone.infiltration.blower_door
     if test is not None:
         written["leakage"] = fields_of(test, ids, "infiltration.blower_door.")
@@ -72,6 +88,8 @@ def _ideal_loads(loads: IdealLoads, positions: Positions, ids: Ids, which: str) 
 
 def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
     surfaces = building.connections.of(name)
+    if all(item.window is None for item in surfaces):
+        return {"kind": "area"}  # no sun enters
     if isinstance(zone.sun, FloorSun):
         return {"kind": "floor", "floor": floors(surfaces)}
     if not isinstance(zone.sun, GivenSun):
@@ -112,6 +130,9 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
         both_ways = zip(one_way, zip(*one_way, strict=True), strict=True)
         # Reciprocity: A_i F_ij = A_j F_ji, as far as the rounding of the given factors allows.
         return [[0.5 * (forth + back) for forth, back in zip(*pair, strict=True)] for pair in both_ways]
+    definition = building.zones[zone]
+    if isinstance(definition.longwave, NoLongwave) and not isinstance(definition.sun, TracedSun):
+        return []  # nothing is exchanged by view factors
     if not closed(surfaces):
         return []
     # Glass and frame of a window are in one polygon and do not exchange radiation.

@@ -76,6 +76,7 @@ def without_effect(building: Description) -> dict[str, str]:
     parts = obstructed_paths(building)
     for item in all_sides:
         reasons.update(_on_side(item, parts))
+    reasons.update(_of_mixing(building, all_sides))
     reasons.update(_behind_walls(building))
     for name, surface in building.surfaces.items():
         reasons.update(_in_direction(building, name, surface))
@@ -99,12 +100,24 @@ def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
     yield SurfaceSide(f"windows.{name}.inside", window.inside, 180.0 - tilt, area)
 
 
+def _of_mixing(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
+    laws = (item.side.convection for item in all_sides)
+    if not any(isinstance(law, FormulaLaw) and law.uses("total_air_change") for law in laws):
+        for name, zone in building.zones.items():
+            if zone.mixing_air_change is not None:
+                reason = "no law of convection depends on the air that moves within a zone"
+                yield from _all_of(f"zones.{name}.mixing_air_change", zone.mixing_air_change, reason)
+
+
 def _behind_walls(building: Description) -> Reasons:
     """Absorptances that no sun reaches, and heights of gaps where no gap is filled."""
     for zone in building.zones:
         surfaces = building.connections.of(zone)
         has_glass = any(item.window is not None for item in surfaces)
-        is_stated_sun = isinstance(building.zones[zone].sun, GivenSun)
+        sun = building.zones[zone].sun
+        is_stated_sun = isinstance(sun, GivenSun)
+        if isinstance(sun, GivenSun) and not has_glass:
+            yield from _all_of(f"zones.{zone}.sun", sun, "no sun enters the zone")
         for item in surfaces:
             path = f"surfaces.{item.name}.{item.side}.absorptance"
             if item.surface is not None and (not has_glass or is_stated_sun):

@@ -53,9 +53,23 @@ def _obstructed(building: Description) -> dict[SideName, list[str]]:
     horizon = ["horizon"] if building.site.horizon else []
     walls, shades = obstructions(building), _shades(building)
     obstacles = {
-        side_name: [*walls.get(side_name, []), *shades.get(side_name, []), *horizon] for side_name, _ in free
+        side_name: [
+            *walls.get(side_name, []),
+            *shades.get(side_name, []),
+            *_window_shades(building, side_name[0]),
+            *horizon,
+        ]
+        for side_name, _ in free
     }
     return {side_name: names for side_name, names in obstacles.items() if names}
+
+
+def _window_shades(building: Description, name: str) -> list[str]:
+    """Reveal and overhang of a window."""
+    window = building.windows.get(name)
+    return (
+        [] if window is None else [key for key in ("reveal", "overhang") if getattr(window, key) is not None]
+    )
 
 
 def paths(building: Description) -> set[str]:

@@ -197,7 +197,10 @@ def undrawn(building: Description) -> list[str]:
     windows = [
         name
         for name, window in building.windows.items()
-        if window.vertices is None and building.surfaces[window.surface].outside.outdoors
+        if window.vertices is None
+        and window.reveal is None
+        and window.overhang is None
+        and building.surfaces[window.surface].outside.outdoors
     ]
     return surfaces + windows
 

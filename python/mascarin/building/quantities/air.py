@@ -48,8 +48,17 @@ Ventilation = Annotated[
     Number,
     Quantity(
         "1/h",
-        "Air changes of ventilation from outdoors, at the density of the site",
+        "Air changes of ventilation from outdoors, at the density of the site if 'density' names no other",
         Percent(20, "fans against the resistance of filters and ducts"),
+        Limits(at_least=0, at_most=1000),
+    ),
+]
+MixingAirChange = Annotated[
+    Number,
+    Quantity(
+        "1/h",
+        "Air that a fan moves within the zone, over the volume of the zone",
+        Percent(30, "fans blow more or less than their plates say, and a part of it returns at once"),
         Limits(at_least=0, at_most=1000),
     ),
 ]
@@ -57,9 +66,18 @@ VolumeFlow = Annotated[
     Number,
     Quantity(
         "m3/s",
-        "Volume flow of air at the density of the site",
+        "Volume flow of air, at the density of the site if 'density' names no other",
         Percent(20, "fans against the resistance of filters and ducts; doors ajar or open"),
         Limits(at_least=0, at_most=1000),
+    ),
+]
+FlowDensity = Annotated[
+    Number,
+    Quantity(
+        "kg/m3",
+        "Density of the air that the flow is a volume of",
+        Percent(5, "15 K of temperature or 50 hPa between the fan's test and its place"),
+        Limits(above=0, at_most=3),
     ),
 ]
 OpeningArea = Annotated[

@@ -24,6 +24,15 @@ AreaFactor = Annotated[
         Limits(at_least=0.1, at_most=20),
     ),
 ]
+HeatFlux = Annotated[
+    Number,
+    Quantity(
+        "W/m2",
+        "Heat flow density given to the surface from outside; negative: taken from it",
+        Percent(5, "power and area of a heating foil, or a flux meter"),
+        Limits(at_least=-1e5, at_most=1e5),
+    ),
+]
 SkyView = Annotated[
     Number,
     Quantity("-", "Fraction of the sky that is visible", Within(0.1, "trees and neighbors"), FRACTION),

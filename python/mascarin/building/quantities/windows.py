@@ -7,6 +7,33 @@ from typing import Annotated
 from mascarin.building.base.number import Fixed, Limits, Number, Percent, Quantity, Within
 from mascarin.building.quantities.common import FRACTION, POSITIVE, TAPE
 
+RevealDepth = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Distance of the glass behind the outer plane of its wall",
+        Fixed("fixes the geometry of the shadows; compare variants of the building"),
+        Limits(above=0, at_most=5),
+    ),
+]
+OverhangLength = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Length that places an overhang over a window",
+        Fixed("fixes the geometry of the shadows; compare variants of the building"),
+        Limits(at_least=0, at_most=50),
+    ),
+]
+OverhangDepth = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Depth of the overhang before the outer plane of the wall",
+        Fixed("fixes the geometry of the shadows; compare variants of the building"),
+        Limits(above=0, at_most=50),
+    ),
+]
 PaneThickness = Annotated[
     Number,
     Quantity(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.building.parts.air.measured_values import Driven
+    from mascarin.building.parts.envelope.measured_values import Driven
 
     Array = npt.NDArray[np.float64]
 
@@ -52,14 +52,14 @@ def require_balanced_flows(
         course = np.ones(len(forcing)) if name is None else forcing[:, 0, columns[f"schedule {name}"]]
         return np.asarray(design_flow * course)
 
-    for zone, parts in flows_of_zones(building).items():
+    for (zone, air), parts in flows_of_zones(building).items():
         if building.zones[zone].makeup_air is not None:
             continue
         flows = {path: sign * of(part) for path, part, sign in parts}
         all_flows = np.array(list(flows.values()))
         enters, leaves = all_flows.clip(min=0.0).sum(axis=0), -all_flows.clip(max=0.0).sum(axis=0)
         worst = int(np.argmax(np.abs(enters - leaves) - BALANCED * np.maximum(enters, leaves)))
-        wrong = imbalance({path: float(flow[worst]) for path, flow in flows.items()})
+        wrong = imbalance({path: float(flow[worst]) for path, flow in flows.items()}, air)
         if wrong is not None:
             import pandas as pd
 

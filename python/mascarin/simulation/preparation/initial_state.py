@@ -407,7 +407,7 @@ def _merged(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[float, float] | None:
     """Surface resistance of a side and the temperature behind it; None if adiabatic. [m2 K/W, degC]"""
-    if side.adiabatic:
+    if side.closed:
         return None
     if side.outdoors:
         return FILMS[0], ambient.outdoors

@@ -38,7 +38,7 @@ class Channel:
 
 
 _TABLE: Final = (
-    Channel("air_temperature", "degC", "instant", -90.0, 65.0, "dry-bulb temperature of the air"),
+    Channel("air_temperature", "degC", "instant", -90.0, 80.0, "dry-bulb temperature of the air"),
     Channel("dew_point", "degC", "instant", -115.0, 65.0, "dew-point temperature"),
     Channel("cloud_cover", "tenths", "instant", 0.0, 10.0, "part of the sky covered by cloud"),
     Channel("infrared", "W/m2", "mean", 20.0, 800.0, "long-wave radiation from the sky on the horizontal"),

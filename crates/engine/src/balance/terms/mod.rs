@@ -62,6 +62,8 @@ pub(crate) enum Origin<S> {
     },
     /// The sun through windows or in their panes; it is counted where it enters, see [`Sink::count`].
     Window,
+    /// A heat flux that is given at a surface.
+    HeatFlux,
     /// Gains of a zone; counted by zone.
     ConvectiveGains {
         zone: usize,
@@ -346,7 +348,7 @@ impl<S: Real> Balances<'_, S> {
         }
     }
 
-    /// Surfaces at imposed temperatures, or with convection to one.
+    /// Surfaces at imposed temperatures, or with convection to one, and heat fluxes that are given.
     #[inline(always)]
     pub(crate) fn imposed_temperatures(&self, sink: &mut impl Sink<S>) {
         for imposed in &self.index.imposed {
@@ -359,6 +361,10 @@ impl<S: Real> Balances<'_, S> {
                 let ends = [End::Node(Node::Surface(surface)), environment];
                 sink.exchange(ends, area, &self.laws.surfaces[surface].convection);
             }
+        }
+        for &(surface, area) in &self.index.heated {
+            let heat = self.conditions.surfaces[surface].longwave;
+            sink.release(Node::Surface(surface), area, heat, Origin::HeatFlux);
         }
     }
 

@@ -4,6 +4,7 @@ use crate::building::plan::Plan;
 use crate::input::description::Vent;
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::flow_density::SiteAir;
 use crate::physics::mechanical_air::{DirectedFlow, Unit};
 
 /// All flows that fans drive; empty in a building without them.
@@ -23,13 +24,13 @@ pub struct MechanicalAir<S> {
 }
 
 impl<S: Real> MechanicalAir<S> {
-    /// `heat`: heat capacity of a cubic metre of air [J/(m3 K)].
-    pub(crate) fn new(plan: &Plan, values: &Values<'_, S>, heat: S) -> Self {
+    /// Evaluates all flows at a parameter vector.
+    pub(crate) fn new(plan: &Plan, values: &Values<'_, S>, site: &SiteAir<S>) -> Self {
         let description = &plan.description;
         let units: Vec<_> =
-            description.ventilation_units.iter().map(|unit| Unit::new(unit, values, heat)).collect();
+            description.ventilation_units.iter().map(|unit| Unit::new(unit, values, site)).collect();
         let directed: Vec<_> =
-            description.directed_flows.iter().map(|flow| DirectedFlow::new(flow, values, heat)).collect();
+            description.directed_flows.iter().map(|flow| DirectedFlow::new(flow, values, site)).collect();
         let mut carries: Vec<[usize; 2]> = directed.iter().map(|flow| flow.ends).collect();
         for unit in units.iter().filter(|unit| unit.recovers()) {
             for supply in &unit.supply {

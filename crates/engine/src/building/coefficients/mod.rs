@@ -26,6 +26,7 @@ use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::Path;
 use crate::physics::doors::Door;
+use crate::physics::flow_density::SiteAir;
 use crate::physics::formula::expression::Expression;
 use crate::physics::formula::function::Function;
 use crate::physics::longwave::{CloudEffect, sky_law};
@@ -47,6 +48,8 @@ pub struct Coefficients<S> {
     pub doors: Vec<Door<S>>,
     /// Flows that fans drive.
     pub mechanical_air: MechanicalAir<S>,
+    /// Air of the site, where flows are volumes of air of a density that changes.
+    pub(crate) densities: Option<SiteAir<S>>,
     /// Openings of the pressure network, and controls of openings.
     pub vents: Vents<S>,
     /// Thermal bridges.
@@ -75,12 +78,12 @@ impl<S: Real> Coefficients<S> {
         let surfaces: BySurface<_> =
             plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
         let site = &description.site;
-        let heat = air::heat_capacity(plan, &values, air::density(plan, &values));
+        let air = air::of_site(plan, &values);
         let zones: Vec<_> = (0..plan.zones.len())
-            .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, heat))
+            .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, &air))
             .collect();
         let passing = Passing::new(plan, &walls, &zones);
-        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, heat)).collect();
+        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, &air)).collect();
         let humidity = HumidityCoefficients::new(plan, &values, &walls, &zones);
         Self {
             humidity,
@@ -89,8 +92,9 @@ impl<S: Real> Coefficients<S> {
             zones,
             passing,
             paths,
-            doors: description.doors.iter().map(|door| Door::new(door, &values, heat)).collect(),
-            mechanical_air: MechanicalAir::new(plan, &values, heat),
+            doors: description.doors.iter().map(|door| Door::new(door, &values, air.heat)).collect(),
+            mechanical_air: MechanicalAir::new(plan, &values, &air),
+            densities: air::density_varies(plan).then_some(air),
             vents: Vents::new(plan, &values),
             bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),

@@ -10,7 +10,7 @@ use super::wall::net_area;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::input::description::{Exposure, Facing, OutdoorLongwave, ParamId, Side, Surface};
-use crate::input::forcing::CLIMATE_CHANNELS;
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule};
 use crate::input::values::Values;
 use crate::number::elementary::{cos_of_degrees, sin_of_degrees};
 use crate::number::real::Real;
@@ -35,6 +35,8 @@ pub struct SurfaceCoefficients<S> {
     pub emissivity: S,
     /// Solar absorptance [-].
     pub absorptance: S,
+    /// Heat given to the surface from outside [W/m2], and its schedule.
+    pub(crate) heat_flux: Option<(S, Schedule)>,
     /// Forcing channel of a measured irradiance on the plane.
     pub irradiance: Option<usize>,
     /// What it borders on.
@@ -50,7 +52,7 @@ pub enum Boundary<S> {
     Outdoors(Box<Outdoors<S>>),
     /// A temperature, through the surface heat transfer coefficient if there is one.
     Imposed(Imposed<S>),
-    /// No heat flow but absorbed sun.
+    /// No heat flow but absorbed sun and a given heat flux.
     Adiabatic,
     /// A zone: solved in the coupled system.
     Zone,
@@ -108,6 +110,10 @@ impl<S: Real> SurfaceCoefficients<S> {
             upward: placement.upward,
             emissivity: values.get_or(side.emissivity, 0.0),
             absorptance: values.get_or(side.absorptance, 0.0),
+            heat_flux: side
+                .heat_flux
+                .as_ref()
+                .map(|given| (values.get(given.flux), Schedule::new(given.schedule))),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
             boundary: boundary(plan, index, side, values),
             exposure: side.exposure,

@@ -3,10 +3,12 @@
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
 use crate::building::solar_distribution::{SolarDistribution, SolarSurface};
-use crate::input::description::{Infiltration, ParamId, Zone, ZoneLongwave};
+use crate::input::description::{Infiltration, Mixing, ParamId, Zone, ZoneLongwave};
+use crate::input::forcing::Schedule;
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::air_flow::{AirFlow, Opening};
+use crate::physics::air_flow::{self, Opening};
+use crate::physics::flow_density::{AirFlow, SiteAir};
 use crate::physics::formula::function::Function;
 use crate::physics::gains::{Gain, Thermostat};
 use crate::physics::leakage::{StackWind, leakage};
@@ -26,6 +28,8 @@ pub struct ZoneCoefficients<S> {
     pub infiltration: [S; 3],
     /// Infiltration by stack and wind, from a pressure test.
     pub leakage: Option<StackWind<S>>,
+    /// Heat capacity of the zone's volume of the air that infiltrates [J/K]; none: at the density of the site.
+    pub(crate) infiltrated_capacity: Option<AirFlow<S>>,
     /// Infiltration as text [1/h].
     pub(crate) infiltration_law: Option<Function<S>>,
     /// Part of the transmitted sun that the air gets at once [-].
@@ -44,6 +48,8 @@ pub struct ZoneCoefficients<S> {
     pub radiant_shares: Vec<S>,
     /// Ventilation with outdoor air.
     pub ventilation: Vec<AirFlow<S>>,
+    /// Air that moves within the zone [1/h], and its schedule.
+    pub(crate) mixing: Option<(S, Schedule)>,
     /// Openings to outdoors.
     pub openings: Vec<Opening<S>>,
     /// Parts of ideal heating and of ideal cooling that are radiated to the surfaces [-]; none: all goes to the air.
@@ -57,14 +63,14 @@ pub struct ZoneCoefficients<S> {
 }
 
 impl<S: Real> ZoneCoefficients<S> {
-    /// `heat`: heat capacity of a cubic metre of air [J/(m3 K)].
+    /// Evaluates a zone at a parameter vector.
     pub(crate) fn new(
         plan: &Plan,
         index: usize,
         values: &Values<'_, S>,
         walls: &[WallCoefficients<S>],
         surfaces: &BySurface<SurfaceCoefficients<S>>,
-        heat: S,
+        site: &SiteAir<S>,
     ) -> Self {
         let definition = &plan.description.zones[index];
         let zone_surfaces = &plan.zones[index].surfaces;
@@ -81,29 +87,28 @@ impl<S: Real> ZoneCoefficients<S> {
         } else {
             Vec::new()
         };
-        let air_capacity = values.get(definition.volume) * heat;
-        let Infiltration { constant, temperature, wind, leakage: test, law } = &definition.infiltration;
-        let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
-        let by_stack_and_wind = test.as_ref().and_then(|test| {
-            let (constant, law) = leakage(test, values);
-            infiltration[0] += constant;
-            law
-        });
+        let air_capacity = values.get(definition.volume) * site.heat;
+        let Infiltration { law, density, .. } = &definition.infiltration;
+        let (infiltration, by_stack_and_wind) = leaks(&definition.infiltration, values);
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
-        let ventilation = definition.ventilation.iter();
+        let ventilated = |flow| air_flow::ventilation(flow, index, values, site, air_capacity);
+        let infiltrated =
+            |density| AirFlow::new(air_capacity, None, (Some(density), [index; 2]), values, site);
         let ([heating, cooling], radiated_loads) = plants(definition, values);
         Self {
             radiated_loads,
             gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
             radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
-            ventilation: ventilation.map(|flow| AirFlow::new(flow, values, heat, air_capacity)).collect(),
-            openings: openings.map(|opening| Opening::new(opening, values, heat)).collect(),
+            ventilation: definition.ventilation.iter().map(ventilated).collect(),
+            mixing: definition.mixing.as_ref().map(|mixing| mixed(mixing, values)),
+            openings: openings.map(|opening| Opening::new(opening, values, site.heat)).collect(),
             heating,
             cooling,
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration,
             leakage: by_stack_and_wind,
+            infiltrated_capacity: density.as_ref().map(infiltrated),
             infiltration_law: law.as_ref().map(|law| Function::of("infiltration", law, values)),
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
             exchange_sums: sums_of_others(&exchange, zone_surfaces.len()),
@@ -133,6 +138,23 @@ impl<S: Real> ZoneCoefficients<S> {
             None => [load, S::zero()],
         }
     }
+}
+
+/// Air that moves within a zone [1/h], and its schedule.
+fn mixed<S: Real>(mixing: &Mixing, values: &Values<'_, S>) -> (S, Schedule) {
+    (values.get(mixing.air_changes), Schedule::new(mixing.schedule))
+}
+
+/// Infiltration by its three parts, with what a pressure test adds to the first, and that of a test by stack and wind.
+fn leaks<S: Real>(infiltration: &Infiltration, values: &Values<'_, S>) -> ([S; 3], Option<StackWind<S>>) {
+    let Infiltration { constant, temperature, wind, leakage: test, .. } = infiltration;
+    let mut rates = [constant, temperature, wind].map(|id| values.get(*id));
+    let by_stack_and_wind = test.as_ref().and_then(|test| {
+        let (constant, law) = leakage(test, values);
+        rates[0] += constant;
+        law
+    });
+    (rates, by_stack_and_wind)
 }
 
 /// Ideal heating and cooling of a zone, and the parts of them that are radiated; none where all goes to the air.

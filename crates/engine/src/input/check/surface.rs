@@ -1,8 +1,10 @@
 //! Walls, windows and their sides.
 
 use super::numbers::check_polygon;
-use super::{Checked, check_index, refuse};
-use crate::input::description::{Convection, Description, Facing, Side, Surface, ZoneLongwave};
+use super::{Checked, check_index, check_schedule, refuse};
+use crate::input::description::{
+    Convection, Description, Facing, OutdoorLongwave, Side, Surface, ZoneLongwave,
+};
 
 /// References, corners and both sides of a wall or window.
 pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checked {
@@ -42,7 +44,8 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
             }
         }
         Facing::Outdoors => {
-            if side.convection.is_none() || side.emissivity.is_none() {
+            let radiates = !matches!(side.longwave, OutdoorLongwave::None);
+            if side.convection.is_none() || (radiates && side.emissivity.is_none()) {
                 return refuse(place, "outdoors without them", "convection and emissivity");
             }
             if side.absorptance.is_none() && side.exposure.sun && !glazed {
@@ -52,6 +55,12 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
         Facing::Measured { channel } => check_index(place, "channel", channel, channels)?,
         Facing::Ground { .. } | Facing::Adiabatic => {}
     }
+    if let Some(flux) = &side.heat_flux {
+        check_schedule(description, format_args!("{place}, heat flux"), flux.schedule)?;
+        if side.facing != Facing::Adiabatic {
+            return refuse(place, "a heat flux on a side that faces something", "an adiabatic side");
+        }
+    }
     if glazed && side.absorptance.is_some() {
         return refuse(place, "absorptance of a window", "none: its panes have their own");
     }
@@ -60,6 +69,12 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
         if description.surfaces[wall].vertices.is_empty() {
             return refuse(place, format_args!("shaded by surface {wall} without vertices"), "vertices");
         }
+    }
+    for shade in &side.own_shades {
+        check_polygon(&format!("{place}, own shade"), shade)?;
+    }
+    if !side.outline.is_empty() {
+        check_polygon(&format!("{place}, outline"), &side.outline)?;
     }
     check_irradiance(place, side, (channels, glazed))?;
     check_convection(place, side, channels)

@@ -19,6 +19,9 @@ pub(super) fn check_zone(description: &Description, index: usize, zone: &Zone) -
         }
         check_schedule(description, &place, flow.schedule)?;
     }
+    if let Some(mixing) = &zone.mixing {
+        check_schedule(description, format_args!("{place}, mixing"), mixing.schedule)?;
+    }
     for load in [&zone.heating, &zone.cooling].into_iter().flatten() {
         check_load(description, &place, load)?;
     }

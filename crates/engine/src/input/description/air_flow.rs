@@ -3,6 +3,7 @@
 
 use serde::Deserialize;
 
+use super::flow_density::FlowDensity;
 use super::parameter::ParamId;
 use super::zone::SetPoint;
 
@@ -14,11 +15,14 @@ pub struct AirPath {
     pub name: String,
     /// Indices into [`Description::zones`](super::Description::zones).
     pub between: [usize; 2],
-    /// Volume flow in each direction at the density of the site [m3/s].
+    /// Volume flow in each direction [m3/s].
     pub flow: ParamId,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the flow [-]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,
+    /// Density of the air that the flow is a volume of. None: that of the site.
+    #[serde(default)]
+    pub density: Option<FlowDensity>,
 }
 
 /// Air that flows from one zone to another.
@@ -31,11 +35,14 @@ pub struct DirectedFlow {
     pub from: usize,
     /// Index into [`Description::zones`](super::Description::zones): where it goes to.
     pub to: usize,
-    /// Volume flow at the density of the site [m3/s]; where a channel gives the flow, what that is multiplied by.
+    /// Volume flow [m3/s]; where a channel gives the flow, what that is multiplied by.
     pub flow: ParamId,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the flow [-], or the flow [m3/s]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,
+    /// Density of the air that the flow is a volume of. None: that of the site.
+    #[serde(default)]
+    pub density: Option<FlowDensity>,
 }
 
 /// A door or another large opening between two zones, through which a temperature difference drives air both ways.
@@ -65,11 +72,14 @@ pub struct Door {
 pub struct UnitFlow {
     /// Index into [`Description::zones`](super::Description::zones).
     pub zone: usize,
-    /// Volume flow at the density of the site [m3/s]; where a channel gives the flow, what that is multiplied by.
+    /// Volume flow [m3/s]; where a channel gives the flow, what that is multiplied by.
     pub flow: ParamId,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the flow [-], or the flow [m3/s]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,
+    /// Density of the air that the flow is a volume of. None: that of the site.
+    #[serde(default)]
+    pub density: Option<FlowDensity>,
 }
 
 /// Mechanical ventilation: air that is supplied to some zones and extracted from others.

@@ -14,6 +14,7 @@ mod bridge;
 mod building;
 mod construction;
 mod convection;
+mod flow_density;
 mod glazing;
 mod humidity;
 mod material;
@@ -29,6 +30,7 @@ pub use bridge::ThermalBridge;
 pub use building::{DerivedOutput, Description, OutputPlace, UsedOutput};
 pub use construction::{Construction, Layer};
 pub use convection::{Convection, ConvectionLaw, FormulaNumber, TextLaw};
+pub use flow_density::FlowDensity;
 pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use humidity::{
     Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,
@@ -37,8 +39,9 @@ pub use material::Material;
 pub use parameter::{ParamId, Parameter};
 pub use phase_change::{MeltingCurve, PcmLaw, TablePoints, Tail};
 pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
-pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
+pub use surface::{Exposure, Facing, FrameShare, HeatFlux, OutdoorLongwave, Sensor, Side, Surface};
 pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};
 pub use zone::{
-    Gain, IdealLoad, Infiltration, Leakage, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
+    Gain, IdealLoad, Infiltration, Leakage, Mixing, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave,
+    ZoneSun,
 };

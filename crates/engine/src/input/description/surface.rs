@@ -59,7 +59,10 @@ pub struct Side {
     /// imposed temperature (`ground`, `measured`), or no heat flows (`adiabatic`).
     #[serde(default)]
     pub convection: Option<Convection>,
-    /// Long-wave emissivity [-]. Needed for `outdoors` and `zone`.
+    /// Heat that is given to the surface of an `adiabatic` side from outside. None: none.
+    #[serde(default)]
+    pub heat_flux: Option<HeatFlux>,
+    /// Long-wave emissivity [-]. Needed for `zone` where it exchanges radiation, and for `outdoors` where the side does.
     #[serde(default)]
     pub emissivity: Option<ParamId>,
     /// Solar absorptance [-]. Needed for `outdoors` and for a `measured` irradiance.
@@ -90,6 +93,23 @@ pub struct Side {
     /// Indices into [`Description::surfaces`](super::Description::surfaces): walls that stand in front of an `outdoors` side.
     #[serde(default)]
     pub shaded_by: Vec<usize>,
+    /// Corners of thin shades that act on this `outdoors` side alone: the reveal and the overhang of a window [m].
+    #[serde(default)]
+    pub own_shades: Vec<Vec<[f64; 3]>>,
+    /// Corners of the side where its wall has no vertices, in coordinates that its own shades share alone [m].
+    #[serde(default)]
+    pub outline: Vec<[f64; 3]>,
+}
+
+/// A given heat flow density.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeatFlux {
+    /// Into the surface [W/m2]; where a channel gives it, what that is multiplied by.
+    pub flux: ParamId,
+    /// Index into [`Description::channels`](super::Description::channels): fraction of it [-], or the flux [W/m2]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
 }
 
 /// What of the weather reaches an `outdoors` side, beside the temperature of the air.

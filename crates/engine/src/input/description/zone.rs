@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::convection::TextLaw;
+use super::flow_density::FlowDensity;
 use super::parameter::ParamId;
 
 /// A volume of well-mixed air.
@@ -37,6 +38,9 @@ pub struct Zone {
     /// Intended supply of outdoor air.
     #[serde(default)]
     pub ventilation: Vec<Ventilation>,
+    /// Air that a fan moves within the zone. None: none.
+    #[serde(default)]
+    pub mixing: Option<Mixing>,
     /// Ideal heating.
     #[serde(default)]
     pub heating: Option<IdealLoad>,
@@ -65,6 +69,10 @@ pub struct Infiltration {
     /// Air changes as text, in addition. None: nothing.
     #[serde(default)]
     pub law: Option<TextLaw>,
+
+    /// Density of the air that air changes and flows are volumes of. None: that of the site.
+    #[serde(default)]
+    pub density: Option<FlowDensity>,
 }
 
 /// Infiltration by the air changes of a pressure test at 50 Pa; equations and sources in `physics/leakage.rs`.
@@ -160,7 +168,7 @@ pub struct Gain {
     pub schedule: Option<usize>,
 }
 
-/// Intended supply of outdoor air, at the density of the site: either rate is given.
+/// Intended supply of outdoor air: either rate is given.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ventilation {
@@ -173,6 +181,20 @@ pub struct Ventilation {
     #[serde(default)]
     pub flow: Option<ParamId>,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the flow [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+    /// Density of the air that air changes and flows are volumes of. None: that of the site.
+    #[serde(default)]
+    pub density: Option<FlowDensity>,
+}
+
+/// Air that moves within a zone; it acts on laws of convection that depend on it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mixing {
+    /// Air changes [1/h]; where a channel gives them, what that is multiplied by.
+    pub air_changes: ParamId,
+    /// Index into [`Description::channels`](super::Description::channels): fraction of them [-], or the air changes [1/h]. None: always all.
     #[serde(default)]
     pub schedule: Option<usize>,
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::correlation::Placement;
 use super::formula_text::{FormulaText, Number};
 use super::natural::{Coefficient, Difference};
-use super::wind::{Driven, Surroundings, Wind, WindTerms};
+use super::wind::{AROUND, Driven, Surroundings, Wind, WindTerms};
 use crate::number::real::{Mask, Real};
 
 /// Largest difference at which a formula is used as it is [K].
@@ -18,8 +18,9 @@ const FARTHEST: f64 = 200.0;
 const TRIED: u32 = 24;
 /// Winds at which they are tried [m/s].
 const WINDS: [(f64, bool); 3] = [(0.0, true), (30.0, true), (30.0, false)];
-/// Least and largest temperature of the air [degC], angle [deg], irradiance [W/m2] and air change [1/h] at which they are tried.
-const SURROUNDINGS: [[f64; 2]; 4] = [[-20.0, 45.0], [0.0, 180.0], [0.0, 1200.0], [0.0, 30.0]];
+/// Least and largest temperature of the air [degC], angle [deg], irradiance [W/m2] and air changes [1/h] at which they are tried.
+const SURROUNDINGS: [[f64; 2]; AROUND] =
+    [[-20.0, 45.0], [0.0, 180.0], [0.0, 1200.0], [0.0, 30.0], [0.0, 100.0]];
 /// Half of the second derivative of natural convection, times the cube root of the square of the difference [W/(m2 K^(4/3))], that
 /// `step/remainder.rs` reckons with.
 const BEND: f64 = 0.6;
@@ -81,7 +82,7 @@ impl<S: Real> Formula<S> {
         let mut surroundings = vec![Surroundings::<S>::calm().list()];
         for (place, ends) in SURROUNDINGS.iter().enumerate() {
             if self.text.surroundings[place] {
-                let with = |list: &[S; 4]| {
+                let with = |list: &[S; AROUND]| {
                     let list = *list;
                     ends.map(|end| {
                         let mut changed = list;
@@ -144,9 +145,9 @@ impl<S: Real> Formula<S> {
             return [S::zero(); 4];
         }
         let windward = S::select(windward, S::one(), S::zero());
-        let [air, angle, sun, air_change] = surroundings.list();
+        let [air, angle, sun, air_change, total] = surroundings.list();
         self.text.stage.compute(
-            &[S::constant(wind.speed), windward, air, angle, sun, air_change],
+            &[S::constant(wind.speed), windward, air, angle, sun, air_change, total],
             #[inline(always)]
             |place| self.numbers[place],
         )
@@ -182,7 +183,7 @@ impl<S> Formula<S> {
 
     /// Whether it depends on the air change of a zone.
     pub(super) fn needs_air_change(&self) -> bool {
-        self.text.surroundings[3]
+        self.text.surroundings[3] || self.text.surroundings[4]
     }
 
     /// Whether the temperature difference contributes nothing.

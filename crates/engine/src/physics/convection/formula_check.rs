@@ -5,8 +5,10 @@
 
 use core::fmt::Write;
 
-use super::formula_text::{AIR, CHANGING, DIFFERENCE, FormulaText, SURFACE, SideNames, WIND, WINDWARD};
-use super::wind::Surroundings;
+use super::formula_text::{
+    AIR, CHANGING, DIFFERENCE, FormulaText, SURFACE, SideNames, VARIABLES, WIND, WINDWARD,
+};
+use super::wind::{AROUND, Surroundings};
 use crate::physics::formula::lexer::fault;
 use crate::physics::formula::units::{self, Unit};
 use crate::physics::formula::{Fault, FormulaFault, LawNumber, Position, corners};
@@ -18,18 +20,19 @@ const DIFFERENCES: i32 = 100;
 /// Winds of the grid [m/s].
 const WINDS: [f64; 7] = [0.0, 0.2, 1.0, 3.0, 8.0, 15.0, 30.0];
 /// Temperatures of the air of the grid [degC], angles of the wind [deg], irradiances [W/m2] and air changes [1/h].
-const SURROUNDINGS: [&[f64]; 4] = [
+const SURROUNDINGS: [&[f64]; AROUND] = [
     &[-30.0, -10.0, 5.0, 20.0, 35.0, 60.0],
     &[0.0, 45.0, 90.0, 135.0, 180.0],
     &[0.0, 100.0, 500.0, 1200.0],
     &[0.0, 0.3, 2.0, 10.0, 50.0],
+    &[0.0, 0.3, 3.0, 20.0, 100.0],
 ];
 /// Coefficients above this have no physical meaning [W/(m2 K)].
 const LARGEST: f64 = 1e5;
 /// Rounding of a flow, as a part of it.
 const ROUNDING: f64 = 1e-9;
 /// Units of the names of a side, in their order; an angle may be in degrees or not.
-const SIDE_UNITS: [Option<Unit>; 13] = [
+const SIDE_UNITS: [Option<Unit>; VARIABLES.len()] = [
     Some(units::KELVIN),
     Some(units::SPEED),
     Some(units::NONE),
@@ -41,6 +44,7 @@ const SIDE_UNITS: [Option<Unit>; 13] = [
     Some(units::KELVIN),
     None,
     Some(units::FLUX),
+    None,
     None,
     Some(units::LENGTH),
 ];
@@ -79,11 +83,11 @@ pub struct LawSide {
 
 impl LawSide {
     /// Values of the names that a side gives, in their order; those that change are zero.
-    fn values(&self) -> [f64; 13] {
+    fn values(&self) -> [f64; VARIABLES.len()] {
         let upward = crate::number::elementary::cos_of_degrees(self.tilt);
-        let mut values = [0.0; 13];
+        let mut values = [0.0; VARIABLES.len()];
         values[3..7].copy_from_slice(&[self.tilt, upward, self.area, self.density]);
-        values[12] = self.height.unwrap_or(0.0);
+        values[AIR + AROUND] = self.height.unwrap_or(0.0);
         values
     }
 }
@@ -135,7 +139,7 @@ impl LawText<'_> {
             .iter()
             .map(|LawPoint { difference, wind, around }| {
                 (names[DIFFERENCE], names[WIND]) = (*difference, *wind);
-                names[AIR..AIR + 4].copy_from_slice(&around.list());
+                names[AIR..AIR + AROUND].copy_from_slice(&around.list());
                 names[SURFACE] = around.air + difference;
                 text.tree.value(&names)
             })
@@ -159,20 +163,21 @@ impl LawText<'_> {
     }
 
     /// Winds, sides of the wind and surroundings of the grid: those that the law uses.
-    fn weathers(text: &FormulaText) -> Vec<[f64; 6]> {
+    fn weathers(text: &FormulaText) -> Vec<[f64; AROUND + 2]> {
         let one: &[f64] = &[0.0];
-        let mut all = vec![[0.0; 6]];
+        let mut all = vec![[0.0; AROUND + 2]];
         let air = text.uses(AIR) || text.uses(SURFACE);
-        let lists: [&[f64]; 6] = [
+        let lists: [&[f64]; AROUND + 2] = [
             if text.uses(WIND) { &WINDS } else { one },
             if text.uses(WINDWARD) { &[0.0, 1.0] } else { &[1.0] },
             if air { SURROUNDINGS[0] } else { one },
             if text.uses(AIR + 1) { SURROUNDINGS[1] } else { one },
             if text.uses(AIR + 2) { SURROUNDINGS[2] } else { one },
             if text.uses(AIR + 3) { SURROUNDINGS[3] } else { one },
+            if text.uses(AIR + 4) { SURROUNDINGS[4] } else { one },
         ];
         for (place, list) in lists.into_iter().enumerate() {
-            let with = |weather: [f64; 6]| {
+            let with = |weather: [f64; AROUND + 2]| {
                 list.iter().map(move |&value| {
                     let mut changed = weather;
                     changed[place] = value;
@@ -189,7 +194,7 @@ impl LawText<'_> {
         let mut valid = false;
         for [wind, windward, around @ ..] in Self::weathers(text) {
             (names[WIND], names[WINDWARD]) = (wind, windward);
-            names[AIR..AIR + 4].copy_from_slice(&around);
+            names[AIR..AIR + AROUND].copy_from_slice(&around);
             let mut before: Option<[f64; 2]> = None;
             for k in -DIFFERENCES..=DIFFERENCES {
                 let part = f64::from(k) / f64::from(DIFFERENCES);
@@ -255,13 +260,17 @@ impl LawText<'_> {
             words += if names[WINDWARD] > 0.5 { ", windward" } else { ", leeward" };
         }
         let others = [("Ts", SURFACE, "degC"), ("Ta", AIR, "degC"), ("wind_angle", AIR + 1, "deg")];
-        let others = others.into_iter().chain([("sun", AIR + 2, "W/m2"), ("air_change", AIR + 3, "1/h")]);
+        let others = others.into_iter().chain([
+            ("sun", AIR + 2, "W/m2"),
+            ("air_change", AIR + 3, "1/h"),
+            ("total_air_change", AIR + 4, "1/h"),
+        ]);
         for (name, place, unit) in others {
             if text.uses(place) {
                 let _ = write!(words, ", {name} = {:.3} {unit}", names[place]);
             }
         }
-        for (number, value) in self.numbers.iter().zip(&names[super::formula_text::VARIABLES.len()..]) {
+        for (number, value) in self.numbers.iter().zip(&names[VARIABLES.len()..]) {
             if number.range.is_some() {
                 let _ = write!(words, ", {} = {value}", number.name);
             }

@@ -311,21 +311,23 @@ fn units_that_do_not_fit_are_refused() {
 /// dual numbers. More than two parts change with what is around the surface.
 #[test]
 fn what_is_around_a_surface() {
-    for (formula, [wind_acts, air_changes]) in [
+    for (formula, [wind_acts, air_changes, all_air]) in [
         (
             "c*(Ts + 273.15)^0.5*abs(dT)^(1/3)/10 + b*V^0.8*(1 + cos(wind_angle*pi/180)) + 1e-3*sun*exp(-dT/60) + 0.01*height",
-            [true, false],
+            [true, false, false],
         ),
-        ("c*abs(dT)^0.25*(1 + 0.1*air_change) + b*(Ta + 40)/100", [false, true]),
+        ("c*abs(dT)^0.25*(1 + 0.1*air_change) + b*(Ta + 40)/100", [false, true, false]),
+        ("c*abs(dT)^0.25 + 0.1*total_air_change^0.5 + b*(Ta + 40)/100", [false, false, true]),
     ] {
         let law = written(formula, &["c", "b"]);
-        let around = Surroundings { air: 12.0, angle: 70.0, sun: 400.0, air_change: 1.5 };
+        let around =
+            Surroundings { air: 12.0, angle: 70.0, sun: 400.0, air_change: 1.5, total_air_change: 6.0 };
         let (values, numbers) = ([1.3, 2.1], [number("c", 1.3, None), number("b", 2.1, None)]);
         let side = LawSide { wind: true, sun: true, zone: true, height: Some(4.5), ..side(true) };
         let text = LawText { formula, valid: None, numbers: &numbers, side };
         let plain = surface(&law, &values, 90.0);
         assert!(plain.surrounded() && plain.windy() && !plain.straight());
-        assert_eq!(plain.needs_air_change(), air_changes);
+        assert_eq!(plain.needs_air_change(), air_changes || all_air);
         let wind = Wind::new(3.0, WindTerms::default());
         for d in [-20.0, -2.0, 0.5, 15.0] {
             let flux = plain.flux(d, &plain.driven(&wind, true, &around));
@@ -343,7 +345,7 @@ fn what_is_around_a_surface() {
             };
             let slope = dual.flux(Dual { value: d, slope: [1.0] }, &with(None)).flux.slope[0];
             assert!((slope / flux.slope - 1.0).abs() < 1e-9, "{slope} is not {}", flux.slope);
-            for place in 0..4 {
+            for place in 0..5 {
                 let found = dual.flux(Dual::constant(d), &with(Some(place))).flux.slope[0];
                 let [low, high] = [-1e-4, 1e-4].map(|nudge| {
                     let mut list = around.list();
@@ -352,7 +354,7 @@ fn what_is_around_a_surface() {
                     plain.flux(d, &driven).flux
                 });
                 assert!((found - (high - low) / 2e-4).abs() < 1e-6, "{formula}: {place}");
-                assert_eq!(found == 0.0, ![true, wind_acts, wind_acts, air_changes][place]);
+                assert_eq!(found == 0.0, ![true, wind_acts, wind_acts, air_changes, all_air][place]);
             }
         }
     }

@@ -14,6 +14,7 @@
 //! | `wind_angle` | between the normal and the direction that the wind comes from [deg] | once per stage |
 //! | `sun` | irradiance of the plane [W/m2] | once per stage |
 //! | `air_change` | of the zone, by its air at the start of the step [1/h] | once per stage |
+//! | `total_air_change` | all air that flows into the zone or moves within it [1/h] | once per stage |
 //! | `height` | of the side above ground [m] | once per run |
 //!
 //! Numbers of the law have their own names. `abs(dT)` is `(dT^2 + r^2)^1/2` with the small r of [`natural`](super::natural), as in all
@@ -21,7 +22,7 @@
 
 use std::collections::HashMap;
 
-use super::wind::CALM;
+use super::wind::{AROUND, CALM};
 use crate::physics::formula::graph::{Graph, Id, Level, Node};
 use crate::physics::formula::lexer::fault;
 use crate::physics::formula::parser::{self, Names};
@@ -30,7 +31,7 @@ use crate::physics::formula::tree::{Condition, Tree};
 use crate::physics::formula::{FormulaFault, Position};
 
 /// Names that the side of a surface gives, by their places in [`Tree`].
-pub(crate) const VARIABLES: [&str; 13] = [
+pub(crate) const VARIABLES: [&str; 14] = [
     "dT",
     "V",
     "windward",
@@ -43,16 +44,18 @@ pub(crate) const VARIABLES: [&str; 13] = [
     "wind_angle",
     "sun",
     "air_change",
+    "total_air_change",
     "height",
 ];
 pub(crate) const DIFFERENCE: usize = 0;
 pub(crate) const WIND: usize = 1;
 pub(crate) const WINDWARD: usize = 2;
 pub(crate) const SURFACE: usize = 7;
-/// Place of the first of the four [`Surroundings`](super::wind::Surroundings): air, angle, sun and air change.
+/// Place of the first of the [`Surroundings`](super::wind::Surroundings): air, angle, sun, air change and all air.
 pub(crate) const AIR: usize = 8;
 /// Those that change during a run.
-pub(crate) const CHANGING: [usize; 8] = [DIFFERENCE, WIND, WINDWARD, SURFACE, AIR, AIR + 1, AIR + 2, AIR + 3];
+pub(crate) const CHANGING: [usize; 9] =
+    [DIFFERENCE, WIND, WINDWARD, SURFACE, AIR, AIR + 1, AIR + 2, AIR + 3, AIR + 4];
 
 const NO_WIND: &str =
     "No wind reaches this side: it does not face outdoors, or its exposure leaves the wind out.";
@@ -94,6 +97,7 @@ impl SideNames {
             ("wind_angle", NO_WIND, self.wind),
             ("sun", NO_SUN, self.sun),
             ("air_change", NO_ZONE, self.zone),
+            ("total_air_change", NO_ZONE, self.zone),
             ("height", NO_HEIGHT, self.height),
         ];
         let absent = names.into_iter().filter(|(_, _, has)| !has).map(|(name, why, _)| (name, why));
@@ -111,7 +115,7 @@ pub(crate) struct FormulaText {
     pub(crate) buoyant: bool,
     pub(crate) windy: bool,
     /// Which of the [`Surroundings`](super::wind::Surroundings) the formula uses.
-    pub(crate) surroundings: [bool; 4],
+    pub(crate) surroundings: [bool; AROUND],
     /// Whether more than two parts change with wind and surroundings.
     pub(crate) many: bool,
     /// From what a run has, the numbers that the other programs need.
@@ -162,7 +166,7 @@ impl FormulaText {
             move |fault| FormulaFault { key, fault }
         };
         let tree = parser::number(formula, names).map_err(at("formula"))?;
-        let elsewhere = ["windward", "wind_angle", "sun", "air_change"];
+        let elsewhere = ["windward", "wind_angle", "sun", "air_change", "total_air_change"];
         let usable: Vec<&str> =
             usable.iter().map(|name| if elsewhere.contains(name) { "" } else { *name }).collect();
         let absent: Vec<(&str, &str)> =
@@ -217,7 +221,7 @@ struct Compiler {
     rounded: Id,
     speed: Id,
     windward: Id,
-    surroundings: [Id; 4],
+    surroundings: [Id; AROUND],
     inputs: Vec<(Id, Number)>,
     /// The wind at the surface, as it is and as the base of powers.
     wind: [Id; 2],
@@ -235,7 +239,7 @@ impl Compiler {
         graph.round(difference, rounded);
         let speed = input(&mut graph, Level::Stage, false);
         let windward = input(&mut graph, Level::Stage, false);
-        let surroundings = [(); 4].map(|()| input(&mut graph, Level::Stage, false));
+        let surroundings = [(); AROUND].map(|()| input(&mut graph, Level::Stage, false));
         let mut inputs = vec![
             (input(&mut graph, Level::Run, true), Number::WindFactor),
             (input(&mut graph, Level::Run, false), Number::Tilt),
@@ -263,10 +267,10 @@ impl Compiler {
             WIND => wind[usize::from(base)],
             WINDWARD => windward,
             SURFACE => graph.plus(surroundings[0], difference),
-            name if (AIR..AIR + 4).contains(&name) => surroundings[name - AIR],
+            name if (AIR..AIR + AROUND).contains(&name) => surroundings[name - AIR],
             // tilt, upward, area and density come after the wind factor, then the height and the numbers.
             name if name < SURFACE => inputs[name - WINDWARD],
-            name => inputs[name - AIR - 4 + SURFACE - WINDWARD],
+            name => inputs[name - AIR - AROUND + SURFACE - WINDWARD],
         }
     }
 
@@ -300,8 +304,8 @@ impl Compiler {
         let iteration_parts = if buoyant { vec![value, slope] } else { Vec::new() };
         let iteration_inputs: Vec<Id> =
             [self.difference, self.rounded].into_iter().chain(slots.clone()).collect();
-        let [air, angle, sun, air_change] = self.surroundings;
-        let stage_inputs = [self.speed, self.windward, air, angle, sun, air_change];
+        let [air, angle, sun, air_change, total] = self.surroundings;
+        let stage_inputs = [self.speed, self.windward, air, angle, sun, air_change, total];
         if slots.len() > SLOTS {
             return Err(TooLong);
         }
@@ -326,8 +330,9 @@ impl Compiler {
             stage: Program::new(graph, &stage_parts, &stage_inputs, &numbers)?,
             iteration: Program::new(graph, &iteration_parts, &iteration_inputs, &numbers)?,
             validity,
-            surroundings: [0, 1, 2, 3]
-                .map(|place| tree.uses(AIR + place) || (place == 0 && tree.uses(SURFACE))),
+            surroundings: core::array::from_fn(|place| {
+                tree.uses(AIR + place) || (place == 0 && tree.uses(SURFACE))
+            }),
             many: slots.len() > 2,
             tree,
             valid,

@@ -25,22 +25,28 @@ pub struct Surroundings<S> {
     pub sun: S,
     /// Outdoor air that flows into its zone, by the air of the zone at the start of the step [1/h].
     pub air_change: S,
+    /// All air that flows into its zone, with that which moves within it [1/h].
+    pub total_air_change: S,
 }
+
+/// How many they are.
+pub(crate) const AROUND: usize = 5;
 
 impl<S: Real> Surroundings<S> {
     /// Air of 20 degC, no sun and no wind.
     pub(crate) fn calm() -> Self {
-        Self { air: S::constant(20.0), angle: S::zero(), sun: S::zero(), air_change: S::zero() }
+        let zero = S::zero();
+        Self { air: S::constant(20.0), angle: zero, sun: zero, air_change: zero, total_air_change: zero }
     }
 
     /// In the order of the programs.
-    pub(crate) fn list(&self) -> [S; 4] {
-        [self.air, self.angle, self.sun, self.air_change]
+    pub(crate) fn list(&self) -> [S; AROUND] {
+        [self.air, self.angle, self.sun, self.air_change, self.total_air_change]
     }
 
     /// From the order of the programs.
-    pub(crate) fn from_list([air, angle, sun, air_change]: [S; 4]) -> Self {
-        Self { air, angle, sun, air_change }
+    pub(crate) fn from_list([air, angle, sun, air_change, total_air_change]: [S; AROUND]) -> Self {
+        Self { air, angle, sun, air_change, total_air_change }
     }
 }
 

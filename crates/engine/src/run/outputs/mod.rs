@@ -63,6 +63,11 @@ outputs! {
         Row::state(Of::Zone, "ZONE.air_changes", "1/h", "Air changes").not_negative(),
         |at| at.step.air_changes(zone, at.state.air[zone]);
 
+    /// Air that flows into the zone from outdoors and by fans from other zones, with that which moves within it.
+    TotalAirChanges { zone } =
+        Row::state(Of::Zone, "ZONE.total_air_changes", "1/h", "Air moved through and within the zone").not_negative(),
+        |at| at.step.total_air_changes(zone, at.state.air[zone]);
+
     /// Vapour in the air of the zone by mass of dry air.
     HumidityRatio { zone } =
         Row::state(Of::HumidZone, "ZONE.humidity_ratio", "kg/kg", "Humidity ratio").not_negative(),

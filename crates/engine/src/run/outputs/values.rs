@@ -22,9 +22,12 @@ pub(super) fn solar_transmittance<S: Real>(at: &At<'_, S>, surface: usize) -> S 
     S::select(dark, S::zero(), fraction)
 }
 
-/// Mean temperature of the surfaces of a zone, weighted by area [degC].
+/// Mean temperature of the surfaces of a zone, weighted by area; that of the air where it has none [degC].
 pub(super) fn mean_radiant<S: Real>(at: &At<'_, S>, zone: usize) -> S {
     let areas = &at.step.model.coefficients.zones[zone].areas;
+    if areas.is_empty() {
+        return at.state.air[zone];
+    }
     let (mut sum, mut total) = (S::zero(), S::zero());
     for (&surface, &area) in at.plan.zones[zone].surfaces.iter().zip(areas) {
         sum += area * at.state.surfaces[surface];

@@ -183,10 +183,10 @@ impl<S: Real> HeldAirs<S> {
             coefficients
                 .zones
                 .iter()
-                .map(|zone| zone.ventilation.iter().fold(S::zero(), |sum, flow| sum + flow.at(row))),
+                .map(|zone| zone.ventilation.iter().fold(S::zero(), |sum, flow| sum + flow.about(row))),
         );
         for path in &coefficients.paths {
-            let conductance = path.conductance(row);
+            let conductance = path.about(row);
             for zone in path.between {
                 self.flows[zone] += conductance;
             }

@@ -44,6 +44,7 @@ pub fn conditioned(gamma: f64) -> Description {
         air_changes: Some(number(&mut d, "fan.air_changes", 2.0)),
         flow: None,
         schedule: Some(1),
+        density: None,
     };
     d.zones[0].ventilation.push(fan);
     let path = AirPath {
@@ -51,6 +52,7 @@ pub fn conditioned(gamma: f64) -> Description {
         between: [1, 0],
         flow: number(&mut d, "hatch.flow", 0.003),
         schedule: None,
+        density: None,
     };
     d.air_paths.push(path);
     let opening = Opening {

@@ -75,9 +75,16 @@ pub fn linear_cell() -> Description {
         air_changes: None,
         flow: Some(number(&mut d, "fan.flow", 0.004)),
         schedule: None,
+        density: None,
     };
     d.zones[1].ventilation.push(fan);
     let flow = number(&mut d, "hatch.flow", 0.003);
-    d.air_paths.push(AirPath { name: "hatch".to_owned(), between: [0, 1], flow, schedule: None });
+    d.air_paths.push(AirPath {
+        name: "hatch".to_owned(),
+        between: [0, 1],
+        flow,
+        schedule: None,
+        density: None,
+    });
     d
 }

@@ -200,6 +200,7 @@ impl Builder {
                 temperature: self.number(&format!("zones.{name}.infiltration.temperature"), 0.0),
                 wind: self.number(&format!("zones.{name}.infiltration.wind"), 0.0),
                 leakage: None,
+                density: None,
             },
             longwave,
             view_weights: Vec::new(),
@@ -207,6 +208,7 @@ impl Builder {
             solar_to_air: None,
             gains: Vec::new(),
             ventilation: Vec::new(),
+            mixing: None,
             heating: None,
             cooling: None,
         };
@@ -293,6 +295,9 @@ pub fn facing(facing: Facing, convection: Option<Convection>) -> Side {
         longwave: OutdoorLongwave::Exact,
         irradiance: None,
         behind_obstacles: false,
+        heat_flux: None,
+        own_shades: Vec::new(),
+        outline: Vec::new(),
         exposure: Exposure::default(),
         shaded_by: Vec::new(),
     }

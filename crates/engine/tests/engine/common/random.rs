@@ -625,6 +625,7 @@ impl Maker<'_> {
                     between: [order[0], order[1]],
                     flow,
                     schedule,
+                    density: None,
                 });
             }
         }
@@ -756,6 +757,7 @@ impl Maker<'_> {
                 air_changes: by_volume.then_some(amount),
                 flow: (!by_volume).then_some(amount),
                 schedule,
+                density: None,
             });
         }
         if self.contents == Contents::ImposedTemperatures {

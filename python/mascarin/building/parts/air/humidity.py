@@ -12,7 +12,7 @@ from mascarin.building.base.names import MaterialName, Name, ScheduleName, Surfa
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand
 from mascarin.building.base.time_series import ColumnCourse, CourseKind
-from mascarin.building.parts.air.measured_values import Driven
+from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.materials.sorption import Sorption
 
 LEWIS: Final = (

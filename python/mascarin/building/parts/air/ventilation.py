@@ -10,8 +10,9 @@ from mascarin.building import quantities as q
 from mascarin.building.base.names import ScheduleName, ZoneName
 from mascarin.building.base.number import problem
 from mascarin.building.base.part import Part, Shorthand
-from mascarin.building.parts.air.measured_values import Driven
+from mascarin.building.parts.air.flow_density import DENSITY, FlowDensity
 from mascarin.building.parts.air.set_point import SetPoint
+from mascarin.building.parts.envelope.measured_values import Driven
 
 RECOVERY_SOURCE = "ASHRAE Handbook, HVAC Systems and Equipment 2020, ch. 26, eq. 2 (heat recovery)"
 
@@ -34,6 +35,7 @@ class UnitFlow(Driven):
 
     flow: q.VolumeFlow | None = None
     unit: FlowUnit | None = Field(None, description="Unit of the column; none: m3/s")
+    density: FlowDensity | None = Field(None, description=DENSITY)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the flow; none: always 1"
     )

@@ -11,10 +11,11 @@ from mascarin.building import quantities as q
 from mascarin.building.base.names import ControlName, Name, ScheduleName, ZoneName
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand
+from mascarin.building.parts.air.flow_density import DENSITY, FlowDensity
 from mascarin.building.parts.air.leakage import PressureTest
-from mascarin.building.parts.air.measured_values import Driven
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.envelope.bridge import ThermalBridge
+from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.envelope.surface import Linearised, NoLongwave
 from mascarin.building.parts.materials.text_law import InfiltrationLaw
 
@@ -39,6 +40,7 @@ class Infiltration(Part):
     blower_door: PressureTest | None = Field(
         None, description="Infiltration by a pressure test, in addition: n50 [1/h], or a part with its kind"
     )
+    density: FlowDensity | None = Field(None, description=DENSITY)
 
 
 class TextInfiltration(InfiltrationLaw, Infiltration):
@@ -101,7 +103,7 @@ class Gain(Driven):
 
 
 class Ventilation(Part):
-    """Ventilation with outdoor air; flows are volumes at the density of the site.
+    """Ventilation with outdoor air; ``density`` says at which density a flow is a volume.
 
     Examples
     --------
@@ -111,6 +113,7 @@ class Ventilation(Part):
 
     air_changes: q.Ventilation | None = None
     flow: q.VolumeFlow | None = None
+    density: FlowDensity | None = Field(None, description=DENSITY)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the flow; none: always 1"
     )
@@ -124,6 +127,27 @@ class Ventilation(Part):
                 "Give the flow of outdoor air in one of the two ways.",
             )
         return self
+
+
+class MixingAir(Driven):
+    """Air that a fan moves within a zone; laws of convection by flow depend on it, balances do not.
+
+    Examples
+    --------
+    >>> MixingAir(air_changes=20.7)
+    MixingAir(air_changes=20.7 1/h)
+    >>> MixingAir(column="n_fan").course.name
+    'n_fan [1/h]'
+    """
+
+    NUMBER: ClassVar = "air_changes"
+    KIND: ClassVar = "air_change"
+
+    air_changes: q.MixingAirChange | None = None
+    unit: Literal["1/h"] | None = Field(None, description="Unit of the column; none: 1/h")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the air; none: always 1"
+    )
 
 
 class IdealLoads(Part):
@@ -309,6 +333,11 @@ class Zone(Part):
     ventilation: dict[Name, Ventilation] = Field(
         default_factory=dict, description="Ventilation with outdoor air, by name"
     )
+    mixing_air_change: Annotated[MixingAir, Shorthand(number="air_changes")] | None = Field(
+        None,
+        description="Air that a fan moves within the zone: a number [1/h], or a part with a schedule or "
+        "column; none: no air",
+    )
     heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
     cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
     thermal_bridges: dict[Name, ThermalBridge] = Field(
@@ -384,6 +413,7 @@ class AirPath(Driven):
         False, description="Whether air flows from the first zone to the second, driven by fans"
     )
     door: Door | None = Field(None, description="Flow by temperature difference; none: a given flow")
+    density: FlowDensity | None = Field(None, description=DENSITY)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the flow; none: always 1"
     )
@@ -396,7 +426,7 @@ class AirPath(Driven):
         if self.between[0] == self.between[1]:
             raise problem(f"'{self.between[0]}' twice", "two different zones", "Name the other zone.")
         stated = "flow" if self.flow is not None else "column" if self.column is not None else ""
-        stated = stated or ("one_way" if self.one_way else "")
+        stated = stated or ("one_way" if self.one_way else "density" if self.density is not None else "")
         if self.door is not None and stated:
             raise problem(
                 f"door and {stated}",

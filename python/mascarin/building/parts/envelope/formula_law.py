@@ -38,8 +38,8 @@ class FormulaLaw(Formula):
     where the wind blows onto the surface), ``tilt`` [deg] and ``upward`` [-] of the normal into the air,
     ``area`` [m2], ``density`` of the air [kg/m3], ``length`` and ``perimeter`` [m] of the surface, the
     temperatures ``Ts`` of the surface and ``Ta`` of the air [degC], ``wind_angle`` [deg], ``sun`` on the
-    plane of the side [W/m2] and ``height`` [m] outdoors, ``air_change`` of the zone [1/h] indoors, and the
-    numbers given with it.
+    plane of the side [W/m2] and ``height`` [m] outdoors, ``air_change`` and ``total_air_change`` of the zone
+    [1/h] indoors, and the numbers given with it.
 
     Examples
     --------
@@ -79,6 +79,7 @@ class FormulaLaw(Formula):
         wind_angle: npt.ArrayLike = 0.0,
         sun: npt.ArrayLike = 0.0,
         air_change: npt.ArrayLike = 0.0,
+        total_air_change: npt.ArrayLike = 0.0,
         tilt: float = 90.0,
         area: float = 10.0,
         density: float = 1.2,
@@ -100,6 +101,8 @@ class FormulaLaw(Formula):
             Irradiance of the plane of the side. [W/m2]
         air_change : array_like
             Outdoor air that flows into the zone. [1/h]
+        total_air_change : array_like
+            All air that flows into the zone or moves within it. [1/h]
         tilt : float
             Angle between upwards and the normal into the air. [deg]
         area : float
@@ -124,7 +127,7 @@ class FormulaLaw(Formula):
         >>> FormulaLaw(formula="2*abs(dT)^(1/3)").coefficient([8.0, -8.0]).round(6).tolist()
         [4.0, 4.0]
         """
-        inputs = (difference, wind, air, wind_angle, sun, air_change)
+        inputs = (difference, wind, air, wind_angle, sun, air_change, total_air_change)
         arrays = np.broadcast_arrays(*(np.asarray(values, float) for values in inputs))
         flat = [np.ascontiguousarray(array.ravel()) for array in arrays]
         side = (tilt, area, density, height)

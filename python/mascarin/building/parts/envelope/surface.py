@@ -23,8 +23,9 @@ from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand, fault, insist, refuse
 from mascarin.building.base.time_series import Columns
 from mascarin.building.parts.envelope.convection import CONVECTION, Convection, by_wind_direction
+from mascarin.building.parts.envelope.measured_values import Driven
 
-FACINGS = ("outdoors", "zone", "ground", "measured", "scheduled", "adiabatic")
+FACINGS = ("outdoors", "zone", "ground", "measured", "scheduled", "heat_flux", "adiabatic")
 
 
 class Layer(Part):
@@ -159,6 +160,27 @@ class Ground(Part):
         return raw
 
 
+class HeatFlux(Driven):
+    """Heat that is given to a surface whatever its temperature: by a foil or a guarded plate.
+
+    Examples
+    --------
+    >>> HeatFlux(flux=120)
+    HeatFlux(flux=120 W/m2)
+    >>> HeatFlux(column="q_plate", unit="kW/m2").course.name
+    'q_plate [kW/m2]'
+    """
+
+    NUMBER: ClassVar = "flux"
+    KIND: ClassVar = "heat_flux"
+
+    flux: q.HeatFlux | None = None
+    unit: Literal["W/m2", "kW/m2"] | None = Field(None, description="Unit of the column; none: W/m2")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the flux; none: always 1"
+    )
+
+
 #: Description of a key beside `irradiance`.
 BEHIND_OBSTACLES = (
     "Whether the irradiance was measured behind all that stands in front, and is used as it is; none: no"
@@ -202,7 +224,7 @@ class Side(Part):
         "temperature": "For a surrounding of a given temperature write 'ground: {temperature: 24}', for a "
         "measured "
         "one 'measured: COLUMN', for a room that is held at it a zone with 'heating' and 'cooling'.",
-        "emissivity": "For no long-wave exchange keep a value and write 'longwave: none' in the side "
+        "emissivity": "For no long-wave exchange leave it out and write 'longwave: none' in the side "
         "outdoors, or in the zone that "
         "it faces; bright metal has an emissivity of about 0.05.",
         "convection": "Write 'convection: 8' for a coefficient [W/(m2 K)], or 'convection: {kind: tarp}' "
@@ -221,6 +243,11 @@ class Side(Part):
     scheduled: ScheduleName | None = Field(
         None,
         description="Faces air of the temperature of this schedule; without convection, has its temperature",
+    )
+    heat_flux: Annotated[HeatFlux, Shorthand(number="flux")] | None = Field(
+        None,
+        description="Heat given to the surface from outside: a number [W/m2], or a part with a schedule or "
+        "column",
     )
     adiabatic: Literal[True] | None = Field(None, description="No heat flow: write true")
 
@@ -245,8 +272,13 @@ class Side(Part):
 
     @property
     def faces(self) -> str:
-        """Which of the six kinds of surroundings the side faces."""
+        """Which of the kinds of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
+
+    @property
+    def closed(self) -> bool:
+        """Whether no temperature beyond it drives heat through it: adiabatic, or with a heat flux."""
+        return self.adiabatic is not None or self.heat_flux is not None
 
     @property
     def measured_columns(self) -> tuple[str, ...]:
@@ -284,7 +316,10 @@ class Side(Part):
         stated = [name for name in FACINGS if getattr(self, name) is not None]
         if len(stated) != 1:
             actual = " and ".join(stated) or "a side that faces nothing"
-            raise problem(actual, f"exactly one of {', '.join(FACINGS)}", "A side faces one thing only.")
+            remedy = "A side faces one thing only."
+            if self.heat_flux is not None:
+                remedy = "A surface has a heat flux or a temperature beside it, not both: keep one of them."
+            raise problem(actual, f"exactly one of {', '.join(FACINGS)}", remedy)
         insist(*self._missing(), *self._inactive())
         return self
 
@@ -293,7 +328,7 @@ class Side(Part):
         needed = []
         if self.outdoors or self.zone is not None:
             needed.append("convection")
-        if self.outdoors:
+        if self.outdoors and not isinstance(self.longwave, NoLongwave):
             needed.append("emissivity")
         if self.sunlit or self.irradiance is not None:
             needed.append("absorptance")
@@ -310,9 +345,9 @@ class Side(Part):
 
     def _inactive(self) -> list[InitErrorDetails]:
         """What is given and has no effect here."""
-        air = self.convection is not None and self.adiabatic is None
+        air = self.convection is not None and self.adiabatic is None and self.heat_flux is None
         acts = {
-            "convection": self.adiabatic is None,
+            "convection": self.adiabatic is None and self.heat_flux is None,
             "area_factor": air,
             "emissivity": bool(self.outdoors or self.zone is not None),
             "absorptance": self.sunlit or self.zone is not None or self.irradiance is not None,

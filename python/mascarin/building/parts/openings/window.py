@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
 from mascarin.building.base.names import GlazingName, SurfaceName
-from mascarin.building.base.number import Number
-from mascarin.building.base.part import Part, fault, insist, refuse
+from mascarin.building.base.number import Number, Remark
+from mascarin.building.base.part import Part, Shorthand, fault, insist, refuse
 from mascarin.building.parts.envelope.convection import CONVECTION, Convection
 from mascarin.building.parts.envelope.surface import BEHIND_OBSTACLES, Exposure, OutdoorLongwave, Surface
 from mascarin.building.parts.openings.blind import Blind
@@ -145,6 +145,20 @@ class Shade(Part):
     vertices: Vertices = Field(description="Corners [x, y, z] in order, in the coordinates of the surfaces")
 
 
+class Overhang(Part):
+    """A thin horizontal plate over a window, which shades this window alone.
+
+    Examples
+    --------
+    >>> Overhang(depth=0.6, gap=0.2)
+    Overhang(depth=0.6 m, gap=0.2 m, extension=0 m)
+    """
+
+    depth: q.OverhangDepth
+    gap: q.OverhangLength = Number(0.0, source=Remark("not given: at the upper edge of the window"))
+    extension: q.OverhangLength = Number(0.0, source=Remark("not given: as wide as the window"))
+
+
 class Window(Part):
     """A glazing in a wall between outdoors and a zone, or between two zones.
 
@@ -172,6 +186,12 @@ class Window(Part):
     cavity_height: q.CavityHeight | None = None
     frame: Frame | None = Field(None, description="Frame; none: the whole area is glass")
     blind: Blind | None = Field(None, description="Blind or shutter before the glass; none: bare glass")
+    reveal: q.RevealDepth | None = None
+    overhang: Annotated[Overhang, Shorthand(number="depth")] | None = Field(
+        None,
+        description="Overhang: its depth [m], or a part with gap above the window and extension to "
+        "both sides",
+    )
     outside: WindowOutside = Field(description="The outer side")
     inside: WindowInside = Field(description="The inner side")
 

@@ -55,7 +55,7 @@ class Driven(Part):
 
     @classmethod
     def _usual_unit(cls) -> str:
-        return "W" if cls.KIND == "power" else "m3/s"
+        return {"power": "W", "heat_flux": "W/m2", "air_change": "1/h"}.get(cls.KIND, "m3/s")
 
     @property
     def number(self) -> float:
