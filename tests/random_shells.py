@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from mascarin.building.base.law_table import CONVECTION, LawRow
 from mascarin.building.base.part import Part
-from mascarin.building.parts.envelope.law_table import CONVECTION, LawRow
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.openings.window import WindowOutside
-from random_draw import Draw, four
+from random_draw import Draw, four, numbers_of
 from random_schedules import Schedules
 
 Json = dict[str, Any]
@@ -28,11 +28,7 @@ def _published(draw: Draw, row: LawRow, facing: str) -> Json:
     """A published law with some of its numbers, within their ranges."""
 
     def numbers() -> Json:
-        return {
-            number.name: draw.number(*number.quantity.default_range(number.example))
-            for number in row.numbers
-            if (facing == "outdoors" or not number.outdoors) and (number.required or draw.chance(0.5))
-        }
+        return numbers_of(draw, row, outdoors=facing == "outdoors")
 
     if row.by_direction:
         return {"kind": row.kind, "upward": numbers(), "downward": numbers()}

@@ -363,19 +363,20 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
 
 
 def law_titles(family: str) -> dict[str, str]:
-    """Return the titles of published laws, by their kinds.
+    """Return the titles of published laws in reports, by their kinds.
 
     Parameters
     ----------
     family : str
-        Such as ``convection``.
+        ``convection``, ``sky``, ``diffuse``, ``leakage`` or ``sorption``.
 
     Examples
     --------
     >>> law_titles("convection")["tarp"]
     'TARP'
     """
-    return {row["kind"]: row["title"] for row in json.loads(_engine.law_table())[family]}
+    rows = json.loads(_engine.law_table())[family]
+    return {row["kind"]: row["title"] + (", with clouds" if row["clouds"] else "") for row in rows}
 
 
 class MeltingCurve:

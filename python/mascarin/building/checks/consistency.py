@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin._io.memory import amount
+from mascarin.building.base.law_table import CONVECTION as LAWS
 from mascarin.building.base.part import Location, fault
 from mascarin.building.checks.air import air_faults
 from mascarin.building.checks.derived_outputs import derived_faults
@@ -20,7 +21,6 @@ from mascarin.building.parameters.ties import faults as tie_faults
 from mascarin.building.parts.air.zone import FloorSun, GivenSun, SunShares, TracedSun
 from mascarin.building.parts.defaults import shade_outlines
 from mascarin.building.parts.envelope.convection import ConvectionLaw, Measured
-from mascarin.building.parts.envelope.law_table import CONVECTION as LAWS
 from mascarin.building.parts.envelope.surface import NoLongwave, Side
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.measured_sun import directions_are_known

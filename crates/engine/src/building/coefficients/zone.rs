@@ -9,7 +9,7 @@ use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening};
 use crate::physics::formula::function::Function;
 use crate::physics::gains::{Gain, Thermostat};
-use crate::physics::leakage::{StackWind, leakage};
+use crate::physics::leakage::Leakage;
 use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
 
 use super::surface::SurfaceCoefficients;
@@ -24,8 +24,8 @@ pub struct ZoneCoefficients<S> {
     pub air_capacity: S,
     /// Infiltration: constant, by temperature difference, by wind [1/h], [1/(h K)], [1/(h m/s)].
     pub infiltration: [S; 3],
-    /// Infiltration by stack and wind, from a pressure test.
-    pub leakage: Option<StackWind<S>>,
+    /// Infiltration that wind and temperatures drive, from a pressure test.
+    pub leakage: Option<Leakage<S>>,
     /// Infiltration as text [1/h].
     pub(crate) infiltration_law: Option<Function<S>>,
     /// Part of the transmitted sun that the air gets at once [-].
@@ -84,9 +84,11 @@ impl<S: Real> ZoneCoefficients<S> {
         let air_capacity = values.get(definition.volume) * heat;
         let Infiltration { constant, temperature, wind, leakage: test, law } = &definition.infiltration;
         let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
-        let by_stack_and_wind = test.as_ref().and_then(|test| {
-            let (constant, law) = leakage(test, values);
-            infiltration[0] += constant;
+        let driven_leakage = test.as_ref().and_then(|test| {
+            let (constant, law) = Leakage::of(test, values);
+            if let Some(rate) = constant {
+                infiltration[0] += rate;
+            }
             law
         });
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
@@ -103,7 +105,7 @@ impl<S: Real> ZoneCoefficients<S> {
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration,
-            leakage: by_stack_and_wind,
+            leakage: driven_leakage,
             infiltration_law: law.as_ref().map(|law| Function::of("infiltration", law, values)),
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
             exchange_sums: sums_of_others(&exchange, zone_surfaces.len()),
