@@ -30,12 +30,12 @@ class PublishedLaw(Part):
     @model_validator(mode="after")
     def _from_tables(self) -> PublishedLaw:
         """Take numbers that are not given from the table of the choices."""
-        place = 0
+        position = 0
         for choice in self.row.choices:
-            place = place * len(choice.among) + choice.among.index(getattr(self, choice.name))
+            position = position * len(choice.among) + choice.among.index(getattr(self, choice.name))
         for number in self.row.numbers:
             if number.tabulated and getattr(self, number.name) is None:
-                value, source = number.tabulated[place], Remark(number.reason)
+                value, source = number.tabulated[position], Remark(number.reason)
                 derived = Number(value, source=source, derived=True, quantity=number.quantity)
                 self._fill(**{number.name: derived})
         return self

@@ -98,11 +98,11 @@ def range_warnings(raw: Mapping[str, Any], dated: Callable[[str], str]) -> list[
     "zone room: its law of infiltration is outside of its 'valid' a"
     """
     return [
-        f"{place}: its law of {law} is outside of its 'valid' at the end of {steps} "
+        f"{owner}: its law of {law} is outside of its 'valid' at the end of {steps} "
         f"{'step' if steps == 1 else 'steps'}, first in {dated(f'step {first}')}, with "
         f"{', '.join(map(_extent, values))}. The formula is used as it is there: "
         "take a law that holds, or widen 'valid' where its source does"
-        for place, law, steps, first, values in raw["out_of_range"]
+        for owner, law, steps, first, values in raw["out_of_range"]
     ]
 
 

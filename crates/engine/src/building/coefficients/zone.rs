@@ -84,13 +84,8 @@ impl<S: Real> ZoneCoefficients<S> {
         let air_capacity = values.get(definition.volume) * heat;
         let Infiltration { constant, temperature, wind, leakage: test, law } = &definition.infiltration;
         let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
-        let driven_leakage = test.as_ref().and_then(|test| {
-            let (constant, law) = Leakage::of(test, values);
-            if let Some(rate) = constant {
-                infiltration[0] += rate;
-            }
-            law
-        });
+        let (constant, driven_leakage) = test.as_ref().map_or((None, None), |test| Leakage::of(test, values));
+        constant.into_iter().for_each(|rate| infiltration[0] += rate);
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
         let ([heating, cooling], radiated_loads) = plants(definition, values);
