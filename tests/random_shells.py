@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from mascarin.building.base.law_table import CONVECTION, LawRow
+from mascarin.building.base.law_table import CONVECTION, IMPOSED, LawRow
 from mascarin.building.base.part import Part
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.openings.window import WindowOutside
@@ -125,9 +125,15 @@ def beyond(draw: Draw, schedules: Schedules) -> Json:
             "coldest_day": draw.whole(1, 365),
         },
     )
-    way = draw.whole(0, 4)
+    way = draw.whole(0, 5)
     if way == 0:
         return {"adiabatic": True}
+    laws = [row for row in IMPOSED.values() if row.kind != "ground"]
+    if way == 5:
+        law = draw.one(laws)
+        numbers = numbers_of(draw, law)
+        coefficient: Json = {"convection": film(draw, "given")} if draw.chance(0.5) else {}
+        return {"imposed": {"kind": law.kind, **numbers}} | coefficient
     side: Json = (
         {"measured": draw.of("T_a", "T_b", ["T_a", "T_b"])}
         if way == 1

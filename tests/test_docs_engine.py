@@ -60,7 +60,7 @@ def cargo(copy: Path, *words: str, **settings: str) -> str:
 def test_a_law_and_an_output_are_added_by_the_page(copy: Path) -> None:
     # Unoptimised and without debug information: what counts is that it compiles and that both tests pass.
     words = ("--package", "mascarin-engine", "--lib", "--", "khalifa_by_hand", "heat_content_of_air")
-    assert "3 passed" in cargo(copy, "test", *words, "swinbank_by_hand")
+    assert "4 passed" in cargo(copy, "test", *words, "swinbank_by_hand", "unheated_by_hand")
 
 
 def test_a_law_is_one_new_file() -> None:
@@ -73,6 +73,13 @@ def test_a_model_of_the_sky_is_one_new_file() -> None:
     steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a model of the sky")
     skies = "crates/engine/src/physics/longwave/skies"
     assert [(step[1], step[2]) for step in steps] == [("new", f"{skies}/swinbank.rs")]
+
+
+def test_a_boundary_takes_at_most_four_files() -> None:
+    steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a boundary of a side")
+    files = {step[2] for step in steps}
+    assert 0 < len(files) <= 4
+    assert files == {"crates/engine/src/physics/imposed/laws/unheated.rs"}
 
 
 def test_an_output_is_a_row_of_one_file() -> None:
@@ -135,6 +142,10 @@ def test_the_law_is_in_runs_derivatives_calibration_units_and_pages(package: Pat
 
 def test_the_sky_is_in_runs_derivatives_calibration_units_and_pages(package: Path, tmp_path: Path) -> None:
     followed(package, "guide_sky.py", tmp_path)
+
+
+def test_the_boundary_is_in_runs_derivatives_units_and_pages(package: Path, tmp_path: Path) -> None:
+    followed(package, "guide_boundary.py", tmp_path)
 
 
 def test_the_reference_of_the_copy_is_complete(package: Path) -> None:

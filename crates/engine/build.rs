@@ -6,12 +6,13 @@ use std::fs::{read_dir, write};
 use std::path::{Path, PathBuf};
 
 /// What there are laws of, and the folder of these laws.
-const FAMILIES: [(&str, &str); 5] = [
+const FAMILIES: [(&str, &str); 6] = [
     ("convection", "src/physics/convection/laws"),
     ("sky", "src/physics/longwave/skies"),
     ("diffuse", "src/physics/diffuse/laws"),
     ("leakage", "src/physics/leakage/laws"),
     ("sorption", "src/physics/sorption/laws"),
+    ("imposed", "src/physics/imposed/laws"),
 ];
 
 fn main() {

@@ -44,6 +44,7 @@ fn law_table() -> String {
         "diffuse": laws::diffuse(),
         "leakage": laws::leakage(),
         "sorption": laws::sorption(),
+        "imposed": laws::imposed(),
     })
     .to_string()
 }

@@ -19,6 +19,7 @@ FOLDERS: Final = {
     "diffuse/laws": "Diffuse radiation of the sky",
     "leakage/laws": "Infiltration by a pressure test",
     "sorption/laws": "Sorption",
+    "imposed/laws": "Temperatures of soil and other surroundings",
     ".": "Sun, air and windows",
     "optics": "Optics of glazings",
 }

@@ -14,7 +14,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from mascarin import examples
-from mascarin.building.base.law_table import CONVECTION, LEAKAGE, SKY, SORPTION
+from mascarin.building.base.law_table import CONVECTION, IMPOSED, LEAKAGE, SKY, SORPTION
 from mascarin.building.base.part import Part
 from mascarin.building.parts.description import Description
 
@@ -119,6 +119,9 @@ def _sources(docs: Path) -> Iterator[str]:
         yield json.dumps(
             {"zones": {"room": {"infiltration": {"blower_door": {"kind": kind, **row.example}}}}}
         )
+    for kind, row in IMPOSED.items():
+        if kind != "ground":
+            yield json.dumps({"surfaces": {"floor": {"outside": {"imposed": {"kind": kind, **row.example}}}}})
     for kind, row in SORPTION.items():
         yield json.dumps({"humidity": {"materials": {"board": {"kind": kind, **row.example}}}})
 

@@ -69,6 +69,7 @@ from mascarin.building.parts.air.zone import (
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.convection import CLASSES, ConvectionLaw, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.envelope.imposed import IMPOSED_LAWS, ImposedLaw
 from mascarin.building.parts.envelope.surface import (
     Construction,
     Exposure,
@@ -139,6 +140,7 @@ if TYPE_CHECKING:
     LeakageFactor = LeakageLaw
     LeakageStackWind = LeakageLaw
     LinearSorption = SorptionLaw
+    ImposedSoil = ImposedLaw
 
 __all__ = [
     "AirPath",
@@ -182,6 +184,7 @@ __all__ = [
     "HumidityRatioSchedule",
     "Hysteresis",
     "IdealLoads",
+    "ImposedLaw",
     "Infiltration",
     "Iso15099",
     "Layer",
@@ -257,7 +260,7 @@ __all__ = [
     "window_ratings",
 ]
 # Every law of the engine's tables.
-_LAWS = {**CLASSES, **SKIES, **LEAKAGES, **SORPTIONS}
+_LAWS = {**CLASSES, **SKIES, **LEAKAGES, **SORPTIONS, **IMPOSED_LAWS}
 globals().update(_LAWS)
 __all__ += [name for name in _LAWS if name not in __all__]
 

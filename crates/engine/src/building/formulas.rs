@@ -13,6 +13,7 @@ use crate::physics::convection::law::row;
 use crate::physics::diffuse::DiffuseSky;
 use crate::physics::formula::expression::ExpressionText;
 use crate::physics::formula::function::{FunctionText, Kind};
+use crate::physics::imposed;
 use crate::physics::law_row::{LawRow, Sides, unknown_kind};
 use crate::physics::leakage;
 use crate::physics::longwave::sky;
@@ -85,6 +86,18 @@ pub(crate) fn check_published(description: &Description) -> Result<(), EngineErr
         if let Sorption::Law(law) = &buffer.sorption {
             let name = &description.surfaces[buffer.surface].name;
             laws.push((format!("humidity, surface {name}, sorption"), law, sorption::row));
+        }
+    }
+    for wall in &description.surfaces {
+        for (name, side) in [("outside", &wall.outside), ("inside", &wall.inside)] {
+            if let Facing::Imposed { law } = &side.facing {
+                laws.push((format!("surface {}, {name}, facing", wall.name), law, imposed::row));
+            }
+        }
+    }
+    for bridge in &description.thermal_bridges {
+        if let Facing::Imposed { law } = &bridge.to {
+            laws.push((format!("thermal bridge {}, to", bridge.name), law, imposed::row));
         }
     }
     for (place, law, row) in laws {
@@ -163,7 +176,7 @@ fn check_law(side: &Side) -> Result<(), String> {
     let Some(Convection::Law(law)) = &side.convection else { return Ok(()) };
     let row = row(law).ok_or_else(|| unknown_kind(law))?;
     row.check(law)?;
-    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
+    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Imposed { .. });
     if imposed && row.sides != Sides::Any {
         return Err("found a correlation at an imposed temperature, expected a constant coefficient".into());
     }

@@ -226,7 +226,7 @@ walk!(Side { facing, convection, emissivity, absorptance, area_factor, sky_view,
 walk!(Facing by variant {
     Outdoors {} plain {},
     Zone {} plain { zone },
-    Ground { mean, amplitude, coldest_day } plain {},
+    Imposed { law } plain {},
     Measured {} plain { channel },
     Adiabatic {} plain {},
 });

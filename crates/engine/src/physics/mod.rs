@@ -12,6 +12,7 @@ pub(crate) mod formula;
 pub mod gains;
 pub mod globe;
 pub mod horizon;
+pub mod imposed;
 pub mod law_row;
 pub mod leakage;
 pub mod longwave;

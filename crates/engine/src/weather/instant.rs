@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use crate::building::coefficients::Outdoors;
-use crate::building::coefficients::surface::PER_DAY;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::input::description::Facing;
@@ -13,6 +12,7 @@ use crate::number::elementary::sincos;
 use crate::number::real::Real;
 use crate::physics::convection::{Wind, WindTerms, wind_terms};
 use crate::physics::horizon;
+use crate::physics::imposed::imposed_law::PER_DAY;
 use crate::physics::longwave::SkyWeather;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
 use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight, not_negative};
@@ -146,7 +146,7 @@ impl<'a> Weather<'a> {
         let ground = sides()
             .map(|side| &side.facing)
             .chain(bridges)
-            .any(|facing| matches!(facing, Facing::Ground { .. }));
+            .any(|facing| matches!(facing, Facing::Imposed { .. }));
         let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
         let vapour = if plan.humidity.is_some() { vapour_pressures(forcing) } else { Vec::new() };
         Self { plan, forcing: *forcing, terms, ground, stages, vapour }

@@ -138,11 +138,12 @@ fn bridges_conduct_what_they_should() {
     (b.description.ventilation_units, b.description.directed_flows) = (Vec::new(), Vec::new());
     gain(&mut b, 0, 100.0);
     let number = |b: &mut Builder, value| b.number("ground", value);
-    let ground = Facing::Ground {
-        mean: number(&mut b, 11.0),
-        amplitude: number(&mut b, 0.0),
-        coldest_day: number(&mut b, 15.0),
-    };
+    let numbers = [
+        ("mean", number(&mut b, 11.0)),
+        ("amplitude", number(&mut b, 0.0)),
+        ("coldest_day", number(&mut b, 15.0)),
+    ];
+    let ground = Facing::imposed("ground", &numbers);
     bridge(&mut b, 0, 5.0, Facing::Outdoors);
     bridge(&mut b, 0, 3.0, ground);
     bridge(&mut b, 0, 2.0, Facing::Zone { zone: 1 });

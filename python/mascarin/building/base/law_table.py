@@ -179,14 +179,14 @@ class LawRow(NamedTuple):
 def _read(row: Mapping[str, Any]) -> LawRow:
     fields = {key: row[key] for key in LawRow._fields if key in row}
     alternatives = tuple((where["outdoors"], dict(where["numbers"])) for where in row["alternatives"])
-    made = {
+    rows = {
         "numbers": tuple(map(_number, row["numbers"])),
         "choices": tuple(
             LawChoice(**choice | {"among": tuple(choice["among"])}) for choice in row["choices"]
         ),
         "alternatives": alternatives,
     }
-    return LawRow(**{key: tuple(v) if isinstance(v, list) else v for key, v in fields.items()} | made)
+    return LawRow(**{key: tuple(v) if isinstance(v, list) else v for key, v in fields.items()} | rows)
 
 
 def _number(row: Mapping[str, Any]) -> LawNumber:
@@ -241,6 +241,9 @@ DIFFUSE: Final[Mapping[str, LawRow]] = _FAMILIES["diffuse"]
 
 LEAKAGE: Final[Mapping[str, LawRow]] = _FAMILIES["leakage"]
 """Every published law of infiltration by a pressure test, by its kind."""
+
+IMPOSED: Final[Mapping[str, LawRow]] = _FAMILIES["imposed"]
+"""Every law of a temperature that surroundings impose, by its kind."""
 
 SORPTION: Final[Mapping[str, LawRow]] = _FAMILIES["sorption"]
 """Every published law of sorption, by its kind."""

@@ -185,7 +185,7 @@ def _convection_suits_its_side(building: Description) -> Faults:
         film = side.convection
         if not isinstance(film, ConvectionLaw):
             continue
-        imposed = side.measured or side.ground or side.scheduled
+        imposed = side.measured or side.ground or side.imposed or side.scheduled
         if film.row.sides == "air" and imposed:
             yield fault(
                 (*location, "convection"),

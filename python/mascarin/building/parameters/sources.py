@@ -95,6 +95,8 @@ def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
+    laws = [side.imposed for surface in building.surfaces.values() for side in surface.sides]
+    yield from (source for law in laws if law is not None for source in law.row.sources)
     films = [item.side.convection for item in sides(building)]
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
     yield from (source for kind in kinds for source in SOURCES.get(kind, ()))

@@ -129,10 +129,7 @@ from mascarin.building.quantities.site import (
 from mascarin.building.quantities.surfaces import (
     Absorptance,
     AreaFactor,
-    ColdestDay,
     Emissivity,
-    GroundAmplitude,
-    GroundTemperature,
     ReferenceTemperature,
     SkyView,
 )
@@ -193,7 +190,6 @@ __all__ = [
     "CloudCoefficient",
     "CloudEmissivity",
     "CoilTemperature",
-    "ColdestDay",
     "ColumnClock",
     "ColumnFactor",
     "ColumnGain",
@@ -238,9 +234,7 @@ __all__ = [
     "GapThickness",
     "GlassCategory",
     "GlazingU",
-    "GroundAmplitude",
     "GroundReflectance",
-    "GroundTemperature",
     "GumbelScale",
     "Height",
     "HorizonAzimuth",

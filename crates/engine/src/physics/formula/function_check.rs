@@ -202,7 +202,8 @@ mod tests {
                 let others: Vec<_> = others.iter().map(|&other| Dual::constant(other)).collect();
                 let by = dual.at(Dual::constant(first), &others)[0];
                 let with = |b: f64| {
-                    let law = Function::<f64>::new(Kind::named(kind), (formula, None), &["a", "b"], &[0.6, b]);
+                    let law =
+                        Function::<f64>::new(Kind::named(kind), (formula, None), &["a", "b"], &[0.6, b]);
                     let others: Vec<f64> = others.iter().map(|other| other.value).collect();
                     law.at(first, &others)[0]
                 };

@@ -45,10 +45,13 @@ pub fn assorted_cell(sky: usize) -> Description {
     south.irradiance = Some(2);
     south.exposure = Exposure { sun: true, wind: false, sky: false };
     d.surfaces[3].outside.longwave = OutdoorLongwave::None;
-    d.surfaces[4].outside.facing = Facing::Ground {
-        mean: number(&mut d, "ground.mean", 21.0),
-        amplitude: number(&mut d, "ground.amplitude", 3.0),
-        coldest_day: number(&mut d, "ground.coldest_day", 30.0),
+    d.surfaces[4].outside.facing = {
+        let numbers = [
+            ("mean", number(&mut d, "ground.mean", 21.0)),
+            ("amplitude", number(&mut d, "ground.amplitude", 3.0)),
+            ("coldest_day", number(&mut d, "ground.coldest_day", 30.0)),
+        ];
+        Facing::imposed("ground", &numbers)
     };
 
     d.zones[0].infiltration.temperature = number(&mut d, "room.infiltration.temperature", 0.02);

@@ -168,9 +168,10 @@ impl Case {
         let value = |id: ParamId| self.description.parameters[id.0 as usize].value;
         for surface in &self.description.surfaces {
             for side in [&surface.outside, &surface.inside] {
-                if let Facing::Ground { mean, amplitude, .. } = side.facing {
-                    add(value(mean) - value(amplitude));
-                    add(value(mean) + value(amplitude));
+                if let Facing::Imposed { law } = &side.facing {
+                    let number = |name| law.number(name).map_or(0.0, value);
+                    add(number("mean") - number("amplitude"));
+                    add(number("mean") + number("amplitude"));
                 }
             }
         }
@@ -527,12 +528,12 @@ impl Maker<'_> {
             // Both surfaces in one zone.
             kind if kind < 0.7 => self.inside(zone),
             kind if kind < 0.8 => {
-                let ground = Facing::Ground {
-                    mean: self.number("ground.mean", 12.0, 18.0),
-                    amplitude: self.number("ground.amplitude", 0.0, 5.0),
-                    coldest_day: self.number("ground.coldest_day", 20.0, 60.0),
-                };
-                facing(ground, convection)
+                let numbers = [
+                    ("mean", self.number("ground.mean", 12.0, 18.0)),
+                    ("amplitude", self.number("ground.amplitude", 0.0, 5.0)),
+                    ("coldest_day", self.number("ground.coldest_day", 20.0, 60.0)),
+                ];
+                facing(Facing::imposed("ground", &numbers), convection)
             }
             kind if kind < 0.9 => facing(Facing::Measured { channel: MEASURED }, convection),
             _ => facing(Facing::Adiabatic, None),
