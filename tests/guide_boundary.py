@@ -39,10 +39,11 @@ def main(folder: Path) -> None:
     building, climate = mc.Building.from_dict(tree), box_climate()
     assert any("13789" in source for source in sources.sources(building))
     assert building.parameter(FACTOR).unit == "-"
-    names = [AIR, SURFACE, "outdoor_air_temperature"]
+    names = [AIR, SURFACE]
     simulation = mc.Simulation(building, climate, step="1h", initial=20.0, outputs=names)
     run = simulation.run()
-    air, surface, outdoor = run.records.T
+    air, surface = run.records.T
+    outdoor = simulation.weather("air_temperature")
     np.testing.assert_allclose(surface[1:], 20.0 - 0.8 * (20.0 - outdoor[1:]), atol=1e-9)
     expected = imposed_temperature("unheated", {"indoor": 20.0, "factor": 0.8}, 1.0, 5.0)
     assert abs(expected - 8.0) < 1e-12

@@ -50,10 +50,11 @@ def main(folder: Path) -> None:
 
     # Without clouds the emission is a sigma T^6.
     clear = building.replace({"site.cloud": {"kind": "factor", "c1": 0, "c2": 0, "c3": 0}})
-    names = [SKY, AIR, ROOF, "outdoor_air_temperature"]
+    names = [SKY, AIR, ROOF]
     simulation = mc.Simulation(clear, climate, step="1h", initial=20.0, outputs=names)
     run = simulation.run()
-    sky, _, _, outdoor = run.records.T + 273.15
+    sky = run.records[:, 0] + 273.15
+    outdoor = simulation.weather("air_temperature") + 273.15
     expected = 9.365e-6 * STEFAN_BOLTZMANN * outdoor**6
     np.testing.assert_allclose(STEFAN_BOLTZMANN * sky**4, expected, rtol=1e-9)
 
