@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import random_materials
-from random_draw import Draw, four
+from mascarin.building.base.law_table import LEAKAGE
+from random_draw import Draw, four, numbers_of
 from random_schedules import Schedules
 
 Json = dict[str, Any]
@@ -54,6 +55,12 @@ def _infiltration(draw: Draw) -> Any:
                 "kind": "stack_wind", "n50": draw.log(0.3, 15.0), "exponent": draw.number(0.5, 1.0),
                 "stack": 0.0003, "wind": 0.0002,
             },
+            # Laws that the engine's table has beside these.
+            *(
+                {"kind": row.kind, **numbers_of(draw, row)}
+                for row in LEAKAGE.values()
+                if row.kind not in ("factor", "stack_wind")
+            ),
         )  # fmt: skip
     return tree
 

@@ -16,8 +16,9 @@ import random_laws
 import random_materials
 import random_shells
 from mascarin.building import Building
+from mascarin.building.base.law_table import DIFFUSE, SKY
 from mascarin.building.base.part import Part
-from random_draw import Draw, four
+from random_draw import Draw, four, numbers_of
 from random_schedules import Schedules
 from random_weather import Weather
 
@@ -105,6 +106,11 @@ class _Maker:
             {"kind": "brunt", "a": 0.6, "b": 0.06},
             {"kind": "clark_allen", "a": 0.787, "b": 0.764},
         ]  # fmt: skip
+        # Models that the engine's tables have beside these.
+        stated = {"martin_berdahl", "clark_allen", "brunt", "offset", "measured"}
+        skies += [
+            {"kind": row.kind, **numbers_of(draw, row)} for row in SKY.values() if row.kind not in stated
+        ]
         if self.weather.infrared:
             skies += ["measured", {"kind": "measured", "scale": draw.number(0.8, 1.2)}] * 3
         if draw.chance(0.7):
@@ -115,7 +121,7 @@ class _Maker:
                 {"kind": "layer", "emissivity": draw.number(0.0, 1.0), "base": draw.number(100.0, 12_000.0)},
             )  # fmt: skip
         if draw.chance(0.6):
-            site["diffuse"] = draw.of("perez", "hay_davies", "isotropic")
+            site["diffuse"] = draw.of(*dict.fromkeys(("perez", "hay_davies", "isotropic", *DIFFUSE)))
         if draw.chance(0.25):
             azimuths = sorted({draw.whole(0, 359) for _ in range(draw.whole(1, 6))})
             site["horizon"] = [[azimuth, draw.of(0.0, draw.number(0.0, 60.0))] for azimuth in azimuths]

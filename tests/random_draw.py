@@ -7,6 +7,8 @@ import random
 from collections.abc import Sequence
 from typing import Any
 
+from mascarin.building.base.law_table import LawRow
+
 
 class Draw:
     """A stream of random choices; the same seed gives the same choices on every machine.
@@ -75,3 +77,12 @@ class Draw:
 def four(value: float) -> float:
     """A number rounded to four significant digits, so that a printed case is short and exact."""
     return float(f"{value:.4g}")
+
+
+def numbers_of(draw: Draw, row: LawRow, *, outdoors: bool = True) -> dict[str, Any]:
+    """Some numbers of a published law, within their ranges."""
+    return {
+        number.name: draw.number(*number.quantity.default_range(number.example))
+        for number in row.numbers
+        if (outdoors or not number.outdoors) and (number.required or draw.chance(0.5))
+    }

@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 from typing import Any, get_args
 
+from mascarin.building.base.law_table import SORPTION
 from mascarin.building.parts.materials.sorption import Kind as Sorbing
 from mascarin.materials.library import PROPERTIES, products
-from random_draw import Draw, four
+from random_draw import Draw, four, numbers_of
 
 Json = dict[str, Any]
 
@@ -318,6 +319,12 @@ def sorption(draw: Draw) -> Any:
     depths: Json = {"depth": draw.log(0.0005, 0.02)} if draw.chance(0.3) else {}
     if depths and draw.chance(0.6):
         depths["deep_depth"] = four(depths["depth"] * draw.number(1.5, 5.0))
+    # Laws that the engine's table has beside the one below.
+    others = [row for row in SORPTION.values() if row.kind != "linear"]
+    if others and draw.chance(0.3):
+        row = draw.one(others)
+        numbers = numbers_of(draw, row)
+        return {"kind": row.kind, **numbers, "vapour_resistance": draw.log(2.0, 300.0)} | depths
     if way == 0:
         return draw.one(get_args(Sorbing))
     if way == 1:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from mascarin.building.base.law_table import CONVECTION, IMPOSED, LawRow
 from mascarin.building.base.part import Part
-from mascarin.building.parts.envelope.law_table import CONVECTION, LawRow
 from mascarin.building.parts.envelope.surface import Side
 from mascarin.building.parts.openings.window import WindowOutside
-from random_draw import Draw, four
+from random_draw import Draw, four, numbers_of
 from random_schedules import Schedules
 
 Json = dict[str, Any]
@@ -28,11 +28,7 @@ def _published(draw: Draw, row: LawRow, facing: str) -> Json:
     """A published law with some of its numbers, within their ranges."""
 
     def numbers() -> Json:
-        return {
-            number.name: draw.number(*number.quantity.default_range(number.example))
-            for number in row.numbers
-            if (facing == "outdoors" or not number.outdoors) and (number.required or draw.chance(0.5))
-        }
+        return numbers_of(draw, row, outdoors=facing == "outdoors")
 
     if row.by_direction:
         return {"kind": row.kind, "upward": numbers(), "downward": numbers()}
@@ -138,11 +134,17 @@ def beyond(draw: Draw, schedules: Schedules) -> Json:
             "coldest_day": draw.whole(1, 365),
         },
     )
-    way = draw.whole(0, 4)
+    way = draw.whole(0, 5)
     if way == 0:
         return {"adiabatic": True}
     if draw.chance(0.1):
         return {"heat_flux": _heat_flux(draw, schedules)}
+    laws = [row for row in IMPOSED.values() if row.kind != "ground"]
+    if way == 5:
+        law = draw.one(laws)
+        numbers = numbers_of(draw, law)
+        coefficient: Json = {"convection": film(draw, "given")} if draw.chance(0.5) else {}
+        return {"imposed": {"kind": law.kind, **numbers}} | coefficient
     side: Json = (
         {"measured": draw.of("T_a", "T_b", ["T_a", "T_b"])}
         if way == 1

@@ -13,10 +13,10 @@ import pytest
 
 from building_samples import EVERYTHING, everything, room
 from mascarin.building import json_schema
+from mascarin.building.base.law_table import CONVECTION
 from mascarin.building.base.leaves import steps
 from mascarin.building.base.number import Number
 from mascarin.building.base.part import Part
-from mascarin.building.parts.envelope.law_table import CONVECTION
 from mascarin.building.parts.materials.formula import Formula
 from mascarin.building.reading import parse
 from mascarin.errors import InputError

@@ -116,7 +116,10 @@ FAULTS = {
         "outside: {adiabatic: true}",
         "outside: {adiabatic: true, zone: room, convection: 3, emissivity: 0.9} # here",
         "surfaces.rest.outside",
-        ["zone and adiabatic", "exactly one of outdoors, zone, ground, measured, scheduled, adiabatic"],
+        [
+            "zone and adiabatic",
+            "exactly one of outdoors, zone, ground, imposed, measured, scheduled, adiabatic",
+        ],
     ),
     "no facing": (
         "outside: {adiabatic: true}",

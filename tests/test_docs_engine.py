@@ -11,42 +11,14 @@ from pathlib import Path
 
 import pytest
 
+from guide_steps import applied, steps_of
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "engine.md"
 TARGET = ROOT / "target" / "guide"
 
-_STEP = re.compile(
-    r"<!-- (new|before|replace|append): ([^\s:]+)(?:: (.*?))? -->\n```\w+\n(.*?)```\n", re.DOTALL
-)
 #: Tests inside of the engine, which run by themselves: here they would only be compiled once more.
 _TESTS = re.compile(r"#\[cfg\(test\)\](?=\n(?:#\[.*\]\n)*mod \w*tests\b)")
-
-
-def applied(step: re.Match[str], root: Path) -> Path:
-    """Do one step of the page in a copy of the project; the file that it changes."""
-    verb, place, anchor, text = step.groups()
-    file = root / place
-    if verb == "new":
-        assert not file.exists()
-        file.write_text(text, encoding="utf-8")
-        return file
-    before = file.read_text(encoding="utf-8")
-    if verb == "append":
-        file.write_text(before + text, encoding="utf-8")
-        return file
-    assert anchor in before, f"{place} has no '{anchor}'"
-    if verb == "replace":
-        file.write_text(before.replace(anchor, text.rstrip("\n"), 1), encoding="utf-8")
-    else:
-        at = before.rfind("\n", 0, before.index(anchor)) + 1
-        file.write_text(before[:at] + text + before[at:], encoding="utf-8")
-    return file
-
-
-def steps_of(page: str, section: str = "") -> list[re.Match[str]]:
-    """Steps of the page, or of a section of it."""
-    text = page if not section else page[page.index(f"## {section}\n") :].split("\n## ", 2)[0]
-    return list(_STEP.finditer(text))
 
 
 @pytest.fixture(scope="module")
@@ -88,13 +60,26 @@ def cargo(copy: Path, *words: str, **settings: str) -> str:
 def test_a_law_and_an_output_are_added_by_the_page(copy: Path) -> None:
     # Unoptimised and without debug information: what counts is that it compiles and that both tests pass.
     words = ("--package", "mascarin-engine", "--lib", "--", "khalifa_by_hand", "heat_content_of_air")
-    assert "2 passed" in cargo(copy, "test", *words)
+    assert "4 passed" in cargo(copy, "test", *words, "swinbank_by_hand", "unheated_by_hand")
 
 
 def test_a_law_is_one_new_file() -> None:
     steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a convection law")
     laws = "crates/engine/src/physics/convection/laws"
     assert [(step[1], step[2]) for step in steps] == [("new", f"{laws}/khalifa.rs")]
+
+
+def test_a_model_of_the_sky_is_one_new_file() -> None:
+    steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a model of the sky")
+    skies = "crates/engine/src/physics/longwave/skies"
+    assert [(step[1], step[2]) for step in steps] == [("new", f"{skies}/swinbank.rs")]
+
+
+def test_a_boundary_takes_at_most_four_files() -> None:
+    steps = steps_of(PAGE.read_text(encoding="utf-8"), "Example: add a boundary of a side")
+    files = {step[2] for step in steps}
+    assert 0 < len(files) <= 4
+    assert files == {"crates/engine/src/physics/imposed/laws/unheated.rs"}
 
 
 def test_an_output_is_a_row_of_one_file() -> None:
@@ -153,6 +138,14 @@ def test_the_melting_law_is_in_runs_derivatives_units_and_pages(package: Path, t
 
 def test_the_law_is_in_runs_derivatives_calibration_units_and_pages(package: Path, tmp_path: Path) -> None:
     followed(package, "guide_law.py", tmp_path)
+
+
+def test_the_sky_is_in_runs_derivatives_calibration_units_and_pages(package: Path, tmp_path: Path) -> None:
+    followed(package, "guide_sky.py", tmp_path)
+
+
+def test_the_boundary_is_in_runs_derivatives_units_and_pages(package: Path, tmp_path: Path) -> None:
+    followed(package, "guide_boundary.py", tmp_path)
 
 
 def test_the_reference_of_the_copy_is_complete(package: Path) -> None:

@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 
 from mascarin.simulation.preparation.initial_state import GivenStart
 from mascarin.study.file import data_sources, description
+from mascarin.validation.comparison import METRICS
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
@@ -48,6 +49,8 @@ SECTIONS = (
 def words(kind: Any) -> str:
     """A type in words."""
     origin, inside = get_origin(kind), get_args(kind)
+    if origin is Literal and inside == METRICS:
+        return "a metric"  # the page lists them with their meaning
     if origin is Literal:
         return ", ".join(f"`{word}`" for word in inside)
     if origin in (Union, UnionType):

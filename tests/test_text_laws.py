@@ -366,3 +366,66 @@ def test_values_beyond_the_ranges_that_make_no_law() -> None:
     path = f"materials.{material()}.conductivity.a"
     with pytest.raises(InputError, match=r"a conductivity of .* Take other values"):
         run_of(all_laws(), OUTPUTS).jacobian_vector([path], run_of(all_laws(), OUTPUTS).vector({path: 0.03}))
+
+
+def limited_laws() -> Building:
+    """The cell with laws that hold in a part of the day only."""
+    return box_with(
+        {
+            f"materials.{material()}.conductivity": CONDUCTIVITY | {"valid": "T < 21"},
+            "zones.room.infiltration": INFILTRATION | {"valid": "abs(dT) < 4"},
+            "site.sky": SKY | {"kind": "text", "valid": "pw < 100"},
+        }
+    )
+
+
+LIMITED = ["room.air_temperature"]
+
+
+def test_a_run_outside_of_the_validity_of_each_law_warns() -> None:
+    simulation = run_of(limited_laws(), LIMITED)
+    run = simulation.run()
+    found = {line.split(":")[0]: line for line in run.warnings if "'valid'" in line}
+    (layer,) = [place for place in found if "(layer" in place]
+    assert set(found) == {layer, "zone room", "site"}
+    assert "its law of conductivity" in found[layer]
+    assert "with T from 2" in found[layer]
+    assert "its law of infiltration" in found["zone room"]
+    room, outdoor = run.records[1:, 0], simulation.weather("air_temperature")[1:]
+    outside = np.abs(room - outdoor) >= 4.0
+    assert 0 < int(outside.sum()) < len(outside)
+    assert f"at the end of {int(outside.sum())} step" in found["zone room"]
+    difference = (room - outdoor)[outside]
+    assert f"dT from {difference.min():.1f} to {difference.max():.1f} K" in found["zone room"]
+    assert "its law of the sky" in found["site"]
+    assert "pw " in found["site"]
+
+
+def test_a_law_that_holds_does_not_warn_and_a_unit_warns(tmp_path: Path) -> None:
+    assert not [line for line in run_of(all_laws(), LIMITED).run().warnings if "'valid'" in line]
+    run = run_of(limited_laws(), LIMITED)
+    export(run, tmp_path / "box.fmu")
+    steps = len(run.run().records) - 1
+    with instance(tmp_path / "box.fmu") as unit:
+        unit.start()
+        unit.run(LIMITED, 0, steps, 3600.0)
+        unit.slave.terminate()
+        for law in ("conductivity", "infiltration", "the sky"):
+            assert any(f"law of {law} does not hold" in text for _, text in unit.heard)
+
+
+def test_clouds_act_on_a_sky_whose_validity_names_them() -> None:
+    """An emissivity without clouds is that of the clear sky, wherever it says that it holds."""
+    plain, limited = (
+        run_of(box_with({"site.sky": SKY | {"kind": "text"} | more}), ["sky_temperature"]).run().records
+        for more in ({}, {"valid": "cloud < 2"})
+    )
+    assert np.array_equal(plain, limited)
+    law = box_with({"site.sky": SKY | {"kind": "text", "valid": "cloud < 2"}}).site.sky
+    assert not law.clouded
+
+
+def test_a_number_that_only_the_validity_uses() -> None:
+    law = INFILTRATION | {"most": {"value": 4.0, "range": [3, 5]}, "valid": "abs(dT) < most"}
+    run = run_of(box_with({"zones.room.infiltration": law}), LIMITED).run()
+    assert [line for line in run.warnings if line.startswith("zone room: its law of infiltration")]

@@ -1,17 +1,29 @@
-//! Lists the laws of convection: each file of `src/physics/convection/laws` is one, and its name is the kind of the law.
+//! Lists the published laws: each file of a folder of [`FAMILIES`] is one, and its name is the kind of the law in a description.
 
 use std::env::var;
 use std::fmt::Write;
 use std::fs::{read_dir, write};
 use std::path::{Path, PathBuf};
 
+/// What there are laws of, and the folder of these laws.
+const FAMILIES: [(&str, &str); 6] = [
+    ("convection", "src/physics/convection/laws"),
+    ("sky", "src/physics/longwave/skies"),
+    ("diffuse", "src/physics/diffuse/laws"),
+    ("leakage", "src/physics/leakage/laws"),
+    ("sorption", "src/physics/sorption/laws"),
+    ("imposed", "src/physics/imposed/laws"),
+];
+
 fn main() {
     let root = PathBuf::from(var("CARGO_MANIFEST_DIR").expect("Cargo sets CARGO_MANIFEST_DIR"));
     let out = PathBuf::from(var("OUT_DIR").expect("Cargo sets OUT_DIR"));
-    let folder = root.join("src/physics/convection/laws");
-    println!("cargo::rerun-if-changed={}", folder.display());
     println!("cargo::rerun-if-changed=build.rs");
-    write(out.join("convection_laws.rs"), list(&folder)).expect("OUT_DIR can be written");
+    for (family, folder) in FAMILIES {
+        let folder = root.join(folder);
+        println!("cargo::rerun-if-changed={}", folder.display());
+        write(out.join(format!("{family}_laws.rs")), list(&folder)).expect("OUT_DIR can be written");
+    }
 }
 
 /// Modules, and a macro that passes module, type and kind of each law to another one.

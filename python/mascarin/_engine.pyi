@@ -35,6 +35,7 @@ __all__ = [
     "function_values",
     "globe_temperature",
     "humidity_ratio",
+    "imposed_temperature",
     "interrupt",
     "law_table",
     "liquid_fraction",
@@ -122,6 +123,9 @@ def liquid_fraction(curve: str, values: _Array, temperature: _Array) -> _Array:
 
 def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
     """Temperatures where melting starts and is complete, without tails [degC]."""
+
+def imposed_temperature(kind: str, numbers: list[tuple[str, float]], day: float, outdoor_air: float) -> float:
+    """Temperature of a law of what a side is in contact with. [degC]"""
 
 def law_table() -> str:
     """The table of published laws, JSON lists of rows by what they are laws of."""

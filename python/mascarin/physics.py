@@ -39,6 +39,7 @@ __all__ = [
     "globe_temperature",
     "humidity_of_dew_point",
     "humidity_ratio",
+    "imposed_temperature",
     "law_titles",
     "moist_air",
     "ratio_of_vapour",
@@ -362,20 +363,47 @@ def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[flo
     return _engine.moist_air(temperature, humidity, pressure)
 
 
+def imposed_temperature(kind: str, numbers: Mapping[str, float], day: float, outdoor_air: float) -> float:
+    """Temperature that surroundings impose, by a law of the engine. [degC]
+
+    Parameters
+    ----------
+    kind : str
+        The law, such as ``ground``.
+    numbers : mapping of str to float
+        Its numbers, in their units.
+    day : float
+        Day of the year. [d]
+    outdoor_air : float
+        Outdoor air. [degC]
+
+    Examples
+    --------
+    >>> numbers = {"mean": 12.0, "amplitude": 4.0, "coldest_day": 30.0}
+    >>> round(imposed_temperature("ground", numbers, 30.0, 0.0), 6)
+    8.0
+    """
+    try:
+        return _engine.imposed_temperature(kind, list(numbers.items()), day, outdoor_air)
+    except _engine.EngineInputError as error:
+        raise InputError(f"imposed temperature: {error}") from None
+
+
 def law_titles(family: str) -> dict[str, str]:
-    """Return the titles of published laws, by their kinds.
+    """Return the titles of published laws in reports, by their kinds.
 
     Parameters
     ----------
     family : str
-        Such as ``convection``.
+        ``convection``, ``sky``, ``diffuse``, ``leakage``, ``imposed`` or ``sorption``.
 
     Examples
     --------
     >>> law_titles("convection")["tarp"]
     'TARP'
     """
-    return {row["kind"]: row["title"] for row in json.loads(_engine.law_table())[family]}
+    rows = json.loads(_engine.law_table())[family]
+    return {row["kind"]: row["title"] + (", with clouds" if row["clouds"] else "") for row in rows}
 
 
 class MeltingCurve:

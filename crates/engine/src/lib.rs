@@ -36,9 +36,15 @@ pub use step::{Counters, Scheme, state};
 /// The published laws that a description has by name.
 pub mod laws {
     pub use crate::physics::convection::table as convection;
+    pub use crate::physics::diffuse::table as diffuse;
+    pub use crate::physics::imposed::{table as imposed, temperature_on as imposed_temperature};
     pub use crate::physics::law_row::{
-        Alternative, Default, LawEntry, LawParameter, LawRange, LawRow, Limits, Sides, Tilt,
+        Alternative, Choice, CloudKind, Default, LawEntry, LawParameter, LawRange, LawRow, Limits, Sides,
+        Tilt,
     };
+    pub use crate::physics::leakage::table as leakage;
+    pub use crate::physics::longwave::sky::table as sky;
+    pub use crate::physics::sorption::table as sorption;
 }
 
 /// Laws that are written as text.

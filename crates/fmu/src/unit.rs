@@ -413,9 +413,16 @@ impl Unit {
     pub fn terminate(&mut self) -> String {
         let laws = self.running.as_ref().map(Running::out_of_range).unwrap_or_default();
         let beyond = laws.iter().map(|law| {
+            let values = law.values.iter();
+            let values =
+                values.map(|at| format!("{} from {:.1} to {:.1} {}", at.name, at.least, at.most, at.unit));
             format!(
-                "; warning: {}: its law of convection does not hold in {} steps, from step {} on (farthest at dT = {:.1} K and {:.1} m/s)",
-                law.place, law.steps, law.first, law.difference, law.wind
+                "; warning: {}: its law of {} does not hold in {} steps, from step {} on ({})",
+                law.place,
+                law.law,
+                law.steps,
+                law.first,
+                values.collect::<Vec<_>>().join(", ")
             )
         });
         let beyond: String = beyond.collect();

@@ -8,6 +8,7 @@ mod plan;
 mod trajectory;
 
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
+use mascarin_engine::laws;
 use mascarin_engine::run::outputs::Output;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -37,7 +38,15 @@ fn output_table() -> PyResult<String> {
 /// The table of published laws as JSON: lists of rows by what they are laws of.
 #[pyfunction]
 fn law_table() -> String {
-    serde_json::json!({ "convection": mascarin_engine::laws::convection() }).to_string()
+    serde_json::json!({
+        "convection": laws::convection(),
+        "sky": laws::sky(),
+        "diffuse": laws::diffuse(),
+        "leakage": laws::leakage(),
+        "sorption": laws::sorption(),
+        "imposed": laws::imposed(),
+    })
+    .to_string()
 }
 
 /// Compiled part of mascarin.

@@ -111,6 +111,14 @@ fn moist_air(temperature: f64, humidity: f64, pressure: f64) -> (f64, f64) {
     (density, heat)
 }
 
+/// Temperature of a law of `physics/imposed` on a day of the year, with outdoor air [degC].
+#[pyfunction]
+fn imposed_temperature(kind: &str, numbers: Vec<(String, f64)>, day: f64, outdoor_air: f64) -> PyResult<f64> {
+    let numbers: Vec<_> = numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    mascarin_engine::laws::imposed_temperature(kind, &numbers, day, outdoor_air)
+        .map_err(EngineInputError::new_err)
+}
+
 /// A curve (JSON, as in descriptions) whose parameters are positions in `values`.
 fn melting_curve(curve: &str, values: &[f64]) -> PyResult<LiquidFraction> {
     let curve: MeltingCurve = serde_json::from_str(curve)
@@ -164,6 +172,7 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(standard_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(standard_density, module)?)?;
     module.add_function(wrap_pyfunction!(moist_air, module)?)?;
+    module.add_function(wrap_pyfunction!(imposed_temperature, module)?)?;
     module.add_function(wrap_pyfunction!(liquid_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(melting_reach, module)?)?;
     CONSTANTS.iter().try_for_each(|&(name, value)| module.add(name, value))

@@ -258,7 +258,11 @@ pub fn describe_run<'py>(
     Ok(result)
 }
 
-/// Place, steps, first step, difference [K] and wind [m/s] of a law that was used where it does not hold.
-fn law_out_of_range(law: &OutOfRange) -> (&str, usize, usize, f64, f64) {
-    (&law.place, law.steps, law.first, law.difference, law.wind)
+/// Place, what it is a law of, steps, first step, and name, unit, least and largest value of what its `valid` depends on.
+type LawOutOfRange<'a> = (&'a str, &'a str, usize, usize, Vec<(&'a str, &'a str, f64, f64)>);
+
+/// A law that was used where it does not hold.
+fn law_out_of_range(law: &OutOfRange) -> LawOutOfRange<'_> {
+    let values = law.values.iter().map(|value| (value.name, value.unit, value.least, value.most));
+    (&law.place, law.law, law.steps, law.first, values.collect())
 }

@@ -28,6 +28,7 @@ from mascarin.building.json_schemas import json_schema
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.convection import ConvectionLaw
 from mascarin.building.parts.posterior import Posterior
+from mascarin.building.parts.site import SkyLaw
 from sitepages.snippets import Snippets
 
 #: Steps of a path that the user names.
@@ -36,12 +37,6 @@ _NAMES: Final = {
     "air_paths": "PATH", "ventilation_units": "UNIT", "openings": "OPENING", "vents": "VENT",
     "controls": "CONTROL", "surfaces": "SURFACE",
     "glazings": "GLAZING", "windows": "WINDOW", "shades": "SHADE", "sensors": "SENSOR", "layers": "LAYER",
-}  # fmt: skip
-
-
-#: Headings with names of people.
-_TITLES: Final = {
-    "MartinBerdahlSky": "Martin and Berdahl sky", "ClarkAllenSky": "Clark and Allen sky",
 }  # fmt: skip
 
 
@@ -231,10 +226,11 @@ def _default(field: FieldInfo) -> str:
 
 def title(part: type[Part]) -> str:
     """Heading of a part: the name of its class in words."""
-    if part.__name__ in _TITLES:
-        return _TITLES[part.__name__]
-    if issubclass(part, ConvectionLaw) and not part.row.title.islower():  # names of people and programs
+    # Names of people and programs.
+    if issubclass(part, ConvectionLaw) and not part.row.title.islower():
         return part.row.title
+    if issubclass(part, SkyLaw) and not part.row.title.islower():
+        return f"{part.row.title} sky"
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", part.__name__)
     return words[:1] + words[1:].lower()
 

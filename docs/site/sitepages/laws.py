@@ -15,6 +15,11 @@ FOLDERS: Final = {
     "pcm/history": "Phase change that depends on what went before",
     "convection/laws": "Convection at surfaces",
     "longwave": "Long-wave radiation",
+    "longwave/skies": "Emission of the clear sky",
+    "diffuse/laws": "Diffuse radiation of the sky",
+    "leakage/laws": "Infiltration by a pressure test",
+    "sorption/laws": "Sorption",
+    "imposed/laws": "Temperatures of soil and other surroundings",
     ".": "Sun, air and windows",
     "optics": "Optics of glazings",
 }

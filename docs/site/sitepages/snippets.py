@@ -14,9 +14,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from mascarin import examples
+from mascarin.building.base.law_table import CONVECTION, IMPOSED, LEAKAGE, SKY, SORPTION
 from mascarin.building.base.part import Part
 from mascarin.building.parts.description import Description
-from mascarin.building.parts.envelope.law_table import CONVECTION
 
 _YAML_FENCE = re.compile(
     r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```yaml\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
@@ -113,6 +113,17 @@ def _sources(docs: Path) -> Iterator[str]:
         kind: {"outside": {"convection": {"kind": kind, **row.example}}} for kind, row in CONVECTION.items()
     }
     yield json.dumps({"surfaces": sides})
+    for kind, row in SKY.items():
+        yield json.dumps({"site": {"sky": {"kind": kind, **row.example}}})
+    for kind, row in LEAKAGE.items():
+        yield json.dumps(
+            {"zones": {"room": {"infiltration": {"blower_door": {"kind": kind, **row.example}}}}}
+        )
+    for kind, row in IMPOSED.items():
+        if kind != "ground":
+            yield json.dumps({"surfaces": {"floor": {"outside": {"imposed": {"kind": kind, **row.example}}}}})
+    for kind, row in SORPTION.items():
+        yield json.dumps({"humidity": {"materials": {"board": {"kind": kind, **row.example}}}})
 
 
 def classes(annotation: Any) -> Iterator[type[Part]]:

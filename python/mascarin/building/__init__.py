@@ -26,7 +26,7 @@ from mascarin.building.parts.air.humidity import (
     VapourGain,
     ZoneHumidity,
 )
-from mascarin.building.parts.air.leakage import LeakageFactor, LeakageStackWind
+from mascarin.building.parts.air.leakage import LEAKAGES, LeakageLaw
 from mascarin.building.parts.air.schedule import (
     FractionDays,
     FractionPoint,
@@ -70,6 +70,7 @@ from mascarin.building.parts.air.zone import (
 from mascarin.building.parts.envelope.bridge import ThermalBridge
 from mascarin.building.parts.envelope.convection import CLASSES, ConvectionLaw, Measured
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.envelope.imposed import IMPOSED_LAWS, ImposedLaw
 from mascarin.building.parts.envelope.surface import (
     Construction,
     Exposure,
@@ -94,7 +95,7 @@ from mascarin.building.parts.materials.phase_change import (
     TanhLaw,
     TriangleLaw,
 )
-from mascarin.building.parts.materials.sorption import LinearSorption, Published, TabulatedSorption
+from mascarin.building.parts.materials.sorption import SORPTIONS, Published, SorptionLaw, TabulatedSorption
 from mascarin.building.parts.materials.text_law import ConductivityLaw, TextSky
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import (
@@ -108,14 +109,11 @@ from mascarin.building.parts.openings.glazing import (
 )
 from mascarin.building.parts.openings.window import Frame, Shade, Window, WindowInside, WindowOutside
 from mascarin.building.parts.site import (
-    BruntSky,
-    ClarkAllenSky,
+    SKIES,
     CloudFactor,
     CloudLayer,
-    MartinBerdahlSky,
-    MeasuredSky,
-    OffsetSky,
     Site,
+    SkyLaw,
     Wind,
 )
 from mascarin.building.reading import load
@@ -135,16 +133,23 @@ if TYPE_CHECKING:
     Power = ConvectionLaw
     PowerLaw = ConvectionLaw
     Tarp = ConvectionLaw
+    BruntSky = SkyLaw
+    ClarkAllenSky = SkyLaw
+    MartinBerdahlSky = SkyLaw
+    MeasuredSky = SkyLaw
+    OffsetSky = SkyLaw
+    LeakageFactor = LeakageLaw
+    LeakageStackWind = LeakageLaw
+    LinearSorption = SorptionLaw
+    ImposedSoil = ImposedLaw
 
 __all__ = [
     "AirPath",
     "AlamdariHammond",
     "Angular",
     "Blind",
-    "BruntSky",
     "Building",
     "CapacityLaw",
-    "ClarkAllenSky",
     "CloudFactor",
     "CloudLayer",
     "ConductivityLaw",
@@ -181,22 +186,18 @@ __all__ = [
     "HumidityRatioSchedule",
     "Hysteresis",
     "IdealLoads",
+    "ImposedLaw",
     "Infiltration",
     "Iso15099",
     "Layer",
-    "LeakageFactor",
-    "LeakageStackWind",
+    "LeakageLaw",
     "LinearLaw",
-    "LinearSorption",
     "LinearWind",
     "LowRise",
-    "MartinBerdahlSky",
     "Measured",
-    "MeasuredSky",
     "Mowitt",
     "NoWind",
     "Number",
-    "OffsetSky",
     "Opening",
     "Output",
     "Pane",
@@ -216,9 +217,11 @@ __all__ = [
     "Side",
     "SimpleGlazing",
     "Site",
+    "SkyLaw",
     "SmoothStepLaw",
     "Soil",
     "Solid",
+    "SorptionLaw",
     "SunShares",
     "Supercooling",
     "Surface",
@@ -259,9 +262,10 @@ __all__ = [
     "parameter_table",
     "window_ratings",
 ]
-# Every law of the engine's table, those that are not named above too.
-globals().update(CLASSES)
-__all__ += [name for name in CLASSES if name not in __all__]
+# Every law of the engine's tables.
+_LAWS = {**CLASSES, **SKIES, **LEAKAGES, **SORPTIONS, **IMPOSED_LAWS}
+globals().update(_LAWS)
+__all__ += [name for name in _LAWS if name not in __all__]
 
 
 def __dir__() -> list[str]:

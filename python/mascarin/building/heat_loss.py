@@ -169,6 +169,8 @@ def _destination(surface: Surface) -> str | None:
     if surface.outside.zone is not None or surface.outside.closed or surface.inside.closed:
         return None
     faces = surface.outside.faces
+    if faces == "imposed":
+        return "ground"
     return faces if faces in ("outdoors", "ground") else "measured"
 
 

@@ -15,14 +15,9 @@ from mascarin.physics import law_titles
 #: Kinds of the description in words.
 _CHOICES = {
     **{kind: title for kind, title in law_titles("convection").items() if kind != "constant"},
+    **law_titles("sky"),
+    **law_titles("diffuse"),
     "text": "a formula of its own",
-    "martin_berdahl": "Martin and Berdahl, with clouds",
-    "clark_allen": "Clark and Allen, with clouds",
-    "brunt": "Brunt, with clouds",
-    "offset": "a fixed difference below the air temperature",
-    "measured": "measured",
-    "perez": "Perez et al.",
-    "hay_davies": "Hay and Davies",
     "radiosity": "radiosity",
     "none": "none",
 }

@@ -23,9 +23,9 @@ https://doi.org/10.3390/en10101587
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,31 +36,101 @@ from mascarin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     import pandas as pd
 
-METRICS: Final = (
-    "bias",
-    "sd",
-    "rmse",
-    "mean_error",
-    "max_error",
-    "mean_error_percent",
-    "max_error_percent",
-    "cv_rmse",
-    "nmbe",
-    "rmse_over_range",
-    "bias_over_range",
-)
-"""Names of the metrics that a criterion may limit."""
-
-OVER_MEAN: Final = ("cv_rmse", "nmbe")
-"""Metrics of ASHRAE Guideline 14, which divide by the mean of the measurements."""
-
-PERCENT: Final = tuple(
-    name for name in METRICS if name in OVER_MEAN or name.endswith(("_percent", "_over_range"))
-)
-"""Metrics in percent; all others have the unit of the sensor."""
-
 GUIDELINE_PARAMETERS: Final = 1
 """p of ASHRAE Guideline 14 for calibrated simulations: n - p degrees of freedom. [-]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Differences:
+    """Differences of two complete series.
+
+    Attributes
+    ----------
+    signed : ndarray, shape (n,)
+        Simulated minus measured. [unit]
+    size : ndarray, shape (n,)
+        Their size. [unit]
+    freedom : int
+        Degrees of freedom of ASHRAE Guideline 14, n - p. [-]
+    """
+
+    signed: NDArray[np.float64]
+    size: NDArray[np.float64]
+    freedom: int
+
+    @property
+    def bias(self) -> float:
+        """Mean difference. [unit]"""
+        return float(self.signed.mean())
+
+    @property
+    def rmse(self) -> float:
+        """Root of the mean squared difference. [unit]"""
+        return float(np.sqrt(np.mean(self.signed * self.signed)))
+
+    @property
+    def mean_error(self) -> float:
+        """Mean size. [unit]"""
+        return float(self.size.mean())
+
+    @property
+    def max_error(self) -> float:
+        """The difference of largest size, with its sign. [unit]"""
+        return float(self.signed[np.argmax(self.size)])
+
+
+class Metric(NamedTuple):
+    """What a metric is.
+
+    Attributes
+    ----------
+    formula : callable
+        Its value, before it is divided. [unit]
+    words : str
+        As criteria say it.
+    over : str
+        What it is divided by, in percent: the measured ``range``, or the ``mean`` of the measurements;
+        nothing for metrics in the unit of the sensor.
+    instead : str
+        The metric for temperatures in degC, of one over the mean.
+    """
+
+    formula: Callable[[Differences], float]
+    words: str
+    over: Literal["", "range", "mean"] = ""
+    instead: str = ""
+
+
+TABLE: Final[Mapping[str, Metric]] = {
+    "bias": Metric(lambda d: d.bias, "|bias|"),
+    "sd": Metric(lambda d: float(d.signed.std()), "|sd|"),
+    "rmse": Metric(lambda d: d.rmse, "|rmse|"),
+    "mean_error": Metric(lambda d: d.mean_error, "|mean error|"),
+    "max_error": Metric(lambda d: d.max_error, "|max error|"),
+    "mean_error_percent": Metric(lambda d: d.mean_error, "|mean error|", over="range"),
+    "max_error_percent": Metric(lambda d: d.max_error, "|max error|", over="range"),
+    "cv_rmse": Metric(
+        lambda d: math.sqrt(float(np.sum(d.signed * d.signed)) / d.freedom),
+        "CV(RMSE)",
+        over="mean",
+        instead="rmse_over_range",
+    ),
+    "nmbe": Metric(
+        lambda d: float(np.sum(d.signed)) / d.freedom, "|NMBE|", over="mean", instead="bias_over_range"
+    ),
+    "rmse_over_range": Metric(lambda d: d.rmse, "rmse", over="range"),
+    "bias_over_range": Metric(lambda d: d.bias, "|bias|", over="range"),
+}
+"""The metrics by name; each is a field of `Metrics`."""
+
+METRICS: Final = tuple(TABLE)
+"""Names of the metrics that a criterion may limit."""
+
+OVER_MEAN: Final = tuple(name for name, metric in TABLE.items() if metric.over == "mean")
+"""Metrics of ASHRAE Guideline 14, which divide by the mean of the measurements."""
+
+PERCENT: Final = tuple(name for name, metric in TABLE.items() if metric.over)
+"""Metrics in percent; all others have the unit of the sensor."""
 
 _NEAR_ZERO: Final = (
     0.01  # size of a mean over the largest size of a value below which nothing is divided by it
@@ -396,32 +466,21 @@ def _metrics(m: NDArray[np.float64], s: NDArray[np.float64], unit: str) -> Metri
         missing = {field.name: math.nan for field in fields(Metrics) if field.type == "float"}
         return Metrics(unit=unit, n=0, **missing, remark="all metrics: there is no value to compare")
     d = s - m
-    size = np.abs(d)
     span = float(m.max() - m.min())
-    percent = 100.0 / span if span > 0.0 else math.nan
-    bias, rmse = float(d.mean()), float(np.sqrt(np.mean(d * d)))
-    mean_error = float(size.mean())
-    max_error = float(d[np.argmax(size)])
     refusal = mean_refusal(m, unit)
-    freedom = n - GUIDELINE_PARAMETERS
-    over_mean = math.nan if refusal else 100.0 / abs(float(m.mean()))
+    factors = {
+        "": 1.0,
+        "range": 100.0 / span if span > 0.0 else math.nan,
+        "mean": math.nan if refusal else 100.0 / abs(float(m.mean())),
+    }
+    differences = Differences(d, np.abs(d), n - GUIDELINE_PARAMETERS)
+    values = {
+        # Where there is no factor there may be no degree of freedom, either.
+        name: math.nan if math.isnan(factor) else metric.formula(differences) * factor
+        for name, metric in TABLE.items()
+        for factor in [factors[metric.over]]
+    }
     remarks = [f"{', '.join(OVER_MEAN)}: {refusal}"] if refusal else []
     if span == 0.0:
         remarks.append("metrics over the range: the measured value never changes")
-    return Metrics(
-        unit=unit,
-        n=n,
-        bias=bias,
-        sd=float(d.std()),
-        rmse=rmse,
-        mean_error=mean_error,
-        max_error=max_error,
-        mean_error_percent=mean_error * percent,
-        max_error_percent=max_error * percent,
-        measured_range=span,
-        cv_rmse=math.nan if refusal else math.sqrt(float(np.sum(d * d)) / freedom) * over_mean,
-        nmbe=math.nan if refusal else float(np.sum(d)) / freedom * over_mean,
-        rmse_over_range=rmse * percent,
-        bias_over_range=bias * percent,
-        remark="; ".join(remarks),
-    )
+    return Metrics(unit=unit, n=n, measured_range=span, **values, remark="; ".join(remarks))

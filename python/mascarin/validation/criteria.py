@@ -18,34 +18,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema
 
 from mascarin._io.limits import at_most
 from mascarin.errors import InputError, did_you_mean
-from mascarin.validation.comparison import OVER_MEAN, PERCENT, Metrics
+from mascarin.validation.comparison import METRICS, OVER_MEAN, PERCENT, TABLE, Metrics
 
-MetricName = Literal[
-    "bias",
-    "sd",
-    "rmse",
-    "mean_error",
-    "max_error",
-    "mean_error_percent",
-    "max_error_percent",
-    "cv_rmse",
-    "nmbe",
-    "rmse_over_range",
-    "bias_over_range",
-]
-
-_WORDS: Final = {
-    "cv_rmse": "CV(RMSE)",
-    "nmbe": "|NMBE|",
-    "rmse_over_range": "rmse",
-    "bias_over_range": "|bias|",
-}
+if TYPE_CHECKING:
+    MetricName = str
+else:
+    MetricName = Literal[METRICS]
 
 
 def _listed(value: object) -> object:
@@ -125,10 +109,9 @@ class Criterion(BaseModel):
         """
         if self.name is not None:
             return self.name
-        words = _WORDS.get(self.metric, f"|{self.metric.removesuffix('_percent').replace('_', ' ')}|")
-        over_range = self.metric in PERCENT and self.metric not in OVER_MEAN
-        suffix = " of the measured range" if over_range else ""
-        return f"{words} <= {self.limit:g} {metric_unit(self.metric, unit)}{suffix}"
+        metric = TABLE[self.metric]
+        suffix = " of the measured range" if metric.over == "range" else ""
+        return f"{metric.words} <= {self.limit:g} {metric_unit(self.metric, unit)}{suffix}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +257,7 @@ def _require_true_zero(
         return
     for sensor in sensors:
         if any(period_metrics.unit == "degC" for period_metrics in metrics[sensor].values()):
-            other = "rmse_over_range" if criterion.metric == "cv_rmse" else "bias_over_range"
+            other = TABLE[criterion.metric].instead
             raise InputError(
                 f"{where}: found {criterion.metric} for sensor '{sensor}' in degC, expected a sensor whose "
                 "zero has a physical meaning, such as energy or power: the mean of a temperature depends on "
@@ -335,7 +318,7 @@ def _explain(error: ValidationError, where: str) -> str:
         elif fault["type"] == "missing":
             lines.append(f"{where}.{path}: missing; a criterion needs 'metric' and 'limit'")
         elif fault["type"] == "literal_error":
-            hint = did_you_mean(str(value), MetricName.__args__)  # type: ignore[attr-defined]
+            hint = did_you_mean(str(value), METRICS)
             lines.append(f"{where}.{path}: '{value}' is not a metric. {hint}".rstrip())
         else:
             lines.append(f"{where}.{path}: {fault['msg']}, found {value!r}")

@@ -1,19 +1,25 @@
-//! Laws of convection of the description: the published ones checked against their table, those written as text read once for a plan.
+//! Laws of the description: the published ones checked against their tables, those written as text read once for a plan.
 
 use std::sync::Arc;
 
 use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
 use crate::input::description::{
-    Convection, DerivedOutput, Description, Facing, Material, MeltingCurve, PcmLaw, Side, Sky, TextLaw,
+    Convection, DerivedOutput, Description, Facing, Material, MeltingCurve, PcmLaw, PublishedLaw, Side, Sky,
+    Sorption, TextLaw,
 };
 use crate::physics::convection::formula_text::{FormulaText, SideNames};
 use crate::physics::convection::law::row;
+use crate::physics::diffuse::DiffuseSky;
 use crate::physics::formula::expression::ExpressionText;
 use crate::physics::formula::function::{FunctionText, Kind};
-use crate::physics::law_row::Sides;
+use crate::physics::imposed;
+use crate::physics::law_row::{LawRow, Sides, unknown_kind};
+use crate::physics::leakage;
+use crate::physics::longwave::sky;
 use crate::physics::pcm::history;
 use crate::physics::pcm::text::FractionText;
+use crate::physics::sorption;
 
 /// The law of each surface that is written as text.
 pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<FormulaText>>>, EngineError> {
@@ -64,6 +70,55 @@ pub(crate) fn check_curves(description: &Description) -> Result<(), EngineError>
     Ok(())
 }
 
+/// Refuses published laws that do not exist or lack numbers, besides those of sides.
+pub(crate) fn check_published(description: &Description) -> Result<(), EngineError> {
+    type Row = fn(&PublishedLaw) -> Option<LawRow>;
+    let mut laws: Vec<(String, &PublishedLaw, Row)> = Vec::new();
+    if let Sky::Law(law) = &description.site.sky {
+        laws.push(("sky".to_owned(), law, sky::row));
+    }
+    for zone in &description.zones {
+        if let Some(law) = &zone.infiltration.leakage {
+            laws.push((format!("zone {}, leakage", zone.name), law, leakage::row));
+        }
+    }
+    for buffer in description.humidity.iter().flat_map(|humidity| &humidity.buffers) {
+        if let Sorption::Law(law) = &buffer.sorption {
+            let name = &description.surfaces[buffer.surface].name;
+            laws.push((format!("humidity, surface {name}, sorption"), law, sorption::row));
+        }
+    }
+    for wall in &description.surfaces {
+        for (name, side) in [("outside", &wall.outside), ("inside", &wall.inside)] {
+            if let Facing::Imposed { law } = &side.facing {
+                laws.push((format!("surface {}, {name}, facing", wall.name), law, imposed::row));
+            }
+        }
+    }
+    for bridge in &description.thermal_bridges {
+        if let Facing::Imposed { law } = &bridge.to {
+            laws.push((format!("thermal bridge {}, to", bridge.name), law, imposed::row));
+        }
+    }
+    for (place, law, row) in laws {
+        (row(law).ok_or_else(|| unknown_kind(law)).and_then(|row| row.check(law)))
+            .map_err(|fault| EngineError::Description(format!("{place}: {fault}")))?;
+    }
+    Ok(())
+}
+
+/// The model of the diffuse radiation.
+pub(crate) fn diffuse_sky(description: &Description) -> Result<DiffuseSky, EngineError> {
+    let kind = &description.site.diffuse;
+    DiffuseSky::named(kind).ok_or_else(|| {
+        let names: Vec<_> = DiffuseSky::ALL.iter().map(|model| model.kind).collect();
+        EngineError::Description(format!(
+            "diffuse sky: found the kind '{kind}', expected one of {}",
+            names.join(", ")
+        ))
+    })
+}
+
 /// Refuses other laws as text that cannot be read.
 pub(crate) fn check_texts(description: &Description) -> Result<(), EngineError> {
     let mut laws: Vec<(String, &str, &TextLaw)> = Vec::new();
@@ -83,7 +138,7 @@ pub(crate) fn check_texts(description: &Description) -> Result<(), EngineError> 
     }
     for (place, kind, law) in laws {
         let names: Vec<&str> = law.numbers.iter().map(|number| number.name.as_str()).collect();
-        FunctionText::new(Kind::named(kind), &law.formula, None, &names)
+        FunctionText::new(Kind::named(kind), &law.formula, law.valid.as_deref(), &names)
             .map_err(|found| EngineError::Description(format!("{place}: {}: {}", found.key, found.fault)))?;
     }
     check_derived(&description.outputs)
@@ -119,22 +174,9 @@ fn check_derived(outputs: &[DerivedOutput]) -> Result<(), EngineError> {
 /// A published law has its numbers, and stands where it may.
 fn check_law(side: &Side) -> Result<(), String> {
     let Some(Convection::Law(law)) = &side.convection else { return Ok(()) };
-    let row = row(law).ok_or_else(|| format!("found the kind '{}', expected one of the table", law.kind))?;
-    let names = row.names();
-    if let Some((name, _)) = law.numbers.iter().find(|(name, _)| names.iter().all(|(other, _)| other != name))
-    {
-        return Err(format!("found the number '{name}' of '{}', expected {names:?}", law.kind));
-    }
-    let has = |name: &str| law.number(name).is_some();
-    if let Some((name, _)) = names.iter().find(|(name, optional)| !optional && !has(name)) {
-        return Err(format!("found '{}' without '{name}', expected all its numbers", law.kind));
-    }
-    let outdoors: Vec<&str> =
-        names.iter().filter(|(_, optional)| *optional).map(|(name, _)| name.as_str()).collect();
-    if outdoors.iter().any(|name| has(name)) && !outdoors.iter().all(|name| has(name)) {
-        return Err(format!("found only one of them, expected {} together, or none", outdoors.join(" and ")));
-    }
-    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
+    let row = row(law).ok_or_else(|| unknown_kind(law))?;
+    row.check(law)?;
+    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Imposed { .. });
     if imposed && row.sides != Sides::Any {
         return Err("found a correlation at an imposed temperature, expected a constant coefficient".into());
     }

@@ -17,6 +17,7 @@ use crate::input::check::check;
 use crate::input::description::{Description, Facing, Side, Zone};
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::physics::convection::formula_text::FormulaText;
+use crate::physics::diffuse::DiffuseSky;
 
 /// A compiled description.
 #[derive(Debug, Clone)]
@@ -39,6 +40,8 @@ pub struct Plan {
     pub solar_geometry: SolarGeometry,
     /// Convection at each surface where it is written as text.
     pub(crate) formulas: BySurface<Option<Arc<FormulaText>>>,
+    /// Model of the diffuse radiation of the sky.
+    pub(crate) diffuse: DiffuseSky,
     /// Vapour balance of the zones.
     pub(crate) humidity: Option<HumidityPlan>,
     /// Pressure network of its openings.
@@ -74,6 +77,8 @@ impl Plan {
         check(&description)?;
         formulas::check_curves(&description)?;
         formulas::check_texts(&description)?;
+        formulas::check_published(&description)?;
+        let diffuse = formulas::diffuse_sky(&description)?;
         let formulas = formulas::read(&description)?;
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
@@ -109,6 +114,7 @@ impl Plan {
         let solar_geometry = SolarGeometry::new(&description, &windows, &zones);
         let (humidity, vents) = (HumidityPlan::new(&description), VentPlan::new(&description));
         Ok(Self {
+            diffuse,
             formulas,
             humidity,
             vents,

@@ -271,8 +271,8 @@ mod tests {
     use super::*;
     use crate::building::plan::Plan;
     use crate::building::test_buildings::{WINDOW, glazed_zone};
-    use crate::input::description::DiffuseSky;
     use crate::input::forcing::{CLIMATE_CHANNELS, channel};
+    use crate::physics::diffuse::DiffuseSky;
 
     fn sunlight(direction: [f64; 3]) -> Sunlight {
         let mut row = [0.0; CLIMATE_CHANNELS];
@@ -280,7 +280,7 @@ mod tests {
         for (k, at) in [channel::SUN_EAST, channel::SUN_NORTH, channel::SUN_UP].into_iter().enumerate() {
             row[at] = direction[k];
         }
-        Sunlight::new(&row, DiffuseSky::Isotropic)
+        Sunlight::new(&row, DiffuseSky::named("isotropic").unwrap())
     }
 
     /// Nothing to compute without obstacles and traced beams.

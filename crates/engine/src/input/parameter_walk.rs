@@ -9,8 +9,8 @@ use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth,
     DerivedOutput, Description, DirectedFlow, Door, Drying, Facing, FlowDensity, FormulaNumber, FrameShare,
     Gain, Gap, Glazing, HeatFlux, Humidity, HumidityControl, HumiditySetPoint, IdealLoad, Infiltration,
-    Layer, Leakage, Material, MeltingCurve, Mixing, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId,
-    PcmLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge,
+    Layer, Material, MeltingCurve, Mixing, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw,
+    PublishedLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge,
     UnitFlow, VapourGain, Vent, VentControl, Ventilation, VentilationUnit, WindOnVent, WindPressure,
     WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
@@ -121,14 +121,19 @@ impl ParameterIds for Clouds {
     }
 }
 walk!(WindProfile { mast_height, mast_exponent, mast_layer, exponent, layer } plain {});
-walk!(Sky by variant {
-    Measured { scale } plain {},
-    ClarkAllen { a, b } plain {},
-    MartinBerdahl { a, b, c } plain {},
-    Brunt { a, b } plain {},
-    Offset { depression } plain {},
-    Text { law } plain { temperature },
-});
+impl ParameterIds for Sky {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        match self {
+            Self::Law(law) => law.parameter_ids(walk),
+            Self::Text { temperature: _, law } => walk.field("law", law),
+        }
+    }
+}
+impl ParameterIds for PublishedLaw {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        self.numbers.iter().for_each(|(name, id)| walk.field(name, id));
+    }
+}
 
 walk!(Material by variant {
     Solid { conductivity, density, specific_heat } plain {},
@@ -181,11 +186,7 @@ walk!(FlowDensity by variant {
     Constant { value } plain {},
 });
 walk!(DerivedOutput { law } plain { name, of });
-walk!(TextLaw { numbers } plain { formula });
-walk!(Leakage by variant {
-    Factor { n50, factor } plain {},
-    StackWind { n50, exponent, stack, wind } plain {},
-});
+walk!(TextLaw { numbers } plain { formula, valid });
 walk!(ZoneLongwave by variant {
     Radiosity {} plain {},
     Linearised { reference } plain {},
@@ -232,7 +233,7 @@ walk!(HeatFlux { flux } plain { schedule });
 walk!(Facing by variant {
     Outdoors {} plain {},
     Zone {} plain { zone },
-    Ground { mean, amplitude, coldest_day } plain {},
+    Imposed { law } plain {},
     Measured {} plain { channel },
     Adiabatic {} plain {},
 });
@@ -244,7 +245,7 @@ walk!(OutdoorLongwave by variant {
 impl ParameterIds for Convection {
     fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
         match self {
-            Self::Law(law) => law.numbers.iter().for_each(|(name, id)| walk.field(name, id)),
+            Self::Law(law) => law.parameter_ids(walk),
             Self::Measured { channel: _, factor } => walk.field("factor", factor),
             Self::Formula { formula: _, valid: _, numbers } => walk.field("numbers", numbers),
         }
@@ -268,10 +269,14 @@ walk!(HumiditySetPoint by variant {
     RatioScheduled {} plain { channel },
 });
 walk!(Buffer { sorption, resistance_factor, thickness, coating, depth, deep } plain { surface, side });
-walk!(Sorption by variant {
-    Linear { capacity } plain {},
-    Table { factor } plain { humidities, contents },
-});
+impl ParameterIds for Sorption {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        match self {
+            Self::Law(law) => law.parameter_ids(walk),
+            Self::Table { humidities: _, contents: _, factor } => walk.field("factor", factor),
+        }
+    }
+}
 walk!(Depth by variant {
     Given { depth } plain {},
     Period { period } plain {},

@@ -3,6 +3,10 @@
 
 use serde::Serialize;
 
+use crate::input::description::PublishedLaw;
+use crate::input::values::Values;
+use crate::number::real::Real;
+
 /// Everything about a law but its equation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LawRow {
@@ -10,12 +14,18 @@ pub struct LawRow {
     pub title: &'static str,
     /// What it is, in one sentence.
     pub meaning: &'static str,
+    /// More about it; empty where a sentence is enough.
+    pub details: &'static str,
     /// Where it is published.
     pub source: Option<&'static str>,
+    /// Where what it is made of is published.
+    pub further_sources: &'static [&'static str],
     /// Where it is valid.
     pub valid: &'static str,
     /// Its numbers, in the order of the description.
     pub numbers: &'static [LawParameter],
+    /// Choices that values of its numbers are tabulated by.
+    pub choices: &'static [Choice],
     /// Whether it has its numbers twice: where heat flows up (or the surface is vertical), and where it flows down.
     pub by_direction: bool,
     /// Sides on which it may stand.
@@ -24,6 +34,10 @@ pub struct LawRow {
     pub tilt: Tilt,
     /// Where studies try it in place of another law, with these values of the numbers that have no default.
     pub alternatives: &'static [Alternative],
+    /// Columns of the weather that it needs.
+    pub weather: &'static [&'static str],
+    /// Effect of clouds that it is used with, where none is described; none: clouds have no effect on it.
+    pub clouds: Option<CloudKind>,
 }
 
 impl LawRow {
@@ -32,20 +46,55 @@ impl LawRow {
         Self {
             title,
             meaning,
+            details: "",
             source: None,
+            further_sources: &[],
             valid,
             numbers: &[],
+            choices: &[],
             by_direction: false,
             sides: Sides::Any,
             tilt: Tilt::None,
             alternatives: &[],
+            weather: &[],
+            clouds: None,
         }
+    }
+
+    /// With more about it.
+    #[must_use]
+    pub const fn details(self, details: &'static str) -> Self {
+        Self { details, ..self }
+    }
+
+    /// With choices that values of its numbers are tabulated by.
+    #[must_use]
+    pub const fn choices(self, choices: &'static [Choice]) -> Self {
+        Self { choices, ..self }
     }
 
     /// Published there.
     #[must_use]
     pub const fn source(self, source: &'static str) -> Self {
         Self { source: Some(source), ..self }
+    }
+
+    /// Made of what is published there.
+    #[must_use]
+    pub const fn further_sources(self, further_sources: &'static [&'static str]) -> Self {
+        Self { further_sources, ..self }
+    }
+
+    /// Needs these columns of the weather.
+    #[must_use]
+    pub const fn weather(self, weather: &'static [&'static str]) -> Self {
+        Self { weather, ..self }
+    }
+
+    /// An emissivity of the clear sky, used with this effect of clouds where none is described.
+    #[must_use]
+    pub const fn clouds(self, clouds: CloudKind) -> Self {
+        Self { clouds: Some(clouds), ..self }
     }
 
     /// With these numbers.
@@ -84,6 +133,58 @@ impl LawRow {
         (groups.iter())
             .flat_map(|group| self.numbers.iter().map(move |n| (format!("{group}{}", n.name), n.outdoors)))
             .collect()
+    }
+
+    /// Whether a description has all numbers of a law, and no others.
+    ///
+    /// # Errors
+    /// What was found, and what was expected.
+    pub(crate) fn check(&self, law: &PublishedLaw) -> Result<(), String> {
+        let (kind, names) = (&law.kind, self.names());
+        let known = |name: &str| names.iter().any(|(other, _)| other == name);
+        if let Some((name, _)) = law.numbers.iter().find(|(name, _)| !known(name)) {
+            return Err(format!("found the number '{name}' of '{kind}', expected {names:?}"));
+        }
+        let has = |name: &str| law.number(name).is_some();
+        if let Some((name, _)) = names.iter().find(|(name, optional)| !optional && !has(name)) {
+            return Err(format!("found '{kind}' without '{name}', expected all its numbers"));
+        }
+        let outdoors: Vec<&str> =
+            names.iter().filter(|(_, optional)| *optional).map(|(name, _)| name.as_str()).collect();
+        if outdoors.iter().any(|name| has(name)) && !outdoors.iter().all(|name| has(name)) {
+            return Err(format!(
+                "found only one of them, expected {} together, or none",
+                outdoors.join(" and ")
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The error for a kind that is no law.
+pub(crate) fn unknown_kind(law: &PublishedLaw) -> String {
+    format!("found the kind '{}', expected one of the table", law.kind)
+}
+
+/// The values of the numbers of a law, by name.
+pub(crate) struct Numbers<'a, S> {
+    values: &'a Values<'a, S>,
+    law: &'a PublishedLaw,
+}
+
+impl<'a, S: Real> Numbers<'a, S> {
+    pub(crate) fn new(values: &'a Values<'a, S>, law: &'a PublishedLaw) -> Self {
+        Self { values, law }
+    }
+
+    /// A number of the row.
+    pub(crate) fn of(&self, name: &str) -> S {
+        self.optional(name).expect("a plan knows the numbers of its laws")
+    }
+
+    /// A number of the row that outdoor sides alone have.
+    pub(crate) fn optional(&self, name: &str) -> Option<S> {
+        self.law.number(name).map(|id| self.values.get(id))
     }
 }
 
@@ -146,6 +247,12 @@ impl LawParameter {
         Self { limits: Limits { above: Some(0.0), at_least: None, ..self.limits }, ..self }
     }
 
+    /// Within other limits.
+    #[must_use]
+    pub const fn limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
+    }
+
     /// At most a value.
     #[must_use]
     pub const fn at_most(self, most: f64) -> Self {
@@ -183,12 +290,27 @@ impl LawParameter {
     }
 }
 
+/// A choice among some integers that no formula has, such as the number of storeys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Choice {
+    /// Its key in a description.
+    pub name: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// What may be chosen.
+    pub among: &'static [i64],
+    /// What is chosen where nothing is written.
+    pub default: i64,
+}
+
 /// The range in which a number is plausible, with its reason.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawRange {
     /// A part of the value to each side [%].
     Percent(f64, &'static str),
+    /// So much to each side of the value.
+    Within(f64, &'static str),
     /// Two fixed ends.
     Span(f64, f64, &'static str),
 }
@@ -204,6 +326,11 @@ pub struct Limits {
     pub at_most: Option<f64>,
 }
 
+impl Limits {
+    /// None.
+    pub const NONE: Self = Self { above: None, at_least: None, at_most: None };
+}
+
 /// What a number is where none is written.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -212,8 +339,12 @@ pub enum Default {
     Required,
     /// A value and its reason.
     Value(f64, &'static str),
+    /// A value and its source.
+    Published(f64, &'static str),
     /// A value that is listed as an assumption, and its source.
     Assumed(f64, &'static str),
+    /// A value for each combination of the choices, the last choice varying fastest, and the reason.
+    Tabulated(&'static [f64], &'static str),
     /// The height of a vertical surface, 4 area/perimeter of another one.
     Length,
     /// The perimeter of the surface.
@@ -230,6 +361,16 @@ pub enum Sides {
     Air,
     /// Outdoors, and in zones of the engine's tests; the description language allows it outdoors only.
     Outdoors,
+}
+
+/// Effect of clouds on the emissivity of the clear sky.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CloudKind {
+    /// A factor.
+    Factor,
+    /// An opaque layer.
+    Layer,
 }
 
 /// How a law depends on the tilt of the surface.
@@ -254,6 +395,8 @@ pub struct Alternative {
 }
 
 impl Alternative {
+    /// With all defaults, where there are no sides.
+    pub const USUAL: Self = Self { outdoors: true, numbers: &[] };
     /// Outdoors, with all defaults.
     pub const OUTDOORS: Self = Self { outdoors: true, numbers: &[] };
     /// In a zone, with all defaults.
@@ -274,4 +417,11 @@ pub struct LawEntry {
     /// The row.
     #[serde(flatten)]
     pub row: LawRow,
+}
+
+impl LawEntry {
+    /// A law that neither wind nor a temperature difference drives.
+    pub(crate) const fn new(kind: &'static str, row: LawRow) -> Self {
+        Self { kind, wind: false, wind_direction: false, linear: false, row }
+    }
 }

@@ -3,15 +3,12 @@
 //! The sun's direction and the horizontal radiation come with the forcing; transposition is done
 //! here so that tilt, azimuth and albedo are parameters like others.
 //!
-//! Sources:
-//! - Hay & Davies (1980), Calculation of the solar radiation incident on an inclined surface.
-//! - Perez, Ineichen, Seals, Michalsky & Stewart (1990), Solar Energy 44(5), doi:10.1016/0038-092X(90)90055-H.
-//! - Kasten & Young (1989), Applied Optics 28(22), doi:10.1364/AO.28.004735 (relative air mass).
+//! Models of the diffuse radiation: `physics/diffuse`.
 
-use crate::input::description::DiffuseSky;
 use crate::input::forcing::channel;
-use crate::number::elementary::acos;
 use crate::number::real::{Mask, Real, same};
+use crate::physics::diffuse::DiffuseSky;
+use crate::physics::diffuse::model::{DiffuseSun, Fractions};
 
 /// The sun and its radiation at one instant, independent of any plane.
 #[derive(Debug, Clone, Copy)]
@@ -80,11 +77,6 @@ impl<S: Real> Plane<S> {
     }
 }
 
-/// Cosines of the zenith angles 85 and 89 deg: in the ratio of cosines the sun stays at least 5 deg (Perez) or 1 deg (Hay and
-/// Davies) above the horizon.
-const COS_85: f64 = 0.08715574274765814;
-const COS_89: f64 = 0.0174524064372836;
-
 /// A measured irradiance, without the zero offset of its pyranometer by night [W/m2]. What is not a number stays so.
 #[inline(always)]
 pub(crate) fn not_negative(irradiance: f64) -> f64 {
@@ -105,12 +97,10 @@ impl Sunlight {
             [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL]
                 .map(|channel| not_negative(row[channel]).min(most));
         let direct_normal = if up > 0.0 { direct } else { 0.0 };
-        let (circumsolar_fraction, horizon_fraction) = match model {
-            DiffuseSky::Isotropic => (0.0, 0.0),
-            DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
-            DiffuseSky::Perez => perez_fractions(up, direct_normal, diffuse, extra),
-        };
-        let lowest = up.max(if model == DiffuseSky::Perez { COS_85 } else { COS_89 });
+        let sun = DiffuseSun { up, direct_normal, diffuse, extraterrestrial: extra };
+        let Fractions { circumsolar: circumsolar_fraction, horizon: horizon_fraction } =
+            (model.fractions)(&sun);
+        let lowest = up.max(model.lowest);
         let bright = diffuse * circumsolar_fraction / lowest;
         // Sun and bright sky around it together are at most as bright as the sun outside of the atmosphere; the rest of the diffuse
         // radiation comes from all of the sky.
@@ -296,42 +286,11 @@ impl<S: Real> Irradiance<S> {
     }
 }
 
-/// Perez brightness coefficients F11 F12 F13 F21 F22 F23 by clearness bin ("all sites composite 1990").
-const PEREZ: [[f64; 6]; 8] = [
-    [-0.008, 0.588, -0.062, -0.060, 0.072, -0.022],
-    [0.130, 0.683, -0.151, -0.019, 0.066, -0.029],
-    [0.330, 0.487, -0.221, 0.055, -0.064, -0.026],
-    [0.568, 0.187, -0.295, 0.109, -0.152, -0.014],
-    [0.873, -0.392, -0.362, 0.226, -0.462, 0.001],
-    [1.132, -1.237, -0.412, 0.288, -0.823, 0.056],
-    [1.060, -1.600, -0.359, 0.264, -1.127, 0.131],
-    [0.678, -0.327, -0.250, 0.156, -1.377, 0.251],
-];
-/// Upper edges of the clearness bins.
-const PEREZ_BINS: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
-
-/// Circumsolar and horizon fractions of the diffuse radiation by sky clearness and sky
-/// brightness (Perez et al. 1990).
-fn perez_fractions(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
-    if diffuse <= 0.0 || extra <= 0.0 {
-        return (0.0, 0.0);
-    }
-    let zenith = acos(up.clamp(-1.0, 1.0)).min(core::f64::consts::FRAC_PI_2);
-    let cube = 1.041 * zenith * zenith * zenith;
-    let clearness = ((diffuse + direct) / diffuse + cube) / (1.0 + cube);
-    let elevation = 90.0 - zenith.to_degrees();
-    let air_mass = 1.0 / (Real::cos(zenith) + 0.50572 * Real::powf(elevation + 6.07995, -1.6364));
-    // The diffuse radiation of the correlation is not above the extraterrestrial radiation on the horizontal, 1 over the air mass.
-    let brightness = (diffuse * air_mass / extra).min(1.0);
-    let f = &PEREZ[PEREZ_BINS.iter().filter(|&&edge| clearness >= edge).count()];
-    let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).clamp(0.0, 1.0);
-    (circumsolar, (f[3] + f[4] * brightness + f[5] * zenith).clamp(-1.0, 1.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::input::forcing::CLIMATE_CHANNELS;
+    use crate::physics::diffuse::model::{COS_85, COS_89};
 
     /// A wall towards the east, the sun in the east 30 deg above the horizon: 400 W/m2 of beam (1000 W/m2 outside the
     /// atmosphere), 100 W/m2 of diffuse and 300 W/m2 of global horizontal radiation, ground reflectance 0.2.
@@ -359,10 +318,9 @@ mod tests {
     /// 0.6 50 + 0.4 100 0.75^1/2/0.5 = 99.2820; Perez with clearness 2.8219, brightness 0.19943, F1 = 0.453861, F2 = 0.182513: 124.1692.
     #[test]
     fn a_wall_by_hand() {
-        let diffuse =
-            [(DiffuseSky::Isotropic, 50.0), (DiffuseSky::HayDavies, 99.2820), (DiffuseSky::Perez, 124.1692)];
+        let diffuse = [("isotropic", 50.0), ("hay_davies", 99.2820), ("perez", 124.1692)];
         for (model, diffuse) in diffuse {
-            let found = on_wall(model, &SkyVisibility::FULL);
+            let found = on_wall(DiffuseSky::named(model).unwrap(), &SkyVisibility::FULL);
             assert_close(found.beam, 346.410);
             assert_close(found.ground, 30.0);
             assert_close(found.diffuse, diffuse);
@@ -391,8 +349,6 @@ mod tests {
         rows
     }
 
-    const MODELS: [DiffuseSky; 3] = [DiffuseSky::Isotropic, DiffuseSky::HayDavies, DiffuseSky::Perez];
-
     fn plane(tilt: f64, azimuth: f64) -> Plane<f64> {
         let ((sine, cosine), (east, north)) =
             (crate::number::elementary::sincos(tilt), crate::number::elementary::sincos(azimuth));
@@ -405,7 +361,9 @@ mod tests {
     #[test]
     fn nothing_above_extraterrestrial_plus_reflected() {
         let part = SkyVisibility { sun: 0.6, sky: 0.3, horizon: 0.0, ground: 0.5 };
-        for (row, model) in impossible_rows().iter().flat_map(|row| MODELS.map(|model| (row, model))) {
+        for (row, model) in
+            impossible_rows().iter().flat_map(|row| DiffuseSky::ALL.iter().map(move |&model| (row, model)))
+        {
             let sun = Sunlight::new(row, model);
             for (k, visible) in [&SkyVisibility::FULL, &part].into_iter().enumerate() {
                 for step in 0..=12 {
@@ -431,7 +389,7 @@ mod tests {
         (row[channel::SUN_EAST], row[channel::SUN_UP]) = (1.0, 0.1);
         (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (1300.0, 60.0);
         row[channel::DIRECT_NORMAL_EXTRA] = 1361.0;
-        for model in MODELS {
+        for &model in DiffuseSky::ALL {
             let sun = Sunlight::new(&row, model);
             let level = sun.on(&plane(0.0, 0.0), 0.2, &SkyVisibility::FULL);
             assert_close(level.diffuse, 60.0);
@@ -444,31 +402,10 @@ mod tests {
         }
     }
 
-    /// The fractions of Perez et al. stay in their ranges; between the bins of the clearness they have the steps of the
-    /// source, 0.14 at most with the sun at 60 deg and a diffuse part of a fifth.
-    #[test]
-    fn ranges_of_the_fractions() {
-        for row in impossible_rows() {
-            let [direct, diffuse] = [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL].map(|at| row[at]);
-            let (bright, horizon) = perez_fractions(row[channel::SUN_UP], direct, diffuse, 1361.0);
-            assert!((0.0..=1.0).contains(&bright) && (-1.0..=1.0).contains(&horizon), "{bright} {horizon}");
-        }
-        let cube = 1.041 * Real::powf(core::f64::consts::FRAC_PI_3, 3.0);
-        for edge in PEREZ_BINS {
-            let clear = (edge * (1.0 + cube) - cube - 1.0) * 200.0;
-            let [before, behind] =
-                [1.0 - 1e-9, 1.0 + 1e-9].map(|x| perez_fractions(0.5, clear * x, 200.0, 1361.0));
-            assert!(
-                (before.0 - behind.0).abs() < 0.2 && (before.1 - behind.1).abs() < 0.2,
-                "{edge}: {before:?} {behind:?}"
-            );
-        }
-    }
-
     /// At the lowest elevations of the ratio of cosines and near the zenith no model jumps.
     #[test]
     fn borders_of_the_elevation() {
-        for model in MODELS {
+        for &model in DiffuseSky::ALL {
             for up in [COS_85, COS_89, 0.5, 0.9999] {
                 let [before, behind] = [-1e-10, 1e-10].map(|more| {
                     let mut row = [0.0; CLIMATE_CHANNELS];
@@ -487,7 +424,7 @@ mod tests {
     #[test]
     fn shades_take_their_parts() {
         let visible = SkyVisibility { sun: 0.25, sky: 0.5, horizon: 1.0, ground: 0.2 };
-        let found = on_wall(DiffuseSky::HayDavies, &visible);
+        let found = on_wall(DiffuseSky::named("hay_davies").unwrap(), &visible);
         assert_close(found.beam, 0.25 * 346.410);
         assert_close(found.diffuse, 0.5 * 30.0 + 0.25 * 69.2820);
         assert_close(found.ground, 6.0);

@@ -56,7 +56,7 @@ impl StagePlace {
 pub(crate) struct Follower<'a, S: Real> {
     pub(crate) model: Model<'a, S>,
     scheme: Scheme,
-    weather: StageWeather<'a, S>,
+    weather: StageWeather<S>,
     flows: FlowIndex<S>,
     linearisation: Linearisation<S>,
     walls: Vec<WallSystem<S>>,
@@ -78,7 +78,7 @@ impl<'a, S: Real> Follower<'a, S> {
     pub(crate) fn new(plan: &'a Plan, parameters: &'a [S], scheme: Scheme) -> Self {
         let (model, tableau) = (Model::new(plan, Coefficients::new(plan, parameters)), scheme.tableau());
         let stages = tableau.weights.len();
-        let weather = StageWeather::new(&model, parameters);
+        let weather = StageWeather::new(&model);
         let unknowns = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
         Self {
             scheme,

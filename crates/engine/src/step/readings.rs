@@ -17,7 +17,7 @@ use crate::weather::vents::VentConditions;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Readings<'r, S: Real> {
     pub(crate) model: &'r Model<'r, S>,
-    pub(crate) weather: &'r StageWeather<'r, S>,
+    pub(crate) weather: &'r StageWeather<S>,
     /// Walls, and temperatures of surfaces, of the last stage.
     pub(super) walls: &'r [WallSystem<S>],
     pub(super) surfaces: &'r BySurface<S>,

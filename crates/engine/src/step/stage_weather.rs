@@ -13,9 +13,8 @@ use crate::weather::solar_means::SolarMeans;
 
 /// What acts on the building in the stage to be solved.
 #[derive(Debug, Clone)]
-pub(crate) struct StageWeather<'a, S: Real> {
+pub(crate) struct StageWeather<S: Real> {
     pub(crate) index: WeatherIndex<S>,
-    parameters: &'a [S],
     /// In the stage to be solved.
     pub(crate) conditions: Conditions<S>,
     /// In the other stage of a step whose stages are repeated.
@@ -27,14 +26,13 @@ pub(crate) struct StageWeather<'a, S: Real> {
     absorbed: Vec<S>,
 }
 
-impl<'a, S: Real> StageWeather<'a, S> {
-    /// For a building at a parameter vector.
-    pub(crate) fn new(model: &Model<'_, S>, parameters: &'a [S]) -> Self {
+impl<S: Real> StageWeather<S> {
+    /// For a building with its coefficients.
+    pub(crate) fn new(model: &Model<'_, S>) -> Self {
         let index = WeatherIndex::new(model.plan, &model.coefficients);
         let conditions = Conditions::new(model.plan, &model.coefficients, &index);
         Self {
             index,
-            parameters,
             sun: SolarMeans::new(&conditions.sun),
             other: conditions.clone(),
             absorbed: Vec::new(),
@@ -50,7 +48,7 @@ impl<'a, S: Real> StageWeather<'a, S> {
         conditions: &mut Conditions<S>,
     ) {
         conditions.weigh(&model.coefficients, now, airs);
-        conditions.update(model.plan, &model.coefficients, &self.index, self.parameters, now);
+        conditions.update(model.plan, &model.coefficients, &self.index, now);
     }
 
     /// The weather of one moment, no step; `airs` of the zones [degC].
@@ -62,9 +60,9 @@ impl<'a, S: Real> StageWeather<'a, S> {
 
     #[inline(always)]
     fn evaluate_now(&mut self, model: &Model<'_, S>, now: &Instant<'_>, airs: &[S]) {
-        let Self { index, parameters, conditions, .. } = self;
+        let Self { index, conditions, .. } = self;
         conditions.weigh(&model.coefficients, now, airs);
-        conditions.update(model.plan, &model.coefficients, index, parameters, now);
+        conditions.update(model.plan, &model.coefficients, index, now);
     }
 
     /// The means over the last step are those of one moment.

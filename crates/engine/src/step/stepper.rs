@@ -34,7 +34,7 @@ pub(super) const INSTANT: ByPrecision = ByPrecision { double: 1e-3, single: 0.1 
 pub struct Stepper<'a, S: Real> {
     pub(crate) model: Model<'a, S>,
     pub(crate) scheme: Scheme,
-    pub(crate) weather: StageWeather<'a, S>,
+    pub(crate) weather: StageWeather<S>,
     pub(crate) flows: FlowIndex<S>,
     pub(crate) solver: StageSolver<'a, S>,
     pub(crate) guess: Guess<S>,
@@ -57,7 +57,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     pub fn new(plan: &'a Plan, parameters: &'a [S], scheme: Scheme) -> Self {
         let (model, tableau) = (Model::new(plan, Coefficients::new(plan, parameters)), scheme.tableau());
         let solver = StageSolver::new(&model, tableau);
-        let weather = StageWeather::new(&model, parameters);
+        let weather = StageWeather::new(&model);
         Self {
             flows: FlowIndex::new(plan, &model.coefficients, &weather.index),
             weather,

@@ -50,7 +50,7 @@ pub(super) fn control_vents<S: Real>(model: &Model<'_, S>, state: &mut State<S>,
 #[inline(always)]
 pub(super) fn drive_vents<S: Real>(
     model: &Model<'_, S>,
-    weather: &mut StageWeather<'_, S>,
+    weather: &mut StageWeather<S>,
     network: Option<&mut VentNetwork<'_, S>>,
     state: &State<S>,
 ) {
@@ -63,7 +63,7 @@ pub(super) fn drive_vents<S: Real>(
 #[inline(never)]
 fn find_vent_flows<S: Real>(
     model: &Model<'_, S>,
-    weather: &mut StageWeather<'_, S>,
+    weather: &mut StageWeather<S>,
     network: Option<&mut VentNetwork<'_, S>>,
     state: &State<S>,
 ) {

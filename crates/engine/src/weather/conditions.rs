@@ -5,11 +5,10 @@ use crate::building::humidity::HumidityPlan;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
 use crate::input::forcing::{channel, scheduled};
-use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::flow_density::AirDensities;
-use crate::physics::longwave::sky_emission;
+use crate::physics::longwave::SkyWeather;
 use crate::weather::humidity::HumidityConditions;
 use crate::weather::index::WeatherIndex;
 pub use crate::weather::instant::{Instant, Weather};
@@ -47,6 +46,8 @@ pub struct Conditions<S: Real> {
     pub wind: S,
     /// Emission of the sky on a horizontal plane [W/m2].
     pub sky: S,
+    /// What the emission of the sky depends on.
+    pub(crate) sky_weather: SkyWeather,
     /// The sun on planes, through windows and in zones.
     pub sun: SolarConditions<S>,
     /// Emission of the outdoor air by each of [`WeatherIndex::emissions`] [W/m2].
@@ -86,6 +87,7 @@ impl<S: Real> Conditions<S> {
             outdoor_air: zero,
             wind: zero,
             sky: zero,
+            sky_weather: SkyWeather::default(),
             sun: SolarConditions::new(plan, weather_index),
             from_air: vec![zero; weather_index.emissions.len()],
             with_text: (0..coefficients.surfaces.len()).map(SurfaceId::from_index).filter(is_text).collect(),
@@ -135,6 +137,7 @@ impl<S: Real> Conditions<S> {
         }
         self.sun.interpolate(&first.sun, &second.sun, of_sun);
         self.sky = line(first.sky, second.sky);
+        self.sky_weather = SkyWeather::between(&first.sky_weather, &second.sky_weather, fraction);
         self.outdoor_air = line(first.outdoor_air, second.outdoor_air);
         self.wind = rate(first.wind, second.wind);
     }
@@ -190,12 +193,11 @@ impl<S: Real> Conditions<S> {
         plan: &Plan,
         coefficients: &Coefficients<S>,
         weather_index: &WeatherIndex<S>,
-        numbers: &[S],
         now: &Instant<'_>,
     ) {
         S::vectorised(
             #[inline(always)]
-            || self.evaluate(plan, coefficients, weather_index, numbers, now),
+            || self.evaluate(plan, coefficients, weather_index, now),
         );
     }
 
@@ -205,14 +207,11 @@ impl<S: Real> Conditions<S> {
         plan: &Plan,
         coefficients: &Coefficients<S>,
         weather_index: &WeatherIndex<S>,
-        numbers: &[S],
         now: &Instant<'_>,
     ) {
-        let site = &plan.description.site;
         let air = S::constant(now.row[channel::AIR_TEMPERATURE]);
-        let laws = (&coefficients.clouds, coefficients.sky.as_ref());
-        let sky = sky_emission(&Values::new(numbers), &site.sky, laws, &now.sky);
-        (self.sky, self.outdoor_air) = (sky, air);
+        (self.sky, self.outdoor_air) = (coefficients.sky.at(&now.sky), air);
+        self.sky_weather = now.sky;
         self.wind = S::constant(now.wind.speed);
         self.sun.irradiate(plan, coefficients, weather_index, now);
         self.update_surfaces(coefficients, weather_index, now);
@@ -337,7 +336,7 @@ mod tests {
         let index = WeatherIndex::new(plan, &coefficients);
         let weather = Weather::new(plan, &Forcing::new(row, 1, row.len()).unwrap());
         let mut conditions = Conditions::new(plan, &coefficients, &index);
-        conditions.update(plan, &coefficients, &index, &numbers, &weather.at(0, 0));
+        conditions.update(plan, &coefficients, &index, &weather.at(0, 0));
         conditions
     }
 

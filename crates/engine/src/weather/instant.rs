@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use crate::building::coefficients::Outdoors;
-use crate::building::coefficients::surface::PER_DAY;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::input::description::Facing;
@@ -13,7 +12,8 @@ use crate::number::elementary::sincos;
 use crate::number::real::Real;
 use crate::physics::convection::{Wind, WindTerms, wind_terms};
 use crate::physics::horizon;
-use crate::physics::longwave::SkyState;
+use crate::physics::imposed::imposed_law::PER_DAY;
+use crate::physics::longwave::SkyWeather;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
 use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight, not_negative};
 
@@ -25,7 +25,7 @@ pub struct Instant<'a> {
     /// The sun and its radiation, independent of any plane.
     pub(crate) sunlight: Sunlight,
     /// What the emission of the sky depends on.
-    pub(crate) sky: SkyState,
+    pub(crate) sky: SkyWeather,
     /// Wind at the mast.
     pub(crate) wind: Wind,
     /// North and east components of the direction that the wind comes from; zeros where no law depends on it.
@@ -46,7 +46,7 @@ impl<'a> Instant<'a> {
             [cosine, sine]
         };
         let site = &plan.description.site;
-        let mut sunlight = Sunlight::new(row, site.diffuse);
+        let mut sunlight = Sunlight::new(row, plan.diffuse);
         if horizon::hides(&site.horizon, sunlight.direction) {
             sunlight.hide_sun();
         }
@@ -54,7 +54,7 @@ impl<'a> Instant<'a> {
             row,
             fractions: plan.solar_geometry.at(&sunlight),
             sunlight,
-            sky: SkyState::new(&site.sky, row),
+            sky: SkyWeather::new(row),
             wind: Wind::new(row[channel::WIND_SPEED], terms),
             wind_from: unit(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
             season: unit(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
@@ -91,7 +91,7 @@ impl<'a> Instant<'a> {
             let light = if self.sunlight.dark() { Sunlight::OVERCAST } else { self.sunlight };
             return light.on(&outdoors.plane, ground, &open).measured(sum);
         };
-        let whole = Sunlight::new(self.row, plan.description.site.diffuse);
+        let whole = Sunlight::new(self.row, plan.diffuse);
         let (whole, left) =
             if whole.dark() { (Sunlight::OVERCAST, Sunlight::OVERCAST) } else { (whole, self.sunlight) };
         let before = whole.on(free, ground, &SkyVisibility::FULL);
@@ -146,7 +146,7 @@ impl<'a> Weather<'a> {
         let ground = sides()
             .map(|side| &side.facing)
             .chain(bridges)
-            .any(|facing| matches!(facing, Facing::Ground { .. }));
+            .any(|facing| matches!(facing, Facing::Imposed { .. }));
         let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
         let vapour = if plan.humidity.is_some() { vapour_pressures(forcing) } else { Vec::new() };
         Self { plan, forcing: *forcing, terms, ground, stages, vapour }
@@ -207,7 +207,6 @@ mod tests {
     use super::*;
     use crate::building::coefficients::Coefficients;
     use crate::building::test_buildings::{glazed_zone, values};
-    use crate::input::description::DiffuseSky;
     use crate::input::forcing::CLIMATE_CHANNELS;
     use crate::weather::conditions::Conditions;
     use crate::weather::index::WeatherIndex;
@@ -227,7 +226,7 @@ mod tests {
     ) -> (f64, SkyVisibility) {
         let mut description = glazed_zone("area", overhang);
         description.channels = vec!["G".into()];
-        description.site.diffuse = DiffuseSky::Isotropic;
+        description.site.diffuse = "isotropic".to_owned();
         let side = &mut description.surfaces[0].outside;
         (side.irradiance, side.behind_obstacles) = (Some(0), behind);
         let plan = Plan::new(description).unwrap();
@@ -245,7 +244,7 @@ mod tests {
         let weather = Weather::new(&plan, &forcing);
         let now = weather.at(0, 0);
         let mut conditions = Conditions::new(&plan, &coefficients, &index);
-        conditions.update(&plan, &coefficients, &index, &numbers, &now);
+        conditions.update(&plan, &coefficients, &index, &now);
         let wall = SurfaceId::outside(0);
         // The wall absorbs 0.6 of it.
         (conditions.surfaces[wall].solar / 0.6, now.visibility(&plan, wall))
@@ -267,7 +266,7 @@ mod tests {
         let forcing = Forcing::new(&row, 1, row.len()).unwrap();
         let weather = Weather::new(&plan, &forcing);
         let mut conditions = Conditions::new(&plan, &coefficients, &index);
-        conditions.update(&plan, &coefficients, &index, &numbers, &weather.at(0, 0));
+        conditions.update(&plan, &coefficients, &index, &weather.at(0, 0));
         assert!(weather.at(0, 0).sunlight.dark());
         assert!(conditions.surfaces.iter().all(|surface| surface.solar == 0.0));
         assert!(conditions.sun.windows.iter().all(|window| window.transmitted == 0.0));

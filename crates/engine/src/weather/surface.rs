@@ -2,9 +2,11 @@
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, Outdoors};
 use crate::building::ids::SurfaceId;
+use crate::input::forcing::channel;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::convection::wind::angle_of_cosine;
 use crate::physics::convection::{Driven, Surroundings};
+use crate::physics::imposed::ImposedWeather;
 use crate::weather::instant::Instant;
 
 /// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
@@ -77,9 +79,8 @@ pub(crate) fn driven_outside<S: Real>(
 pub(crate) fn imposed_temperature<S: Real>(imposed: &Imposed<S>, now: &Instant<'_>) -> S {
     match imposed {
         Imposed::Channel(channel) => S::constant(now.row[*channel]),
-        Imposed::Annual { mean, swing } => {
-            let [cosine, sine] = now.season;
-            *mean - (swing[0].scale(cosine) + swing[1].scale(sine))
+        Imposed::Law(law) => {
+            law.at(&ImposedWeather { season: now.season, outdoor_air: now.row[channel::AIR_TEMPERATURE] })
         }
     }
 }

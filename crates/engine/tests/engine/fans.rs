@@ -2,8 +2,8 @@
 
 use crate::common::{Builder, facing, forcing, options, relative, run, try_run, values};
 use mascarin_engine::description::{
-    Description, DirectedFlow, Door, Facing, Leakage, SetPoint, ThermalBridge, UnitFlow, VentilationUnit,
-    ZoneLongwave,
+    Description, DirectedFlow, Door, Facing, PublishedLaw, SetPoint, ThermalBridge, UnitFlow,
+    VentilationUnit, ZoneLongwave,
 };
 use mascarin_engine::forcing::{Forcing, channel};
 use mascarin_engine::ledger::Flow;
@@ -139,11 +139,12 @@ fn bridges_conduct_what_they_should() {
     (b.description.ventilation_units, b.description.directed_flows) = (Vec::new(), Vec::new());
     gain(&mut b, 0, 100.0);
     let number = |b: &mut Builder, value| b.number("ground", value);
-    let ground = Facing::Ground {
-        mean: number(&mut b, 11.0),
-        amplitude: number(&mut b, 0.0),
-        coldest_day: number(&mut b, 15.0),
-    };
+    let numbers = [
+        ("mean", number(&mut b, 11.0)),
+        ("amplitude", number(&mut b, 0.0)),
+        ("coldest_day", number(&mut b, 15.0)),
+    ];
+    let ground = Facing::imposed("ground", &numbers);
     bridge(&mut b, 0, 5.0, Facing::Outdoors);
     bridge(&mut b, 0, 3.0, ground);
     bridge(&mut b, 0, 2.0, Facing::Zone { zone: 1 });
@@ -183,7 +184,8 @@ fn a_pressure_test_is_infiltration() {
     (b.description.ventilation_units, b.description.directed_flows) = (Vec::new(), Vec::new());
     gain(&mut b, 0, 100.0);
     for zone in 0..3 {
-        let leakage = Leakage::Factor { n50: b.number("n50", 2.0), factor: b.number("factor", 0.07) };
+        let numbers = [("n50", b.number("n50", 2.0)), ("factor", b.number("factor", 0.07))];
+        let leakage = PublishedLaw::new("factor", &numbers);
         b.description.zones[zone].infiltration.leakage = Some(leakage);
     }
     let (air, _) = steady(b.description);
@@ -214,12 +216,13 @@ fn all_at_once() -> Plan {
         open: number("door.open", 0.3),
         schedule: None,
     };
-    let leakage = Leakage::StackWind {
-        n50: number("leak.n50", 3.0),
-        exponent: number("leak.exponent", 0.65),
-        stack: number("leak.stack", 0.000_145),
-        wind: number("leak.wind", 0.000_174),
-    };
+    let numbers = [
+        ("n50", number("leak.n50", 3.0)),
+        ("exponent", number("leak.exponent", 0.65)),
+        ("stack", number("leak.stack", 0.000_145)),
+        ("wind", number("leak.wind", 0.000_174)),
+    ];
+    let leakage = PublishedLaw::new("stack_wind", &numbers);
     b.description.doors.push(door);
     b.description.zones[2].infiltration.leakage = Some(leakage);
     b.plan()

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin._io.memory import amount
+from mascarin.building.base.law_table import CONVECTION as LAWS
 from mascarin.building.base.part import Location, fault
 from mascarin.building.checks.air import air_faults
 from mascarin.building.checks.derived_outputs import derived_faults
@@ -21,7 +22,6 @@ from mascarin.building.parameters.ties import faults as tie_faults
 from mascarin.building.parts.air.zone import FloorSun, GivenSun, SunShares, TracedSun
 from mascarin.building.parts.defaults import shade_outlines
 from mascarin.building.parts.envelope.convection import ConvectionLaw, Measured
-from mascarin.building.parts.envelope.law_table import CONVECTION as LAWS
 from mascarin.building.parts.envelope.surface import NoLongwave, Side
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.measured_sun import directions_are_known
@@ -194,7 +194,7 @@ def _convection_suits_its_side(building: Description) -> Faults:
         film = side.convection
         if not isinstance(film, ConvectionLaw):
             continue
-        imposed = side.measured or side.ground or side.scheduled
+        imposed = side.measured or side.ground or side.imposed or side.scheduled
         if film.row.sides == "air" and imposed:
             yield fault(
                 (*location, "convection"),

@@ -123,7 +123,8 @@ def _bridge(
     if bridge.zone is not None:
         to["zone"] = zones.index(bridge.zone)
     elif bridge.ground is not None:
-        to |= fields_of(bridge.ground, ids, "ground.")
+        law = {"kind": "ground"} | fields_of(bridge.ground, ids, "ground.")
+        to = {"kind": "imposed", "law": law}
     elif bridge.measured is not None:
         to["channel"] = positions[temperature_course(bridge.measured).name]
     linear = bridge.psi is not None

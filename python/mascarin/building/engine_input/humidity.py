@@ -8,7 +8,7 @@ from mascarin.building.engine_input.air import driven, schedule_of
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, deeper
 from mascarin.building.parts.air.humidity import CoolingCoil, Humidistat, Humidity, VapourGain
 from mascarin.building.parts.description import Description
-from mascarin.building.parts.materials.sorption import LinearSorption
+from mascarin.building.parts.materials.sorption import SorptionLaw
 from mascarin.building.parts.moisture_surfaces import VapourSide, vapour_sides
 
 
@@ -88,8 +88,9 @@ def _buffer(
         "thickness": all_ids[f"constructions.{side.construction}.layers.{side.layer}.thickness"],
         "depth": {"kind": "period", "period": part_ids("period")},
     }
-    if isinstance(sorption, LinearSorption):
-        written["sorption"] = {"kind": "linear", "capacity": inner_ids("capacity")}
+    if isinstance(sorption, SorptionLaw):
+        numbers = {number.name: inner_ids(number.name) for number in sorption.row.numbers}
+        written["sorption"] = {"kind": sorption.kind, **numbers}
     else:
         humidities, contents = sorption.table(side.density)
         written["sorption"] = {

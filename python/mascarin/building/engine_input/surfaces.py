@@ -66,7 +66,9 @@ def _facing(side: Side, zones: list[str], columns: list[str], positions: Positio
     if side.scheduled is not None:
         return {"kind": "measured", "channel": columns.index(schedule_channel(side.scheduled))}
     if side.ground is not None:
-        return {"kind": "ground"} | fields_of(side.ground, ids, "ground.")
+        return {"kind": "imposed", "law": {"kind": "ground"} | fields_of(side.ground, ids, "ground.")}
+    if side.imposed is not None:
+        return {"kind": "imposed", "law": fields_of(side.imposed, ids, "imposed.")}
     return {"kind": side.faces}
 
 

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mascarin.building.base.law_table import DIFFUSE
 from mascarin.building.base.leaves import leaves
 from mascarin.building.base.number import Number, Remark
 from mascarin.building.parameters.text_laws import text_laws
 from mascarin.building.parameters.unused_parameters import has_height, sides, without_effect
 from mascarin.building.parts.air.humidity import EMPD, PSYCHROMETRICS
-from mascarin.building.parts.air.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
 from mascarin.building.parts.air.vent import ORIFICE, SWAMI_CHANDRA, LowRise
 from mascarin.building.parts.air.ventilation import RECOVERY_SOURCE
 from mascarin.building.parts.air.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
@@ -19,13 +19,14 @@ from mascarin.building.parts.envelope.convection import SOURCES
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.building.parts.materials.phase_change import FractionsLaw, TableLaw
+from mascarin.building.parts.materials.sorption import SorptionLaw
 from mascarin.building.parts.measured_sun import obstructed
 from mascarin.building.parts.moisture_surfaces import vapour_sides
 from mascarin.building.parts.openings.blind import NET_RADIATION
 from mascarin.building.parts.openings.glazing import SOURCES as GLASS
 from mascarin.building.parts.openings.glazing import FilledGap, SimpleGlazing, TwoSides
 from mascarin.building.parts.self_shading import obstructions
-from mascarin.building.parts.site import ASHRAE_WIND, CLARK, MARTIN
+from mascarin.building.parts.site import ASHRAE_WIND, CLARK, MARTIN, SkyLaw
 from mascarin.building.parts.zone_surfaces import closed
 
 if TYPE_CHECKING:
@@ -34,22 +35,6 @@ if TYPE_CHECKING:
 _TIME_STEPS = "Alexander 1977, doi:10.1137/0714068 (time steps: SDIRK2)"
 _SUN = "Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003 (sun position)"
 _PVLIB = "Anderson et al. 2023, doi:10.21105/joss.05994 (pvlib, which computes it)"
-_EXTRATERRESTRIAL = "Kopp & Lean 2011, doi:10.1029/2010GL045777 (solar constant)"
-_AIR_MASS = "Kasten & Young 1989, doi:10.1364/AO.28.004735 (air mass)"
-_DIFFUSE = {
-    "perez": "Perez et al. 1990, doi:10.1016/0038-092X(90)90055-H (diffuse radiation on a plane)",
-    "hay_davies": "Hay & Davies 1980, Proc. First Canadian Solar Radiation Data Workshop "
-    "(diffuse radiation on a plane)",
-    "isotropic": "Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9 (diffuse radiation on a plane)",
-}
-_SKIES = {
-    "martin_berdahl": (MARTIN,),
-    "clark_allen": (CLARK,),
-    "brunt": (
-        "Brunt 1932, doi:10.1002/qj.49705824704 (emissivity of the clear sky)",
-        "ASHRAE Handbook of Fundamentals 2017, ch. 1, eq. 6 (vapour pressure at the dew point)",
-    ),
-}
 _SKY_SPLIT = "Walton 1983, NBSIR 83-2655 (split of the sky by height above the horizon)"
 _ENCLOSURE = "Hottel & Sarofim 1967, Radiative Transfer, ch. 3 (exchange between the surfaces of a zone)"
 _EXACT_VIEW = "Sparrow 1963, doi:10.1115/1.3686058 (view factors of polygons)"
@@ -110,9 +95,11 @@ def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
+    laws = [side.imposed for surface in building.surfaces.values() for side in surface.sides]
+    yield from (source for law in laws if law is not None for source in law.row.sources)
     films = [item.side.convection for item in sides(building)]
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
-    yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
+    yield from (source for kind in kinds for source in SOURCES.get(kind, ()))
     yield from (film.source for film in films if isinstance(film, FormulaLaw) and film.source)
     yield from (law.source for _, law in text_laws(building) if law.source)
     if any(item.windy and has_height(item.side) for item in sides(building)):
@@ -122,6 +109,8 @@ def _of_methods(building: Description) -> Iterator[str]:
         yield _IDEAL_LOADS
     if building.humidity is not None:
         yield PSYCHROMETRICS
+        materials = building.humidity.materials.values()
+        yield from (source for law in materials if isinstance(law, SorptionLaw) for source in law.row.sources)
         if any(side.takes_up for side in vapour_sides(building)):
             yield EMPD
     yield from _of_glazings(building)
@@ -149,10 +138,7 @@ def _of_air(building: Description) -> Iterator[str]:
     if any(unit.recovery is not None for unit in building.ventilation_units.values()):
         yield RECOVERY_SOURCE
     tests = [zone.infiltration.blower_door for zone in building.zones.values()]
-    if any(isinstance(test, LeakageFactor) for test in tests):
-        yield ISO_13789
-    if any(isinstance(test, LeakageStackWind) for test in tests):
-        yield BASIC_MODEL
+    yield from (source for test in tests if test is not None for source in test.row.sources)
 
 
 def _sunlit(building: Description) -> bool:
@@ -162,21 +148,17 @@ def _sunlit(building: Description) -> bool:
 def _of_sun(building: Description) -> Iterator[str]:
     if not _sunlit(building):
         return
-    kind = building.site.diffuse
-    yield from (_SUN, _PVLIB, _DIFFUSE[kind])
-    if kind != "isotropic":
-        yield _EXTRATERRESTRIAL
-    if kind == "perez":
-        yield _AIR_MASS
+    yield from (_SUN, _PVLIB, *DIFFUSE[building.site.diffuse].sources)
 
 
 def _of_sky(building: Description) -> Iterator[str]:
     if not any(item.sees_sky for item in sides(building)):
         return
-    kind = building.site.sky.kind
-    yield from _SKIES.get(kind, ())
-    if kind in _SKIES:  # clouds act on an emissivity only
-        yield CLARK if building.site.cloud.kind == "factor" else MARTIN
+    sky = building.site.sky
+    if isinstance(sky, SkyLaw):
+        yield from sky.row.sources
+        if not sky.clouded:
+            yield CLARK if building.site.cloud.kind == "factor" else MARTIN
     yield _SKY_SPLIT
 
 

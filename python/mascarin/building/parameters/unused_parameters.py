@@ -18,7 +18,6 @@ from mascarin.building.parts.envelope.convection import (
 )
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.building.parts.envelope.surface import NoLongwave, Side, Surface
-from mascarin.building.parts.materials.text_law import TextSky
 from mascarin.building.parts.measured_sun import paths as obstructed_paths
 from mascarin.building.parts.openings.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.parts.openings.window import WindowInside, WindowOutside, outer_side
@@ -203,8 +202,7 @@ def _in_site(building: Description, all_sides: list[SurfaceSide]) -> Reasons:
         )
     if not seeing:
         yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
-    clouded = isinstance(site.sky, TextSky) and site.sky.clouded
-    if not seeing or clouded or site.sky.kind in ("measured", "offset"):
+    if not seeing or site.sky.clouded:
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
     if not any(item.windy and has_height(item.side) for item in all_sides):
         reason = "no surface with a height depends on wind: the wind at the mast is used"

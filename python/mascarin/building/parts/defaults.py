@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
+from mascarin.building.base.law_table import CONVECTION as LAWS
 from mascarin.building.base.number import Number, Remark
 from mascarin.building.base.part import Location, NotDerivableError, derived_number, fault, insist, refuse
 from mascarin.building.parts.air.humidity import with_all_zones
 from mascarin.building.parts.air.zone import Zone
 from mascarin.building.parts.envelope.convection import CLASSES, Convection, ConvectionLaw
 from mascarin.building.parts.envelope.formula_law import LENGTH, PERIMETER, FormulaLaw
-from mascarin.building.parts.envelope.law_table import CONVECTION as LAWS
 from mascarin.building.parts.envelope.surface import Ground, Side, Surface
 from mascarin.building.parts.openings.window import Window, WindowOutside
 from mascarin.errors import InputError

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from mascarin.building import quantities as q
-from mascarin.building.base.number import Number, Remark, problem
+from mascarin.building.base.law_classes import PublishedLaw, classes_of, union_of
+from mascarin.building.base.law_table import DIFFUSE, SKY
+from mascarin.building.base.number import Number, problem
 from mascarin.building.base.part import Part, Shorthand, fault, refuse
 from mascarin.building.parts.materials.text_law import TextSky
 from mascarin.errors import did_you_mean
@@ -21,7 +23,10 @@ if TYPE_CHECKING:
 ASHRAE_WIND = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
 MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
 CLARK = "Clark & Allen 1978, Proc. 2nd National Passive Solar Conference, Philadelphia"
-_LI = "Li, Jiang & Coimbra 2017, doi:10.1016/j.solener.2017.01.006"
+
+#: The models that are used where none is given.
+DEFAULT_SKY: Final = "martin_berdahl"
+DEFAULT_DIFFUSE: Final = "perez"
 
 #: Exponent and thickness [m] of the boundary layer over a kind of terrain.
 TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0), "sea": (0.10, 210.0)}
@@ -86,82 +91,38 @@ def wind_factor(wind: Wind, height: float) -> float:
     return float(mast * (max(float(height), 0.1) / float(wind.layer or 1.0)) ** float(wind.exponent or 0.0))
 
 
-class MeasuredSky(Part):
-    """Measured horizontal infrared radiation of the climate, times a factor.
+class SkyLaw(PublishedLaw):
+    """A published model of the emission of the sky: a class for each row of the engine's table."""
 
-    Examples
-    --------
-    >>> MeasuredSky(scale=1.02)
-    MeasuredSky(scale=1.02)
-    """
+    if TYPE_CHECKING:
 
-    kind: Literal["measured"] = "measured"
-    scale: q.SkyScale = Number(1.0, source=Remark("the measurement without a correction"))
+        def __init__(self, **numbers: Any) -> None: ...
 
+    @property
+    def clouded(self) -> bool:
+        """Whether `Site.cloud` has no effect on it."""
+        return self.row.clouds is None
 
-class ClarkAllenSky(Part):
-    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K.
-
-    Examples
-    --------
-    >>> ClarkAllenSky()
-    ClarkAllenSky(a=0.787, b=0.764)
-    """
-
-    kind: Literal["clark_allen"] = "clark_allen"
-    a: q.SkyCoefficient = Number(0.787, source=CLARK)
-    b: q.SkyCoefficient = Number(0.764, source=CLARK)
+    @property
+    def weather(self) -> frozenset[str]:
+        """Columns of the weather that it needs."""
+        return frozenset(self.row.weather)
 
 
-class MartinBerdahlSky(Part):
-    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC.
+#: Classes of the models by their names; the default comes first.
+SKIES: Final = classes_of(sorted(SKY.values(), key=lambda row: row.kind != DEFAULT_SKY), SkyLaw, "{}Sky")
+globals().update(SKIES)
 
-    Examples
-    --------
-    >>> MartinBerdahlSky()
-    MartinBerdahlSky(a=0.711, b=0.56, c=0.73)
-    """
-
-    kind: Literal["martin_berdahl"] = "martin_berdahl"
-    a: q.SkyCoefficient = Number(0.711, source=MARTIN)
-    b: q.SkyCoefficient = Number(0.56, source=MARTIN)
-    c: q.SkyCoefficient = Number(0.73, source=MARTIN)
-
-
-class BruntSky(Part):
-    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa.
-
-    Examples
-    --------
-    >>> BruntSky()
-    BruntSky(a=0.618, b=0.056)
-    """
-
-    kind: Literal["brunt"] = "brunt"
-    a: q.SkyCoefficient = Number(0.618, source=_LI)
-    b: q.SkyCoefficient = Number(0.056, source=_LI)
-
-
-class OffsetSky(Part):
-    """Sky temperature at a constant difference below the air temperature.
-
-    Examples
-    --------
-    >>> OffsetSky(depression=9)
-    OffsetSky(depression=9 K)
-    """
-
-    kind: Literal["offset"] = "offset"
-    depression: q.SkyDepression = Number(
-        11.0, source="ISO 13790:2008: between tropics and subpolar zones", assumed=True
-    )
-
-
-Sky = Annotated[
-    MartinBerdahlSky | ClarkAllenSky | BruntSky | OffsetSky | MeasuredSky | TextSky,
-    Field(discriminator="kind"),
-    Shorthand(word="kind", implied=("formula", "text")),
-]
+if TYPE_CHECKING:
+    Sky = SkyLaw | TextSky
+    Diffuse = str
+else:
+    Sky = Annotated[
+        union_of([*SKIES.values(), TextSky]),
+        Field(discriminator="kind"),
+        Shorthand(word="kind", implied=("formula", "text")),
+    ]
+    Diffuse = Literal[tuple(sorted(DIFFUSE, key=lambda kind: kind != DEFAULT_DIFFUSE))]
 
 
 class CloudFactor(Part):
@@ -250,15 +211,15 @@ class Site(Part):
     )
     wind: Wind = Field(default_factory=lambda: Wind(), description="Wind profile")
     sky: Sky = Field(
-        default_factory=lambda: MartinBerdahlSky(kind="martin_berdahl"),
+        default_factory=lambda: SKIES["MartinBerdahlSky"](kind=DEFAULT_SKY),
         description="Long-wave emission of the sky",
     )
     cloud: Cloud = Field(
         default_factory=CloudLayer,
         description="Effect of clouds on the sky's emissivity: as a factor, or as an opaque layer",
     )
-    diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
-        "perez", description="Model of diffuse short-wave radiation on a tilted plane"
+    diffuse: Diffuse = Field(
+        DEFAULT_DIFFUSE, description="Model of diffuse short-wave radiation on a tilted plane"
     )
     horizon: tuple[tuple[q.HorizonAzimuth, q.HorizonElevation], ...] = Field(
         (),
@@ -300,6 +261,8 @@ class Site(Part):
 
 
 def _cloud_kind(sky: Any) -> str:
-    """The layer is by the authors of ``martin_berdahl``; other published models are used with the factor."""
+    """The effect of clouds that a model is published with, or used with by others."""
     kind = sky.get("kind") if isinstance(sky, Mapping) else getattr(sky, "kind", sky)
-    return "layer" if kind in (None, "martin_berdahl", "text") else "factor"
+    if kind in (None, "text"):
+        kind = DEFAULT_SKY
+    return (SKY[kind].clouds if kind in SKY else None) or "factor"

@@ -115,51 +115,6 @@ WindCoefficient = Annotated[
         FRACTION,
     ),
 ]
-AirChangeOfTest = Annotated[
-    Number,
-    Quantity(
-        "1/h",
-        "Air changes at 50 Pa in a pressure test, n50",
-        Percent(20, "pressure tests, and the share of a zone in the leaks of a house"),
-        Limits(at_least=0, at_most=100),
-    ),
-]
-LeakageFactor = Annotated[
-    Number,
-    Quantity(
-        "-",
-        "Air changes of infiltration over those at 50 Pa",
-        Span(0.01, 0.10, "one facade exposed with heavy shielding, to several without shielding"),
-        FRACTION,
-    ),
-]
-LeakageExponent = Annotated[
-    Number,
-    Quantity(
-        "-",
-        "Exponent of the pressure difference in the flow through leaks",
-        Span(0.6, 0.7, "pressure tests of houses"),
-        Limits(at_least=0.5, at_most=1.0),
-    ),
-]
-StackCoefficient = Annotated[
-    Number,
-    Quantity(
-        "(L/s)2/(cm4 K)",
-        "Stack coefficient of the leakage area",
-        Percent(30, "height of the house, and where its leaks are"),
-        Limits(at_least=0, at_most=0.01),
-    ),
-]
-WindLeakageCoefficient = Annotated[
-    Number,
-    Quantity(
-        "(L/s)2/(cm4 (m/s)2)",
-        "Wind coefficient of the leakage area",
-        Percent(50, "the next shelter class to either side"),
-        Limits(at_least=0, at_most=0.01),
-    ),
-]
 Recovery = Annotated[
     Number,
     Quantity(

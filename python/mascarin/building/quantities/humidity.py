@@ -106,10 +106,6 @@ VapourRecovery = Annotated[
         FRACTION,
     ),
 ]
-MoistureCapacity = Annotated[
-    Number,
-    Quantity("kg/m3", "Moisture content at a relative humidity of 1", Percent(30, TABLES), POSITIVE),
-]
 ContentFactor = Annotated[
     Number,
     Quantity("-", "Factor of the moisture contents", Within(0.3, TABLES), POSITIVE),

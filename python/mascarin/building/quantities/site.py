@@ -101,27 +101,6 @@ BoundaryLayer = Annotated[
         POSITIVE,
     ),
 ]
-SkyCoefficient = Annotated[
-    Number, Quantity("-", "Coefficient of the emissivity of the clear sky", Percent(10, FIT))
-]
-SkyScale = Annotated[
-    Number,
-    Quantity(
-        "-",
-        "Factor on the measured infrared of the sky",
-        Within(0.05, "calibration of a pyrgeometer, and the radiation of its body"),
-        POSITIVE,
-    ),
-]
-SkyDepression = Annotated[
-    Number,
-    Quantity(
-        "K",
-        "Outdoor air temperature minus sky temperature",
-        Span(3, 20, "overcast to clear and dry; annual means of ISO 13790 are 9 to 13 K"),
-        Limits(at_least=-10, at_most=60),
-    ),
-]
 CloudEmissivity = Annotated[
     Number,
     Quantity(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.base.number import Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.base.number import Limits, Number, Percent, Quantity, Within
 from mascarin.building.quantities.common import ABOVE_0_TO_1, FRACTION, TEMPERATURE
 
 Emissivity = Annotated[
@@ -44,27 +44,5 @@ ReferenceTemperature = Annotated[
         "Temperature about which long-wave exchange is linearised",
         Within(5, "mean of the period is not known in advance; 1 K is 1 % of the coefficient"),
         TEMPERATURE,
-    ),
-]
-GroundTemperature = Annotated[
-    Number,
-    Quantity("degC", "Annual mean temperature of the ground", Within(2, "depth and cover"), TEMPERATURE),
-]
-GroundAmplitude = Annotated[
-    Number,
-    Quantity(
-        "K",
-        "Annual amplitude of the ground's temperature",
-        Span(0, 5, "meters deep to just below the floor"),
-        Limits(at_least=0, at_most=60),
-    ),
-]
-ColdestDay = Annotated[
-    Number,
-    Quantity(
-        "d",
-        "Day of the year on which the ground is coldest",
-        Within(20, "the lag grows with depth"),
-        Limits(at_least=-366, at_most=366),
     ),
 ]

@@ -80,9 +80,9 @@ def range_warnings(raw: Mapping[str, Any], dated: Callable[[str], str]) -> list[
     Parameters
     ----------
     raw : mapping
-        What the engine returns of a run: ``out_of_range`` has for each law the surface, the number of steps,
-        the first of them, and in the worst one the difference of surface and air [K] and the wind at the
-        mast [m/s].
+        What the engine returns of a run: ``out_of_range`` has for each law what has it, what it is a law of,
+        the number of steps, the first of them, and for each name that its ``valid`` depends on its unit and
+        its least and largest value at the ends of these steps.
     dated : callable
         Adds the time to a text that names a step.
 
@@ -93,13 +93,23 @@ def range_warnings(raw: Mapping[str, Any], dated: Callable[[str], str]) -> list[
 
     Examples
     --------
-    >>> range_warnings({"out_of_range": [("roof (outside)", 3, 40, 31.5, 2.0)]}, str)[0][:62]
-    "roof (outside): its law of convection is outside of its 'valid"
+    >>> law = ("zone room", "infiltration", 3, 40, [("dT", "K", 30.2, 31.5)])
+    >>> range_warnings({"out_of_range": [law]}, str)[0][:62]
+    "zone room: its law of infiltration is outside of its 'valid' a"
     """
     return [
-        f"{surface}: its law of convection is outside of its 'valid' at the end of {steps} "
-        f"{'step' if steps == 1 else 'steps'}, first in {dated(f'step {first}')}; farthest at dT = "
-        f"{difference:.1f} K with a wind of {wind:.1f} m/s at the mast. The formula is used as it is there: "
+        f"{owner}: its law of {law} is outside of its 'valid' at the end of {steps} "
+        f"{'step' if steps == 1 else 'steps'}, first in {dated(f'step {first}')}, with "
+        f"{', '.join(map(_extent, values))}. The formula is used as it is there: "
         "take a law that holds, or widen 'valid' where its source does"
-        for surface, steps, first, difference, wind in raw["out_of_range"]
+        for owner, law, steps, first, values in raw["out_of_range"]
     ]
+
+
+def _extent(value: tuple[str, str, float, float]) -> str:
+    """A name with its values; one where they do not differ."""
+    name, unit, least, most = value
+    shown = "" if unit == "-" else f" {unit}"
+    if f"{least:.1f}" == f"{most:.1f}":
+        return f"{name} = {least:.1f}{shown}"
+    return f"{name} from {least:.1f} to {most:.1f}{shown}"

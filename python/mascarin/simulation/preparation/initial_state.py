@@ -6,7 +6,6 @@ the steady state of a wall of constant properties between two constant temperatu
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,6 +22,7 @@ from mascarin.building.parts.materials.phases import phase
 from mascarin.building.parts.openings.blind import Blind
 from mascarin.building.parts.openings.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.errors import InputError, did_you_mean
+from mascarin.physics import imposed_temperature
 
 if TYPE_CHECKING:
     from mascarin.building.building import Building
@@ -415,9 +415,13 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
     if side.zone is not None:
         return film, air[side.zone]
     if side.ground is not None:
-        ground = side.ground
-        angle = 2.0 * math.pi * (ambient.day - float(ground.coldest_day or 0.0)) / 365.0
-        return film, float(ground.mean - ground.amplitude * math.cos(angle))
+        ground = {name: float(getattr(side.ground, name) or 0.0) for name in type(side.ground).model_fields}
+        return film, imposed_temperature("ground", ground, ambient.day, ambient.outdoors)
+    if side.imposed is not None:
+        numbers = {
+            number.name: float(getattr(side.imposed, number.name)) for number in side.imposed.row.numbers
+        }
+        return film, imposed_temperature(side.imposed.kind, numbers, ambient.day, ambient.outdoors)
     if side.scheduled is not None:
         return film, ambient.columns[schedule_channel(side.scheduled)]
     if isinstance(side.measured, tuple):

@@ -302,9 +302,8 @@ def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
 def _require_numbers(forcing: Array, channels: Sequence[str], building: Building) -> None:
     """Channels that the engine reads must hold numbers; some may be absent."""
     names = (*CHANNELS, *channels)
-    absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
-    if building.site.sky.kind in ("offset", "measured") and building.humidity is None:
-        absent.add("dew_point")
+    needed = building.site.sky.weather | (set() if building.humidity is None else {"dew_point"})
+    absent = {"pressure"} | ({"infrared", "dew_point"} - needed)
     bad = [bool(np.isnan(forcing[..., k]).any()) for k in range(len(names))]
     missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
     if "dew_point" in missing and building.humidity is not None:

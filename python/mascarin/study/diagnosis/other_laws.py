@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
-from mascarin.building.parts.envelope.law_table import CONVECTION
+from mascarin.building.base.law_table import CONVECTION, DIFFUSE, SKY
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
 
-#: Models of the sky and of diffuse radiation.
-_SKIES: Final = ("martin_berdahl", "clark_allen", "brunt")
-_DIFFUSE: Final = ("perez", "hay_davies", "isotropic")
 #: In a building with more surfaces only those of sensors are changed alone, and all others together.
 _MANY: Final = 14
 
@@ -34,11 +31,11 @@ def forms(building: Building, seen: set[str]) -> Iterator[tuple[str, str, dict[s
         The part that is replaced, its new kind, and the changes as `Building.replace` takes them.
     """
     site = building.site
-    for kind in _SKIES:
-        if site.sky.kind not in (kind, "measured"):
+    for kind, row in SKY.items():
+        if row.alternatives and site.sky.kind not in (kind, "measured"):
             yield "site.sky", kind, {"site.sky": kind}
-    for kind in _DIFFUSE:
-        if site.diffuse != kind:
+    for kind, row in DIFFUSE.items():
+        if row.alternatives and site.diffuse != kind:
             yield "site.diffuse", kind, {"site.diffuse": kind}
     sides = list(_sides(building))
     alone = len(building.surfaces) <= _MANY

@@ -28,6 +28,7 @@ from mascarin.study.file.field_types import (
 )
 from mascarin.study.file.sensor import Sensor as Sensor
 from mascarin.study.file.sensor import SensorPeriods as SensorPeriods
+from mascarin.validation.comparison import METRICS
 from mascarin.validation.criteria import Criterion
 
 if TYPE_CHECKING:
@@ -36,8 +37,7 @@ if TYPE_CHECKING:
 
 #: Names of models, metrics and series in the results; variants need other names.
 TAKEN: Final = (
-    "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
+    "nominal", "fitted", "unit", "n", *METRICS, "measured_range",
     "measured", "band", "expected", "as described", "observed", "weather", "state",
 )  # fmt: skip
 

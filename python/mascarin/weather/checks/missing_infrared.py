@@ -44,9 +44,9 @@ def sky_emission(air: Array, dew_point: Array, cloud_cover: Array) -> Array:
     >>> sky_emission(np.array([20.0]), np.array([10.0]), np.array([5.0])).round(2).tolist()
     [365.07]
     """
-    from mascarin.building.parts.site import CloudLayer, MartinBerdahlSky
+    from mascarin.building.parts.site import SKIES, CloudLayer
 
-    sky, cloud = MartinBerdahlSky(), CloudLayer()
+    sky, cloud = SKIES["MartinBerdahlSky"](), CloudLayer()
     dew = dew_point / 100.0
     clear = float(sky.a) + float(sky.b) * dew + float(sky.c) * dew * dew
     overcast = float(cloud.emissivity) * np.exp(-float(cloud.base) / _CLOUD_SCALE_HEIGHT)

@@ -11,7 +11,7 @@ use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::AIR_SPECIFIC_HEAT;
 use crate::physics::psychrometrics::{LATENT_HEAT, condensing_pressure};
-use crate::physics::sorption::VapourLayers;
+use crate::physics::vapour_layers::VapourLayers;
 
 /// Vapour that an ideal plant takes away or adds where no capacity is given [kg/s]: more than any building needs.
 const UNLIMITED: f64 = 1e6;

@@ -28,8 +28,7 @@ use crate::physics::air_flow::Path;
 use crate::physics::doors::Door;
 use crate::physics::flow_density::SiteAir;
 use crate::physics::formula::expression::Expression;
-use crate::physics::formula::function::Function;
-use crate::physics::longwave::{CloudEffect, sky_law};
+use crate::physics::longwave::SkyEmission;
 
 /// All coefficients of a run.
 #[derive(Debug, Clone)]
@@ -56,10 +55,8 @@ pub struct Coefficients<S> {
     pub bridges: Vec<Bridge<S>>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: S,
-    /// Effect of clouds on the sky's emission.
-    pub clouds: CloudEffect<S>,
-    /// The sky as text.
-    pub(crate) sky: Option<Function<S>>,
+    /// Emission of the sky.
+    pub sky: SkyEmission<S>,
     /// Vapour balance of the zones.
     pub humidity: Option<HumidityCoefficients<S>>,
     /// Outputs that are derived from others.
@@ -98,8 +95,7 @@ impl<S: Real> Coefficients<S> {
             vents: Vents::new(plan, &values),
             bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),
-            clouds: CloudEffect::new(&site.cloud, &values),
-            sky: sky_law(&site.sky, &values),
+            sky: SkyEmission::new(&site.sky, &site.cloud, &values),
             outputs: description.outputs.iter().map(|output| derived(output, &values)).collect(),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
         }

@@ -16,11 +16,9 @@ use crate::number::elementary::{cos_of_degrees, sin_of_degrees};
 use crate::number::real::Real;
 use crate::physics::convection::{Placement, SurfaceConvection};
 use crate::physics::horizon;
+use crate::physics::imposed::ImposedTemperature;
 use crate::physics::longwave::Emission;
 use crate::physics::solar::Plane;
-
-/// Angle of a day in the year [rad/d].
-pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;
 
 /// A surface.
 #[derive(Debug, Clone)]
@@ -79,13 +77,8 @@ pub struct Outdoors<S> {
 pub enum Imposed<S> {
     /// Forcing channel.
     Channel(usize),
-    /// `mean - amplitude cos(2 pi (day - coldest)/365)`.
-    Annual {
-        /// Annual mean [degC].
-        mean: S,
-        /// Amplitude times cosine and sine of the coldest day's angle [K].
-        swing: [S; 2],
-    },
+    /// A law.
+    Law(ImposedTemperature<S>),
 }
 
 impl<S: Real> SurfaceCoefficients<S> {
@@ -136,13 +129,9 @@ fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values
 
 /// The temperature that a contact imposes; none where it imposes none.
 pub(super) fn imposed<S: Real>(facing: &Facing, values: &Values<'_, S>) -> Option<Imposed<S>> {
-    match *facing {
+    match facing {
         Facing::Measured { channel } => Some(Imposed::Channel(CLIMATE_CHANNELS + channel)),
-        Facing::Ground { mean, amplitude, coldest_day } => {
-            let (amplitude, angle) = (values.get(amplitude), values.get(coldest_day).scale(PER_DAY));
-            let swing = [amplitude * angle.cos(), amplitude * angle.sin()];
-            Some(Imposed::Annual { mean: values.get(mean), swing })
-        }
+        Facing::Imposed { law } => ImposedTemperature::new(law, values).map(Imposed::Law),
         Facing::Zone { .. } | Facing::Outdoors | Facing::Adiabatic => None,
     }
 }

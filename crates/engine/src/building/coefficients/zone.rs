@@ -11,7 +11,7 @@ use crate::physics::air_flow::{self, Opening};
 use crate::physics::flow_density::{AirFlow, SiteAir};
 use crate::physics::formula::function::Function;
 use crate::physics::gains::{Gain, Thermostat};
-use crate::physics::leakage::{StackWind, leakage};
+use crate::physics::leakage::Leakage;
 use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
 
 use super::surface::SurfaceCoefficients;
@@ -26,8 +26,8 @@ pub struct ZoneCoefficients<S> {
     pub air_capacity: S,
     /// Infiltration: constant, by temperature difference, by wind [1/h], [1/(h K)], [1/(h m/s)].
     pub infiltration: [S; 3],
-    /// Infiltration by stack and wind, from a pressure test.
-    pub leakage: Option<StackWind<S>>,
+    /// Infiltration that wind and temperatures drive, from a pressure test.
+    pub leakage: Option<Leakage<S>>,
     /// Heat capacity of the zone's volume of the air that infiltrates [J/K]; none: at the density of the site.
     pub(crate) infiltrated_capacity: Option<AirFlow<S>>,
     /// Infiltration as text [1/h].
@@ -89,7 +89,7 @@ impl<S: Real> ZoneCoefficients<S> {
         };
         let air_capacity = values.get(definition.volume) * site.heat;
         let Infiltration { law, density, .. } = &definition.infiltration;
-        let (infiltration, by_stack_and_wind) = leaks(&definition.infiltration, values);
+        let (infiltration, driven_leakage) = leaks(&definition.infiltration, values);
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilated = |flow| air_flow::ventilation(flow, index, values, site, air_capacity);
         let infiltrated =
@@ -107,7 +107,7 @@ impl<S: Real> ZoneCoefficients<S> {
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration,
-            leakage: by_stack_and_wind,
+            leakage: driven_leakage,
             infiltrated_capacity: density.as_ref().map(infiltrated),
             infiltration_law: law.as_ref().map(|law| Function::of("infiltration", law, values)),
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
@@ -146,15 +146,12 @@ fn mixed<S: Real>(mixing: &Mixing, values: &Values<'_, S>) -> (S, Schedule) {
 }
 
 /// Infiltration by its three parts, with what a pressure test adds to the first, and that of a test by stack and wind.
-fn leaks<S: Real>(infiltration: &Infiltration, values: &Values<'_, S>) -> ([S; 3], Option<StackWind<S>>) {
+fn leaks<S: Real>(infiltration: &Infiltration, values: &Values<'_, S>) -> ([S; 3], Option<Leakage<S>>) {
     let Infiltration { constant, temperature, wind, leakage: test, .. } = infiltration;
     let mut rates = [constant, temperature, wind].map(|id| values.get(*id));
-    let by_stack_and_wind = test.as_ref().and_then(|test| {
-        let (constant, law) = leakage(test, values);
-        rates[0] += constant;
-        law
-    });
-    (rates, by_stack_and_wind)
+    let (constant, driven) = test.as_ref().map_or((None, None), |test| Leakage::of(test, values));
+    constant.into_iter().for_each(|rate| rates[0] += rate);
+    (rates, driven)
 }
 
 /// Ideal heating and cooling of a zone, and the parts of them that are radiated; none where all goes to the air.

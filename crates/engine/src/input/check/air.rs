@@ -105,7 +105,7 @@ fn check_bridge(description: &Description, bridge: &ThermalBridge) -> Checked {
         Facing::Zone { zone } => check_ends(description, &place, [bridge.zone, zone]),
         Facing::Measured { channel } => check_schedule(description, &place, Some(channel)),
         Facing::Adiabatic => refuse(place, "adiabatic", "outdoors, a zone or a temperature"),
-        Facing::Outdoors | Facing::Ground { .. } => Ok(()),
+        Facing::Outdoors | Facing::Imposed { .. } => Ok(()),
     }
 }
 

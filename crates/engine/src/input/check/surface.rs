@@ -35,8 +35,8 @@ pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checke
 
 fn check_side(description: &Description, place: &str, side: &Side, glazed: bool) -> Checked {
     let channels = description.channels.len();
-    match side.facing {
-        Facing::Zone { zone } => {
+    match &side.facing {
+        &Facing::Zone { zone } => {
             check_index(place, "zone", zone, description.zones.len())?;
             let exchanges = !matches!(description.zones[zone].longwave, ZoneLongwave::None);
             if side.convection.is_none() || (exchanges && side.emissivity.is_none()) {
@@ -52,8 +52,8 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
                 return refuse(place, "sun without it", "absorptance");
             }
         }
-        Facing::Measured { channel } => check_index(place, "channel", channel, channels)?,
-        Facing::Ground { .. } | Facing::Adiabatic => {}
+        Facing::Measured { channel } => check_index(place, "channel", *channel, channels)?,
+        Facing::Imposed { .. } | Facing::Adiabatic => {}
     }
     if let Some(flux) = &side.heat_flux {
         check_schedule(description, format_args!("{place}, heat flux"), flux.schedule)?;

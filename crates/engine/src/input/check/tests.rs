@@ -68,7 +68,8 @@ fn sound() -> Description {
              "inside": {"facing": {"kind": "zone", "zone": 0}, "emissivity": 2,
                 "convection": {"kind": "constant", "coefficient": 0}}},
             {"name": "floor", "construction": 0, "area": 1, "tilt": 9, "azimuth": 9,
-             "outside": {"facing": {"kind": "ground", "mean": 0, "amplitude": 0, "coldest_day": 0}},
+             "outside": {"facing": {"kind": "imposed",
+                "law": {"kind": "ground", "mean": 0, "amplitude": 0, "coldest_day": 0}}},
              "inside": {"facing": {"kind": "zone", "zone": 1},
                 "convection": {"kind": "constant", "coefficient": 0}}}
         ],
@@ -142,11 +143,11 @@ fn every_parameter_id_is_checked() {
     );
     refused(
         |d| {
-            if let Facing::Ground { coldest_day, .. } = &mut d.surfaces[3].outside.facing {
-                coldest_day.0 = 77;
+            if let Facing::Imposed { law } = &mut d.surfaces[3].outside.facing {
+                law.numbers[1].1.0 = 77;
             }
         },
-        &["surfaces[3].outside.facing.coldest_day"],
+        &["surfaces[3].outside.facing.law.coldest_day"],
     );
     refused(|d| d.sensors[0].depth.0 = 77, &["sensors[0].depth"]);
 }

@@ -1,17 +1,16 @@
 //! Surface heat transfer coefficients; equations and sources in `physics/convection`.
 
-use std::collections::BTreeMap;
-
 use serde::Deserialize;
 
 use super::parameter::ParamId;
+use super::published_law::{PublishedLaw, WrittenNumbers};
 
 /// Surface heat transfer coefficients [W/(m2 K)]; equations and sources in `physics/convection`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Written")]
 pub enum Convection {
     /// A published law.
-    Law(ConvectionLaw),
+    Law(PublishedLaw),
     /// A forcing channel [W/(m2 K)], times a factor.
     Measured {
         /// Index into [`Description::channels`](super::Description::channels).
@@ -30,29 +29,10 @@ pub enum Convection {
     },
 }
 
-/// A law of `physics/convection/laws` with its numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ConvectionLaw {
-    /// Name of its file.
-    pub kind: String,
-    /// Its numbers by name, in the order of their names; `upward.a` is `a` where heat flows up.
-    pub numbers: Vec<(String, ParamId)>,
-}
-
-impl ConvectionLaw {
-    /// The number of a name.
-    pub fn number(&self, name: &str) -> Option<ParamId> {
-        self.numbers.iter().find(|(other, _)| other == name).map(|(_, id)| *id)
-    }
-}
-
 impl Convection {
     /// A published law with its numbers.
     pub fn law(kind: &str, numbers: &[(&str, ParamId)]) -> Self {
-        let mut numbers: Vec<(String, ParamId)> =
-            numbers.iter().map(|(name, id)| ((*name).to_owned(), *id)).collect();
-        numbers.sort_by(|(a, _), (b, _)| a.cmp(b));
-        Self::Law(ConvectionLaw { kind: kind.to_owned(), numbers })
+        Self::Law(PublishedLaw::new(kind, numbers))
     }
 }
 
@@ -65,15 +45,7 @@ struct Written {
     valid: Option<String>,
     numbers: Option<Vec<FormulaNumber>>,
     #[serde(flatten)]
-    law: BTreeMap<String, Option<WrittenNumber>>,
-}
-
-/// A number of a law, or those of a direction of the flow of heat.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum WrittenNumber {
-    One(ParamId),
-    Group(BTreeMap<String, ParamId>),
+    law: WrittenNumbers,
 }
 
 impl TryFrom<Written> for Convection {
@@ -81,16 +53,7 @@ impl TryFrom<Written> for Convection {
 
     fn try_from(written: Written) -> Result<Self, String> {
         let Written { kind, channel, formula, valid, numbers, law } = written;
-        let mut ids = Vec::new();
-        for (name, number) in law {
-            match number {
-                Some(WrittenNumber::One(id)) => ids.push((name, id)),
-                Some(WrittenNumber::Group(group)) => {
-                    ids.extend(group.into_iter().map(|(inner, id)| (format!("{name}.{inner}"), id)));
-                }
-                None => {}
-            }
-        }
+        let PublishedLaw { kind, numbers: ids } = PublishedLaw::written(kind, law);
         match (kind.as_str(), channel, formula, numbers) {
             ("measured", Some(channel), None, None) => match ids.as_slice() {
                 [(name, factor)] if name == "factor" => Ok(Self::Measured { channel, factor: *factor }),
@@ -100,7 +63,7 @@ impl TryFrom<Written> for Convection {
                 Ok(Self::Formula { formula, valid, numbers })
             }
             ("measured" | "formula", ..) => Err(format!("found other keys than those of '{kind}'")),
-            (_, None, None, None) => Ok(Self::Law(ConvectionLaw { kind, numbers: ids })),
+            (_, None, None, None) => Ok(Self::Law(PublishedLaw { kind, numbers: ids })),
             _ => Err(format!("found a channel or a formula in '{kind}'")),
         }
     }
@@ -112,6 +75,10 @@ impl TryFrom<Written> for Convection {
 pub struct TextLaw {
     /// The law.
     pub formula: String,
+
+    /// Where it is valid; none: everywhere.
+    #[serde(default)]
+    pub valid: Option<String>,
 
     /// Its numbers.
     pub numbers: Vec<FormulaNumber>,

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::parameter::ParamId;
+use super::published_law::{PublishedLaw, WrittenNumbers};
 
 /// The vapour balance of all zones. None in a description: air without vapour.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -140,13 +141,10 @@ pub struct Buffer {
 
 /// Moisture content of a material by relative humidity.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(try_from = "WrittenSorption")]
 pub enum Sorption {
-    /// In proportion.
-    Linear {
-        /// Moisture content at a relative humidity of 1 [kg/m3].
-        capacity: ParamId,
-    },
+    /// A published law.
+    Law(PublishedLaw),
     /// Straight lines between points.
     Table {
         /// Relative humidities, increasing [-].
@@ -156,6 +154,36 @@ pub enum Sorption {
         /// Multiplies the contents [-].
         factor: ParamId,
     },
+}
+
+/// A sorption in JSON.
+#[derive(Deserialize)]
+struct WrittenSorption {
+    kind: String,
+    humidities: Option<Vec<f64>>,
+    contents: Option<Vec<f64>>,
+    #[serde(flatten)]
+    numbers: WrittenNumbers,
+}
+
+impl TryFrom<WrittenSorption> for Sorption {
+    type Error = String;
+
+    fn try_from(written: WrittenSorption) -> Result<Self, String> {
+        let WrittenSorption { kind, humidities, contents, numbers } = written;
+        let law = PublishedLaw::written(kind, numbers);
+        match (law.kind.as_str(), humidities, contents) {
+            ("table", Some(humidities), Some(contents)) => match law.numbers.as_slice() {
+                [(name, factor)] if name == "factor" => {
+                    Ok(Self::Table { humidities, contents, factor: *factor })
+                }
+                _ => Err("found a table with other numbers, expected its factor".into()),
+            },
+            ("table", ..) => Err("found a table without points, expected humidities and contents".into()),
+            (_, None, None) => Ok(Self::Law(law)),
+            _ => Err(format!("found points in '{}'", law.kind)),
+        }
+    }
 }
 
 /// Depth to which a swing of humidity penetrates.

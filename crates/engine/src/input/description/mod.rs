@@ -20,6 +20,7 @@ mod humidity;
 mod material;
 mod parameter;
 mod phase_change;
+mod published_law;
 mod site;
 mod surface;
 mod vent;
@@ -29,7 +30,7 @@ pub use air_flow::{AirPath, DirectedFlow, Door, Opening, UnitFlow, VentilationUn
 pub use bridge::ThermalBridge;
 pub use building::{DerivedOutput, Description, OutputPlace, UsedOutput};
 pub use construction::{Construction, Layer};
-pub use convection::{Convection, ConvectionLaw, FormulaNumber, TextLaw};
+pub use convection::{Convection, FormulaNumber, TextLaw};
 pub use flow_density::FlowDensity;
 pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use humidity::{
@@ -38,10 +39,10 @@ pub use humidity::{
 pub use material::Material;
 pub use parameter::{ParamId, Parameter};
 pub use phase_change::{MeltingCurve, PcmLaw, TablePoints, Tail};
-pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
+pub use published_law::PublishedLaw;
+pub use site::{Clouds, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, HeatFlux, OutdoorLongwave, Sensor, Side, Surface};
 pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};
 pub use zone::{
-    Gain, IdealLoad, Infiltration, Leakage, Mixing, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave,
-    ZoneSun,
+    Gain, IdealLoad, Infiltration, Mixing, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
 };

@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::convection::TextLaw;
 use super::parameter::ParamId;
+use super::published_law::{PublishedLaw, WrittenNumbers};
 
 /// Site constants that act in the engine. (Latitude and longitude act through the sun's path in the forcing.)
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -25,8 +26,8 @@ pub struct Site {
     pub sky: Sky,
     /// Effect of clouds on the sky's long-wave emission.
     pub cloud: Clouds,
-    /// Model of the sky's diffuse short-wave radiation.
-    pub diffuse: DiffuseSky,
+    /// Model of the sky's diffuse short-wave radiation: a file of `physics/diffuse/laws`.
+    pub diffuse: String,
     /// Azimuth, rising below 360, and elevation of what hides the sky [deg]; empty: nothing.
     #[serde(default)]
     pub horizon: Vec<[f64; 2]>,
@@ -49,43 +50,12 @@ pub struct WindProfile {
     pub layer: ParamId,
 }
 
-/// Sky emission models; see `physics/longwave` for equations and sources.
+/// Emission of the sky; equations and sources in `physics/longwave`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(try_from = "WrittenSky")]
 pub enum Sky {
-    /// Horizontal infrared of the climate [W/m2] (channel `infrared`), times a scale.
-    Measured {
-        /// Multiplies the channel [-].
-        scale: ParamId,
-    },
-    /// Emissivity `a + b ln(Tdp/273)`, Tdp in K.
-    ClarkAllen {
-        /// Constant [-].
-        a: ParamId,
-        /// Gain of the logarithm [-].
-        b: ParamId,
-    },
-    /// Emissivity `a + b (tdp/100) + c (tdp/100)^2`, tdp in degC.
-    MartinBerdahl {
-        /// Constant [-].
-        a: ParamId,
-        /// Linear gain [-].
-        b: ParamId,
-        /// Square gain [-].
-        c: ParamId,
-    },
-    /// Emissivity `a + b sqrt(pw)`, pw in hPa.
-    Brunt {
-        /// Constant [-].
-        a: ParamId,
-        /// Gain of the root [1/hPa^(1/2)].
-        b: ParamId,
-    },
-    /// Sky temperature = air temperature - depression [K].
-    Offset {
-        /// Air minus sky [K].
-        depression: ParamId,
-    },
+    /// A published model.
+    Law(PublishedLaw),
     /// An emissivity [-] or a temperature [degC] as text.
     Text {
         /// Whether it gives a temperature.
@@ -93,6 +63,32 @@ pub enum Sky {
         /// Of `To`, `Td`, `pw` and `cloud`.
         law: TextLaw,
     },
+}
+
+/// A sky in JSON.
+#[derive(Deserialize)]
+struct WrittenSky {
+    kind: String,
+    temperature: Option<bool>,
+    law: Option<TextLaw>,
+    #[serde(flatten)]
+    numbers: WrittenNumbers,
+}
+
+impl TryFrom<WrittenSky> for Sky {
+    type Error = String;
+
+    fn try_from(written: WrittenSky) -> Result<Self, String> {
+        let WrittenSky { kind, temperature, law, numbers } = written;
+        match (kind.as_str(), temperature, law) {
+            ("text", Some(temperature), Some(law)) if numbers.is_empty() => {
+                Ok(Self::Text { temperature, law })
+            }
+            ("text", ..) => Err("found other keys than those of 'text'".into()),
+            (_, None, None) => Ok(Self::Law(PublishedLaw::written(kind, numbers))),
+            _ => Err(format!("found a text in '{kind}'")),
+        }
+    }
 }
 
 /// Effect of clouds on the emissivity of the clear sky; see `physics/longwave` for sources.
@@ -108,16 +104,4 @@ pub enum Clouds {
         /// Height of their base above the ground [m].
         base: ParamId,
     },
-}
-
-/// Diffuse short-wave models on a tilted plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DiffuseSky {
-    /// Isotropic (Liu & Jordan 1963).
-    Isotropic,
-    /// Hay & Davies (1980).
-    HayDavies,
-    /// Perez et al. (1990), coefficients "all sites composite 1990".
-    Perez,
 }

@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::convection::Convection;
 use super::parameter::ParamId;
+use super::published_law::PublishedLaw;
 
 /// A plane wall or window between two sides. (A wall of the engine; "surfaces" of the engine are its two sides.)
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -141,16 +142,10 @@ pub enum Facing {
         /// Index into [`Description::zones`](super::Description::zones).
         zone: usize,
     },
-    /// Ground temperature [degC]: `mean - amplitude cos(2 pi (day - coldest_day)/365)`.
-    Ground {
-        /// Annual mean [degC].
-        mean: ParamId,
-
-        /// Half of the annual swing [K].
-        amplitude: ParamId,
-
-        /// Day of the year with the lowest temperature [d].
-        coldest_day: ParamId,
+    /// The temperature of a law of `physics/imposed`, such as that of the ground.
+    Imposed {
+        /// The law.
+        law: PublishedLaw,
     },
     /// Measured temperature: index into [`Description::channels`](super::Description::channels).
     Measured {
@@ -160,6 +155,14 @@ pub enum Facing {
 
     /// Nothing: no heat flows.
     Adiabatic,
+}
+
+impl Facing {
+    /// The temperature of a law with its numbers.
+    #[must_use]
+    pub fn imposed(kind: &str, numbers: &[(&str, ParamId)]) -> Self {
+        Self::Imposed { law: PublishedLaw::new(kind, numbers) }
+    }
 }
 
 /// Long-wave exchange of an `outdoors` side.

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::convection::TextLaw;
 use super::flow_density::FlowDensity;
 use super::parameter::ParamId;
+use super::published_law::PublishedLaw;
 
 /// A volume of well-mixed air.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -62,9 +63,9 @@ pub struct Infiltration {
     /// Air changes per wind speed at the mast [1/h per m/s].
     pub wind: ParamId,
 
-    /// What a pressure test adds to them. None: nothing.
+    /// What a pressure test adds to them: a law of `physics/leakage`. None: nothing.
     #[serde(default)]
-    pub leakage: Option<Leakage>,
+    pub leakage: Option<PublishedLaw>,
 
     /// Air changes as text, in addition. None: nothing.
     #[serde(default)]
@@ -73,30 +74,6 @@ pub struct Infiltration {
     /// Density of the air that air changes and flows are volumes of. None: that of the site.
     #[serde(default)]
     pub density: Option<FlowDensity>,
-}
-
-/// Infiltration by the air changes of a pressure test at 50 Pa; equations and sources in `physics/leakage.rs`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Leakage {
-    /// `factor n50`.
-    Factor {
-        /// Air changes at 50 Pa [1/h].
-        n50: ParamId,
-        /// Shielding [-].
-        factor: ParamId,
-    },
-    /// By stack and wind.
-    StackWind {
-        /// Air changes at 50 Pa [1/h].
-        n50: ParamId,
-        /// Exponent of the pressure difference [-].
-        exponent: ParamId,
-        /// Stack coefficient [(m/s)2/K], of flows in L/s and areas in cm2.
-        stack: ParamId,
-        /// Wind coefficient [-], of flows in L/s and areas in cm2.
-        wind: ParamId,
-    },
 }
 
 /// Long-wave exchange inside a zone.

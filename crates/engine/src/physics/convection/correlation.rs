@@ -2,10 +2,8 @@
 
 use super::natural::{Coefficient, Difference};
 use super::wind::{Forced, Wind, WindTerms};
-use crate::input::description::ConvectionLaw;
-use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::law_row::LawRow;
+use crate::physics::law_row::{LawRow, Numbers};
 
 /// Where a surface lies: what turns the wind at the mast and gravity into those at the surface.
 #[derive(Debug, Clone, Copy)]
@@ -88,26 +86,4 @@ pub(crate) trait NamedLaw<S: Real>: Correlation<S> + WindPart<S> + Sized {
 
     /// Reads its numbers for a surface.
     fn new(number: &Numbers<'_, S>, surface: &Placement<S>) -> Self;
-}
-
-/// The values of the numbers of a law, by name.
-pub(crate) struct Numbers<'a, S> {
-    values: &'a Values<'a, S>,
-    law: &'a ConvectionLaw,
-}
-
-impl<'a, S: Real> Numbers<'a, S> {
-    pub(crate) fn new(values: &'a Values<'a, S>, law: &'a ConvectionLaw) -> Self {
-        Self { values, law }
-    }
-
-    /// A number of the row.
-    pub(crate) fn of(&self, name: &str) -> S {
-        self.optional(name).expect("a plan knows the numbers of its laws")
-    }
-
-    /// A number of the row that outdoor sides alone have.
-    pub(crate) fn optional(&self, name: &str) -> Option<S> {
-        self.law.number(name).map(|id| self.values.get(id))
-    }
 }

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use super::correlation::{Correlation, NamedLaw, Numbers, Placement, WindPart};
+use super::correlation::{Correlation, NamedLaw, Placement, WindPart};
 use super::formula::Formula;
 use super::formula_text::FormulaText;
 use super::laws::{self, with_laws};
 use super::measured::Measured;
 use super::natural::{Coefficient, Difference};
 use super::wind::{Driven, Forced, Surroundings, Wind, WindTerms};
-use crate::input::description::{Convection, ConvectionLaw};
+use crate::input::description::{Convection, PublishedLaw};
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::law_row::{LawEntry, LawRow};
+use crate::physics::law_row::{LawEntry, LawRow, Numbers};
 
 /// Heat flow from surface to air and its slope in `T_surface - T_air`.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +63,7 @@ macro_rules! laws {
 
         impl<S: Real> Law<S> {
             /// The law of a kind.
-            fn named(law: &ConvectionLaw, number: &Numbers<'_, S>, surface: &Placement<S>) -> Option<Self> {
+            fn named(law: &PublishedLaw, number: &Numbers<'_, S>, surface: &Placement<S>) -> Option<Self> {
                 match law.kind.as_str() {
                     $($kind => Some(Self::$law(<laws::$module::$law<S> as NamedLaw<S>>::new(number, surface))),)*
                     _ => None,
@@ -117,7 +117,7 @@ macro_rules! laws {
         }
 
         /// The terms of the wind that a law needs.
-        fn terms(law: &ConvectionLaw) -> WindTerms {
+        fn terms(law: &PublishedLaw) -> WindTerms {
             let terms = match law.kind.as_str() {
                 $($kind => <laws::$module::$law<f64> as WindPart<f64>>::WIND,)*
                 _ => None,
@@ -126,7 +126,7 @@ macro_rules! laws {
         }
 
         /// What a law says of itself; none for a kind that is no law.
-        pub(crate) fn row(law: &ConvectionLaw) -> Option<LawRow> {
+        pub(crate) fn row(law: &PublishedLaw) -> Option<LawRow> {
             match law.kind.as_str() {
                 $($kind => Some(<laws::$module::$law<f64> as NamedLaw<f64>>::ROW),)*
                 _ => None,

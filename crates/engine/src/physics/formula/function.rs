@@ -259,10 +259,19 @@ fn collect(graph: &Graph, parts: &[Id], found: &mut Vec<Id>) {
     }
 }
 
+/// Values of all names at a point: the names that change, a sum of two of them, the numbers.
+pub(crate) fn names(kind: &Kind, point: &[f64], given: &[f64]) -> Vec<f64> {
+    let sum = kind.sum.map(|other| point[0] + point[other]);
+    point.iter().copied().chain(sum).chain(given.iter().copied()).collect()
+}
+
 /// A law as text with its numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Function<S> {
+    kind: &'static Kind,
     text: FunctionText,
+    /// Its numbers as they are given.
+    given: Box<[S]>,
     numbers: Box<[S]>,
     /// Values of the first name between which it is used as it is.
     ends: [f64; 2],
@@ -275,15 +284,20 @@ impl<S: Real> Function<S> {
     pub(crate) fn of(kind: &str, law: &TextLaw, values: &Values<'_, S>) -> Self {
         let names: Vec<&str> = law.numbers.iter().map(|number| number.name.as_str()).collect();
         let numbers: Vec<S> = law.numbers.iter().map(|number| values.get(number.value)).collect();
-        Self::new(Kind::named(kind), &law.formula, &names, &numbers)
+        Self::new(Kind::named(kind), (&law.formula, law.valid.as_deref()), &names, &numbers)
     }
 
     /// Reads a law whose text a plan has checked.
     ///
     /// # Panics
     /// For a text that cannot be read: a plan refuses it.
-    pub(crate) fn new(kind: &Kind, formula: &str, names: &[&str], values: &[S]) -> Self {
-        let text = FunctionText::new(kind, formula, None, names).expect("a plan reads its formulas");
+    pub(crate) fn new(
+        kind: &'static Kind,
+        (formula, valid): (&str, Option<&str>),
+        names: &[&str],
+        values: &[S],
+    ) -> Self {
+        let text = FunctionText::new(kind, formula, valid, names).expect("a plan reads its formulas");
         let known: Vec<S> = (text.given.iter())
             .map(|given| match *given {
                 Given::Constant(value) => S::constant(value),
@@ -292,6 +306,8 @@ impl<S: Real> Function<S> {
             .collect();
         let grid = kind.variables[0].grid;
         Self {
+            kind,
+            given: values.into(),
             numbers: text.run.compute_all(&known).into(),
             ends: [grid[0], grid[grid.len() - 1]],
             limits: kind.limits,
@@ -300,9 +316,27 @@ impl<S: Real> Function<S> {
         }
     }
 
-    /// Whether a name that changes is used.
+    /// Whether its formula uses a name that changes.
     pub(crate) fn uses(&self, place: usize) -> bool {
-        self.text.uses(place)
+        self.text.tree.uses(place)
+    }
+
+    /// Whether it says where it holds.
+    pub(crate) fn limited(&self) -> bool {
+        self.text.valid.is_some()
+    }
+
+    /// Name, unit in words and value of the names that its `valid` uses, where it does not hold at values of the names that change.
+    pub(crate) fn beyond(&self, point: &[f64]) -> Option<Vec<(&'static str, &'static str, f64)>> {
+        let valid = self.text.valid.as_ref()?;
+        let given: Vec<f64> = self.given.iter().map(|number| number.lane(0)).collect();
+        let names = names(self.kind, point, &given);
+        if valid.holds(&names) {
+            return None;
+        }
+        let variables = self.kind.variables.iter().enumerate();
+        let used = variables.filter(|(place, _)| valid.uses(*place));
+        Some(used.map(|(place, variable)| (variable.name, variable.words, names[place])).collect())
     }
 
     /// Value and slope by the first name; `others`: the names that are no sum, in their order.

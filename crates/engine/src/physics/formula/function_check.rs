@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use super::function::{FunctionText, Kind};
+use super::function::{FunctionText, Kind, names};
 use super::lexer::fault;
 use super::units;
 use super::{FormulaFault, LawNumber, Position, corners};
@@ -156,12 +156,6 @@ impl FunctionLaw<'_> {
     }
 }
 
-/// Values of all names at a point.
-fn names(kind: &Kind, point: &[f64], given: &[f64]) -> Vec<f64> {
-    let sum = kind.sum.map(|other| point[0] + point[other]);
-    point.iter().copied().chain(sum).chain(given.iter().copied()).collect()
-}
-
 fn refusal(at: Position, found: String, expected: &str) -> FormulaFault {
     let remedy = "Write 'valid:' with the range in which the law holds, or correct the formula.";
     FormulaFault { key: "formula".into(), fault: fault(at, found, expected, remedy) }
@@ -194,7 +188,7 @@ mod tests {
         ] {
             let numbers = [number("a", 0.6, None, None), number("b", 0.02, None, None)];
             let law = FunctionLaw { kind, formula, valid: None, numbers: &numbers };
-            let plain = Function::<f64>::new(Kind::named(kind), formula, &["a", "b"], &[0.6, 0.02]);
+            let plain = Function::<f64>::new(Kind::named(kind), (formula, None), &["a", "b"], &[0.6, 0.02]);
             for first in [-11.0, 3.0, 25.0] {
                 let point: Vec<f64> = core::iter::once(first).chain(others.clone()).collect();
                 let [value, slope] = plain.at(first, &others);
@@ -204,11 +198,12 @@ mod tests {
                 assert!((slope - quotient).abs() < 1e-7, "{kind} at {first}: {slope} is not {quotient}");
                 let mut values = [0.6, 0.02].map(Dual::<2>::constant);
                 (values[0].slope[0], values[1].slope[1]) = (1.0, 1.0);
-                let dual = Function::new(Kind::named(kind), formula, &["a", "b"], &values);
+                let dual = Function::new(Kind::named(kind), (formula, None), &["a", "b"], &values);
                 let others: Vec<_> = others.iter().map(|&other| Dual::constant(other)).collect();
                 let by = dual.at(Dual::constant(first), &others)[0];
                 let with = |b: f64| {
-                    let law = Function::<f64>::new(Kind::named(kind), formula, &["a", "b"], &[0.6, b]);
+                    let law =
+                        Function::<f64>::new(Kind::named(kind), (formula, None), &["a", "b"], &[0.6, b]);
                     let others: Vec<f64> = others.iter().map(|other| other.value).collect();
                     law.at(first, &others)[0]
                 };

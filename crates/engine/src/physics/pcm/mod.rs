@@ -157,6 +157,14 @@ impl<S: Real> PcmCoefficients<S> {
         }
     }
 
+    /// The conductivity, where it is written as text and says where it holds.
+    pub(crate) fn limited_conductivity(&self) -> Option<&Function<S>> {
+        match &self.law {
+            Law::Sensible(law) if law.limited() => Some(law),
+            _ => None,
+        }
+    }
+
     /// Properties at a temperature [degC].
     pub fn at(&self, temperature: S, history: &PcmHistory<S>) -> PcmPoint<S> {
         let mut point = PcmPoint::zero();

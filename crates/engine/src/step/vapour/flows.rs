@@ -8,7 +8,7 @@ use crate::number::real::Real;
 use crate::physics::constants::KELVIN;
 use crate::physics::doors;
 use crate::physics::psychrometrics::VAPOUR_GAS_CONSTANT;
-use crate::physics::sorption::VapourLayers;
+use crate::physics::vapour_layers::VapourLayers;
 use crate::step::film::film;
 use crate::weather::conditions::Conditions;
 use crate::weather::humidity::Plant;

@@ -1,7 +1,7 @@
 //! Vapour that a surface takes up in a stage, as a straight line of the humidity ratio of the air.
 
 use crate::number::real::{ByPrecision, Mask, Real};
-use crate::physics::sorption::VapourLayers;
+use crate::physics::vapour_layers::VapourLayers;
 
 use super::flows::SurfaceFlows;
 

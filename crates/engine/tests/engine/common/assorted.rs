@@ -1,7 +1,7 @@
 //! Buildings with the laws and options that the other samples leave out.
 
 use mascarin_engine::description::{
-    Angular, Convection, Description, DiffuseSky, Exposure, Facing, Gap, Gas, Glazing, OutdoorLongwave,
+    Angular, Convection, Description, Exposure, Facing, Gap, Gas, Glazing, OutdoorLongwave, PublishedLaw,
     SetPoint, Sky, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
@@ -16,18 +16,17 @@ use super::set;
 pub fn assorted_cell(sky: usize) -> Description {
     let mut d = conditioned(0.04);
     d.channels.extend(["irradiance", "set_point"].map(str::to_owned));
-    (d.site.sky, d.site.diffuse) = match sky {
-        0 => (Sky::Measured { scale: number(&mut d, "sky.scale", 0.97) }, DiffuseSky::Isotropic),
-        1 => {
-            let (a, b) = (number(&mut d, "sky.a", 0.787), number(&mut d, "sky.b", 0.764));
-            (Sky::ClarkAllen { a, b }, DiffuseSky::HayDavies)
-        }
-        2 => {
-            let (a, b) = (number(&mut d, "sky.a", 0.51), number(&mut d, "sky.b", 0.066));
-            (Sky::Brunt { a, b }, DiffuseSky::Perez)
-        }
-        _ => (Sky::Offset { depression: number(&mut d, "sky.depression", 11.0) }, DiffuseSky::HayDavies),
+    let (kind, numbers, diffuse): (&str, &[(&str, f64)], &str) = match sky {
+        0 => ("measured", &[("scale", 0.97)], "isotropic"),
+        1 => ("clark_allen", &[("a", 0.787), ("b", 0.764)], "hay_davies"),
+        2 => ("brunt", &[("a", 0.51), ("b", 0.066)], "perez"),
+        _ => ("offset", &[("depression", 11.0)], "hay_davies"),
     };
+    let mut put =
+        |&(name, value): &(&'static str, f64)| (name, number(&mut d, &format!("sky.{name}"), value));
+    let numbers: Vec<_> = numbers.iter().map(&mut put).collect();
+    d.site.sky = Sky::Law(PublishedLaw::new(kind, &numbers));
+    d.site.diffuse = diffuse.to_owned();
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.18));
 
     let doe2 = Convection::law(
@@ -46,10 +45,13 @@ pub fn assorted_cell(sky: usize) -> Description {
     south.irradiance = Some(2);
     south.exposure = Exposure { sun: true, wind: false, sky: false };
     d.surfaces[3].outside.longwave = OutdoorLongwave::None;
-    d.surfaces[4].outside.facing = Facing::Ground {
-        mean: number(&mut d, "ground.mean", 21.0),
-        amplitude: number(&mut d, "ground.amplitude", 3.0),
-        coldest_day: number(&mut d, "ground.coldest_day", 30.0),
+    d.surfaces[4].outside.facing = {
+        let numbers = [
+            ("mean", number(&mut d, "ground.mean", 21.0)),
+            ("amplitude", number(&mut d, "ground.amplitude", 3.0)),
+            ("coldest_day", number(&mut d, "ground.coldest_day", 30.0)),
+        ];
+        Facing::imposed("ground", &numbers)
     };
 
     d.zones[0].infiltration.temperature = number(&mut d, "room.infiltration.temperature", 0.02);

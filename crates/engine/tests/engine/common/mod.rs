@@ -14,9 +14,9 @@ pub mod random;
 use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{
-    Clouds, Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer,
-    Material, MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, Sensor, Side, Site, Sky, Surface,
-    WindProfile, Zone, ZoneLongwave, ZoneSun,
+    Clouds, Construction, Convection, Description, Exposure, Facing, Infiltration, Layer, Material,
+    MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PublishedLaw, Sensor, Side, Site, Sky,
+    Surface, WindProfile, Zone, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
@@ -66,17 +66,20 @@ impl Builder {
                 exponent: add("site.wind.exponent", 0.22),
                 layer: add("site.wind.layer", 370.0),
             },
-            sky: Sky::MartinBerdahl {
-                a: add("site.sky.a", 0.711),
-                b: add("site.sky.b", 0.56),
-                c: add("site.sky.c", 0.73),
-            },
+            sky: Sky::Law(PublishedLaw::new(
+                "martin_berdahl",
+                &[
+                    ("a", add("site.sky.a", 0.711)),
+                    ("b", add("site.sky.b", 0.56)),
+                    ("c", add("site.sky.c", 0.73)),
+                ],
+            )),
             cloud: Clouds::Factor([
                 add("site.cloud.c1", 0.0224),
                 add("site.cloud.c2", -0.0035),
                 add("site.cloud.c3", 0.00028),
             ]),
-            diffuse: DiffuseSky::Perez,
+            diffuse: "perez".to_owned(),
             horizon: Vec::new(),
         };
         let description = Description {

@@ -6,9 +6,10 @@ use core::f64::consts::TAU;
 
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{
-    AirPath, Construction, Convection, Description, DiffuseSky, Exposure, Facing, FormulaNumber, FrameShare,
-    Gain, Gap, Gas, Glazing, IdealLoad, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
-    ParamId, Parameter, PcmLaw, SetPoint, Side, Sky, TablePoints, Tail, Ventilation, ZoneLongwave, ZoneSun,
+    AirPath, Construction, Convection, Description, Exposure, Facing, FormulaNumber, FrameShare, Gain, Gap,
+    Gas, Glazing, IdealLoad, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId,
+    Parameter, PcmLaw, PublishedLaw, SetPoint, Side, Sky, TablePoints, Tail, Ventilation, ZoneLongwave,
+    ZoneSun,
 };
 use mascarin_engine::forcing::channel;
 use mascarin_engine::laws::{self, LawEntry, LawRange, Sides};
@@ -167,9 +168,10 @@ impl Case {
         let value = |id: ParamId| self.description.parameters[id.0 as usize].value;
         for surface in &self.description.surfaces {
             for side in [&surface.outside, &surface.inside] {
-                if let Facing::Ground { mean, amplitude, .. } = side.facing {
-                    add(value(mean) - value(amplitude));
-                    add(value(mean) + value(amplitude));
+                if let Facing::Imposed { law } = &side.facing {
+                    let number = |name| law.number(name).map_or(0.0, value);
+                    add(number("mean") - number("amplitude"));
+                    add(number("mean") + number("amplitude"));
                 }
             }
         }
@@ -466,6 +468,7 @@ impl Maker<'_> {
                     LawRange::Percent(part, _) => {
                         (number.example * (1.0 - part / 100.0), number.example * (1.0 + part / 100.0))
                     }
+                    LawRange::Within(half, _) => (number.example - half, number.example + half),
                     LawRange::Span(low, high, _) => (low, high),
                 };
                 let id = self.number(&format!("convection.{}", number.name), low, high);
@@ -525,12 +528,12 @@ impl Maker<'_> {
             // Both surfaces in one zone.
             kind if kind < 0.7 => self.inside(zone),
             kind if kind < 0.8 => {
-                let ground = Facing::Ground {
-                    mean: self.number("ground.mean", 12.0, 18.0),
-                    amplitude: self.number("ground.amplitude", 0.0, 5.0),
-                    coldest_day: self.number("ground.coldest_day", 20.0, 60.0),
-                };
-                facing(ground, convection)
+                let numbers = [
+                    ("mean", self.number("ground.mean", 12.0, 18.0)),
+                    ("amplitude", self.number("ground.amplitude", 0.0, 5.0)),
+                    ("coldest_day", self.number("ground.coldest_day", 20.0, 60.0)),
+                ];
+                facing(Facing::imposed("ground", &numbers), convection)
             }
             kind if kind < 0.9 => facing(Facing::Measured { channel: MEASURED }, convection),
             _ => facing(Facing::Adiabatic, None),
@@ -648,16 +651,33 @@ impl Maker<'_> {
         if self.random.chance(0.5) {
             d.site.air_density = Some(number(d, "site.air_density", self.random.between(1.1, 1.25)));
         }
-        d.site.diffuse = self.random.of(&[DiffuseSky::Perez, DiffuseSky::HayDavies, DiffuseSky::Isotropic]);
-        let mut put = |leaf: &str, value: f64| number(d, &format!("site.sky.{leaf}"), value);
-        let sky = match self.random.below(5) {
-            0 => Sky::Measured { scale: put("scale", 1.0) },
-            1 => Sky::ClarkAllen { a: put("a", 0.787), b: put("b", 0.764) },
-            2 => Sky::Brunt { a: put("a", 0.618), b: put("b", 0.056) },
-            3 => Sky::Offset { depression: put("depression", 9.0) },
+        // These models keep their draws, so that random buildings stay as they are; those that the tables have beside them are drawn, too.
+        let kinds = ["perez", "hay_davies", "isotropic"];
+        d.site.diffuse = self.random.of(&kinds).to_owned();
+        let others = laws::diffuse().into_iter().filter(|entry| !kinds.contains(&entry.kind));
+        let others: Vec<_> = others.collect();
+        if !others.is_empty() && self.random.chance(0.3) {
+            self.random.of(&others).kind.clone_into(&mut d.site.diffuse);
+        }
+        let drawn = ["measured", "clark_allen", "brunt", "offset", "martin_berdahl"];
+        let others: Vec<_> = laws::sky().into_iter().filter(|entry| !drawn.contains(&entry.kind)).collect();
+        if !others.is_empty() && self.random.chance(0.3) {
+            let LawEntry { kind, row, .. } = self.random.of(&others);
+            let numbers = row.numbers.iter();
+            let numbers: Vec<_> =
+                numbers.map(|n| (n.name, number(d, &format!("site.sky.{}", n.name), n.example))).collect();
+            d.site.sky = Sky::Law(PublishedLaw::new(kind, &numbers));
+            return;
+        }
+        let mut put = |leaf: &'static str, value: f64| (leaf, number(d, &format!("site.sky.{leaf}"), value));
+        let (kind, numbers) = match self.random.below(5) {
+            0 => (drawn[0], vec![put("scale", 1.0)]),
+            1 => (drawn[1], vec![put("a", 0.787), put("b", 0.764)]),
+            2 => (drawn[2], vec![put("a", 0.618), put("b", 0.056)]),
+            3 => (drawn[3], vec![put("depression", 9.0)]),
             _ => return,
         };
-        d.site.sky = sky;
+        d.site.sky = Sky::Law(PublishedLaw::new(kind, &numbers));
     }
 
     fn frame(&mut self, d: &mut Description) -> Construction {

@@ -1,38 +1,31 @@
 """Surface heat transfer coefficients: the published laws of the engine's table, measured ones, formulas.
 
-Each law of the table (`mascarin.building.parts.envelope.law_table`) is a class here: `Constant`, `Tarp`
+Each law of the table (`mascarin.building.base.law_table`) is a class here: `Constant`, `Tarp`
 and so on.
 """
 
 from __future__ import annotations
 
-import functools
-import operator
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeGuard
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypeGuard
 
 from pydantic import Field, create_model
 
+from mascarin.building.base.law_classes import PublishedLaw, example_of, union_of
+from mascarin.building.base.law_table import CONVECTION as ROWS
+from mascarin.building.base.law_table import LawNumber, LawRow
 from mascarin.building.base.number import Number, Remark
 from mascarin.building.base.part import Part
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
-from mascarin.building.parts.envelope.law_table import CONVECTION as ROWS
-from mascarin.building.parts.envelope.law_table import LawNumber, LawRow
 from mascarin.building.parts.envelope.published_laws import LawShorthand
 
 
-class ConvectionLaw(Part):
+class ConvectionLaw(PublishedLaw):
     """A published law of convection with its numbers."""
 
-    #: What the engine says of it.
-    row: ClassVar[LawRow]
-
     if TYPE_CHECKING:
-        kind: str
 
         def __init__(self, **numbers: Any) -> None: ...
-
-        def __getattr__(self, name: str) -> Any: ...
 
     def values(self, *, wind: bool | None = None) -> Iterator[tuple[str, LawNumber, Number]]:
         """Numbers that it has: key below the law, what it is, value.
@@ -61,21 +54,10 @@ class ConvectionLaw(Part):
 def _example(row: LawRow) -> str:
     """Section of a docstring with an example that can be run."""
     name = row.class_name
-    if row.by_direction:
-        arguments = ", ".join(
-            f'{way}={{"{row.numbers[0].name}": {row.numbers[0].example:g}}}' for way in _WAYS
-        )
-        shown = ", ".join(f"{way}={name}Law" for way in _WAYS)
-    else:
-        required = [number for number in row.numbers if number.required]
-        arguments = ", ".join(f"{number.name}={number.example:g}" for number in required)
-        values = {number.name: number.example for number in required}
-        values |= {n.name: float(n.default) for n in row.numbers if n.default is not None}
-        shown = ", ".join(
-            f"{n.name}={Number(values[n.name], quantity=n.quantity).with_unit()}"
-            for n in row.numbers
-            if n.name in values
-        )
+    if not row.by_direction:
+        return example_of(row, name)
+    arguments = ", ".join(f'{way}={{"{row.numbers[0].name}": {row.numbers[0].example:g}}}' for way in _WAYS)
+    shown = ", ".join(f"{way}={name}Law" for way in _WAYS)
     return f"Examples\n--------\n>>> {name}({arguments})\n{name}({shown})"
 
 
@@ -140,7 +122,7 @@ else:
     _LAWS = [law for law in CLASSES.values() if issubclass(law, ConvectionLaw)]
     _LAWS.sort(key=lambda law: law.row.kind != "constant")
     Convection = Annotated[
-        functools.reduce(operator.or_, [*_LAWS, Measured, FormulaLaw]),
+        union_of([*_LAWS, Measured, FormulaLaw]),
         Field(discriminator="kind"),
         LawShorthand(
             word="kind",
@@ -173,4 +155,4 @@ def by_wind_direction(convection: Convection | None) -> bool:
 CONVECTION = "Surface heat transfer coefficient: a number [W/(m2 K)], or a correlation"
 
 #: Sources of the correlations.
-SOURCES: Final = {kind: row.source for kind, row in ROWS.items() if row.source is not None}
+SOURCES: Final = {kind: row.sources for kind, row in ROWS.items() if row.sources}

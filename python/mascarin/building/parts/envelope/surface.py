@@ -23,9 +23,13 @@ from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand, fault, insist, refuse
 from mascarin.building.base.time_series import Columns
 from mascarin.building.parts.envelope.convection import CONVECTION, Convection, by_wind_direction
+from mascarin.building.parts.envelope.imposed import GROUND, ImposedTemperature
 from mascarin.building.parts.envelope.measured_values import Driven
 
-FACINGS = ("outdoors", "zone", "ground", "measured", "scheduled", "heat_flux", "adiabatic")
+FACINGS = ("outdoors", "zone", "ground", "imposed", "measured", "scheduled", "heat_flux", "adiabatic")
+
+#: Quantities of the ground, as the engine has them.
+_MEAN, _AMPLITUDE, _COLDEST_DAY = (number.quantity for number in GROUND.numbers)
 
 
 class Layer(Part):
@@ -139,9 +143,9 @@ class Ground(Part):
         "measured": "Write 'measured: COLUMN' in the side, in place of 'ground:'."
     }
 
-    mean: q.GroundTemperature
-    amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not given: the same all year"))
-    coldest_day: q.ColdestDay | None = None
+    mean: Annotated[Number, _MEAN]
+    amplitude: Annotated[Number, _AMPLITUDE] = Number(0.0, source=Remark("not given: the same all year"))
+    coldest_day: Annotated[Number, _COLDEST_DAY] | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -235,6 +239,9 @@ class Side(Part):
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
+    imposed: ImposedTemperature | None = Field(
+        None, description="Touches something whose temperature follows a law, such as soil at a depth"
+    )
     measured: Columns | None = Field(
         None,
         description="Faces air of this measured column, or of the mean of several; without convection, "
@@ -272,7 +279,7 @@ class Side(Part):
 
     @property
     def faces(self) -> str:
-        """Which of the kinds of surroundings the side faces."""
+        """Which kind of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
 
     @property
@@ -293,6 +300,8 @@ class Side(Part):
             return f"measured {' and '.join(self.measured_columns)}"
         if self.scheduled is not None:
             return f"schedule {self.scheduled}"
+        if self.imposed is not None:
+            return self.imposed.row.title
         return self.zone or self.faces
 
     def in_short(self) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.base.law_classes import PublishedLaw, classes_of, union_of
+from mascarin.building.base.law_table import SORPTION
 from mascarin.building.base.number import Number, Remark, problem
 from mascarin.building.base.part import Part, Shorthand, derived_number
 
@@ -86,21 +88,28 @@ class Published(Part):
         return list(_POINTS), [density * curve.content(humidity) for humidity in _POINTS]
 
 
-class LinearSorption(Part):
-    """A moisture content in proportion to the relative humidity.
+class SorptionLaw(PublishedLaw):
+    """A published law of the moisture content: a class for each row of the engine's table."""
 
-    Examples
-    --------
-    >>> LinearSorption(capacity=12, vapour_resistance=8)
-    LinearSorption(capacity=12 kg/m3, vapour_resistance=8)
-    """
+    if TYPE_CHECKING:
 
-    has_usual_kind: ClassVar[bool] = True
-    kind: Literal["linear"] = "linear"
-    capacity: q.MoistureCapacity
-    vapour_resistance: q.VapourResistance
-    depth: q.PenetrationDepth | None = None
-    deep_depth: q.PenetrationDepth | None = None
+        def __init__(self, **numbers: Any) -> None: ...
+
+
+#: Classes of the laws by their names: `LinearSorption` and so on.
+SORPTIONS: Final = classes_of(
+    SORPTION.values(),
+    SorptionLaw,
+    "{}Sorption",
+    common={
+        "vapour_resistance": (q.VapourResistance, ...),
+        "depth": (q.PenetrationDepth | None, None),
+        "deep_depth": (q.PenetrationDepth | None, None),
+    },
+    examples={"vapour_resistance": 8.0},
+)
+SORPTIONS["LinearSorption"].has_usual_kind = True
+globals().update(SORPTIONS)
 
 
 class TabulatedSorption(Part):
@@ -157,9 +166,16 @@ def _kind(raw: Any) -> str:
     return str(raw.get("kind", meant))
 
 
-Sorption = Annotated[
-    Annotated[Published, Shorthand(word="like"), Tag("published")]
-    | Annotated[LinearSorption, Tag("linear")]
-    | Annotated[TabulatedSorption, Tag("table")],
-    Discriminator(_kind),
-]
+if TYPE_CHECKING:
+    Sorption = Published | SorptionLaw | TabulatedSorption
+else:
+    Sorption = Annotated[
+        union_of(
+            [
+                Annotated[Published, Shorthand(word="like"), Tag("published")],
+                *(Annotated[law, Tag(law.row.kind)] for law in SORPTIONS.values()),
+                Annotated[TabulatedSorption, Tag("table")],
+            ]
+        ),
+        Discriminator(_kind),
+    ]

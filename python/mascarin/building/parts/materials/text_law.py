@@ -202,8 +202,13 @@ class TextSky(TextLaw):
 
     @property
     def clouded(self) -> bool:
-        """Whether clouds are in the formula, or a temperature is given."""
-        return self.of == "temperature" or "cloud" in self.names
+        """Whether `Site.cloud` has no effect: clouds are in the formula, or a temperature is given."""
+        return self.of == "temperature" or "cloud" in names_in(self.formula)
+
+    @property
+    def weather(self) -> frozenset[str]:
+        """Columns of the weather that it needs."""
+        return frozenset({"dew_point", "cloud_cover"})
 
     def value(
         self,
@@ -234,4 +239,4 @@ class TextSky(TextLaw):
 def numbers_of(law: TextLaw, ids: Any, prefix: str) -> dict[str, Any]:
     """Describe a law to the engine: its formula, and the ids of its numbers."""
     numbers = [{"name": name, "value": ids(f"{prefix}{name}")} for name in law.numbers]
-    return {"formula": law.formula, "numbers": numbers}
+    return {"formula": law.formula, "valid": law.valid, "numbers": numbers}

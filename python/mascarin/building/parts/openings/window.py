@@ -92,6 +92,11 @@ class WindowOutside(Part):
         """Never."""
         return
 
+    @property
+    def imposed(self) -> None:
+        """Never."""
+        return
+
 
 class WindowInside(Part):
     """The inner side of a window.
@@ -126,6 +131,11 @@ class WindowInside(Part):
 
     @property
     def ground(self) -> None:
+        """Never."""
+        return
+
+    @property
+    def imposed(self) -> None:
         """Never."""
         return
 

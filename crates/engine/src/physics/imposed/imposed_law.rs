@@ -1,0 +1,64 @@
+//! What every law of an imposed temperature offers, the weather that it is given, and numbers that several have.
+
+use crate::number::real::Real;
+use crate::physics::law_row::{LawParameter, LawRange, LawRow, Limits, Numbers};
+
+/// Angle of a day in the year [rad/d].
+pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;
+
+/// A law of the temperature of what a side, or a thermal bridge, is in contact with. Where a side has convection it is the temperature
+/// of the air in front of it.
+pub(crate) trait ImposedLaw<S: Real>: Sized {
+    /// What it says of itself.
+    const ROW: LawRow;
+
+    /// Reads its numbers.
+    fn new(number: &Numbers<'_, S>) -> Self;
+
+    /// The temperature at an instant [degC].
+    fn temperature(&self, at: &ImposedWeather) -> S;
+}
+
+/// What imposed temperatures depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct ImposedWeather {
+    /// Cosine and sine of the angle of the day in the year, [`PER_DAY`] times the day.
+    pub season: [f64; 2],
+    /// Temperature of the outdoor air [degC].
+    pub outdoor_air: f64,
+}
+
+/// Limits of temperatures [degC].
+pub(crate) const TEMPERATURES: Limits = Limits { above: None, at_least: Some(-100.0), at_most: Some(1000.0) };
+
+/// Annual mean of the ground.
+pub(crate) const MEAN: LawParameter = LawParameter::new(
+    "mean",
+    "degC",
+    "Annual mean temperature of the ground",
+    LawRange::Within(2.0, "depth and cover"),
+    12.0,
+)
+.limits(TEMPERATURES);
+
+/// The day on which the ground is coldest.
+pub(crate) const COLDEST_DAY: LawParameter = LawParameter::new(
+    "coldest_day",
+    "d",
+    "Day of the year on which the ground is coldest",
+    LawRange::Within(20.0, "the lag grows with depth"),
+    40.0,
+)
+.limits(Limits { above: None, at_least: Some(-366.0), at_most: Some(366.0) });
+
+/// `amplitude cos(2 pi (day - coldest)/365)` as factors of cosine and sine of the season, for an angle of the coldest day [rad].
+pub(crate) fn swing<S: Real>(amplitude: S, coldest: S) -> [S; 2] {
+    [amplitude * coldest.cos(), amplitude * coldest.sin()]
+}
+
+/// The swing at an instant.
+#[inline(always)]
+pub(crate) fn swung<S: Real>(swing: &[S; 2], at: &ImposedWeather) -> S {
+    let [cosine, sine] = at.season;
+    swing[0].scale(cosine) + swing[1].scale(sine)
+}
