@@ -113,6 +113,7 @@ fn moist_air(temperature: f64, humidity: f64, pressure: f64) -> (f64, f64) {
 
 /// Temperature of a law of `physics/imposed` on a day of the year, with outdoor air [degC].
 #[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
 fn imposed_temperature(kind: &str, numbers: Vec<(String, f64)>, day: f64, outdoor_air: f64) -> PyResult<f64> {
     let numbers: Vec<_> = numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     mascarin_engine::laws::imposed_temperature(kind, &numbers, day, outdoor_air)

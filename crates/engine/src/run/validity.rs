@@ -126,7 +126,7 @@ fn conductivity<'m, S: Real>(model: &'m Model<'_, S>, wall: usize, layer: usize)
     let coefficients = &model.coefficients.walls[wall];
     match coefficients.cells.get(start..end)?.first()?.matter {
         Matter::Pcm(place) => coefficients.pcm[place].limited_conductivity(),
-        _ => None,
+        Matter::Solid { .. } => None,
     }
 }
 

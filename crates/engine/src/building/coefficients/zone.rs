@@ -150,7 +150,9 @@ fn leaks<S: Real>(infiltration: &Infiltration, values: &Values<'_, S>) -> ([S; 3
     let Infiltration { constant, temperature, wind, leakage: test, .. } = infiltration;
     let mut rates = [constant, temperature, wind].map(|id| values.get(*id));
     let (constant, driven) = test.as_ref().map_or((None, None), |test| Leakage::of(test, values));
-    constant.into_iter().for_each(|rate| rates[0] += rate);
+    if let Some(rate) = constant {
+        rates[0] += rate;
+    }
     (rates, driven)
 }
 

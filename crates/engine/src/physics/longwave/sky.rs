@@ -59,7 +59,7 @@ macro_rules! laws {
         #[derive(Debug, Clone)]
         enum Law<S> {
             $($law(skies::$module::$law<S>),)*
-            Text(TextSky<S>),
+            Text(Box<TextSky<S>>),
         }
 
         impl<S: Real> Law<S> {
@@ -146,7 +146,10 @@ impl<S: Real> SkyEmission<S> {
             }
             Sky::Text { temperature, law } => {
                 let kind = if *temperature { "sky_temperature" } else { "sky_emissivity" };
-                Law::Text(TextSky { temperature: *temperature, law: Function::of(kind, law, values) })
+                Law::Text(Box::new(TextSky {
+                    temperature: *temperature,
+                    law: Function::of(kind, law, values),
+                }))
             }
         };
         Self { law, clouds: CloudEffect::new(clouds, values) }
