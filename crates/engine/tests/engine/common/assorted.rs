@@ -26,7 +26,7 @@ pub fn assorted_cell(sky: usize) -> Description {
         |&(name, value): &(&'static str, f64)| (name, number(&mut d, &format!("sky.{name}"), value));
     let numbers: Vec<_> = numbers.iter().map(&mut put).collect();
     d.site.sky = Sky::Law(PublishedLaw::new(kind, &numbers));
-    d.site.diffuse = diffuse.to_owned();
+    diffuse.clone_into(&mut d.site.diffuse);
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.18));
 
     let doe2 = Convection::law(

@@ -653,7 +653,7 @@ impl Maker<'_> {
         }
         // These models keep their draws, so that random buildings stay as they are; those that the tables have beside them are drawn, too.
         let kinds = ["perez", "hay_davies", "isotropic"];
-        d.site.diffuse = self.random.of(&kinds).to_owned();
+        self.random.of(&kinds).clone_into(&mut d.site.diffuse);
         let others = laws::diffuse().into_iter().filter(|entry| !kinds.contains(&entry.kind));
         let others: Vec<_> = others.collect();
         if !others.is_empty() && self.random.chance(0.3) {
