@@ -26,7 +26,7 @@ pub mod run;
 mod step;
 mod weather;
 
-pub use balance::{ledger, vapour};
+pub use balance::{energy_balance, vapour};
 pub use building::{coefficients, plan};
 pub use input::{description, forcing, values};
 pub use physics::{constants, globe, pcm, psychrometrics, standard_air};

@@ -158,22 +158,22 @@ pub fn attended_blocks<T: Send>(
             if matches!(sent, Ok(Sent::End) | Err(RecvTimeoutError::Disconnected)) {
                 break;
             }
-            let mut attend = py.check_signals();
-            if attend.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
-                attend = Err(PyKeyboardInterrupt::new_err("interrupted"));
+            let mut set_control = py.check_signals();
+            if set_control.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
+                set_control = Err(PyKeyboardInterrupt::new_err("interrupted"));
             }
-            if let (Ok(()), Ok(Sent::Block(block))) = (&attend, sent) {
-                attend = take(block);
+            if let (Ok(()), Ok(Sent::Block(block))) = (&set_control, sent) {
+                set_control = take(block);
             }
-            if let (Ok(()), Some((report, done))) = (&attend, report) {
+            if let (Ok(()), Some((report, done))) = (&set_control, report) {
                 // Again and again before the first unit is done, which may take long.
                 let done = done(watch);
                 if done == 0 || done != reported {
                     reported = done;
-                    attend = report.call1((done,)).map(drop);
+                    set_control = report.call1((done,)).map(drop);
                 }
             }
-            if let Err(error) = attend {
+            if let Err(error) = set_control {
                 watch.stop.store(true, Ordering::Relaxed);
                 interruption = Some(error);
                 break;

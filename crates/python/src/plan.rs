@@ -3,8 +3,8 @@
 use mascarin_engine::RunControl;
 use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::linear_model;
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::run::ensemble;
@@ -224,20 +224,20 @@ pub fn describe_run<'py>(
     let result = PyDict::new(py);
     result.set_item("records", records)?;
     for flow in Flow::ALL {
-        result.set_item(flow.name(), run.ledger.into[flow as usize])?;
+        result.set_item(flow.name(), run.energy_balance.into[flow as usize])?;
     }
-    result.set_item("stored", run.ledger.stored)?;
-    result.set_item("turnover", run.ledger.total_exchanged)?;
-    result.set_item("closure", run.ledger.closure())?;
+    result.set_item("stored", run.energy_balance.stored)?;
+    result.set_item("turnover", run.energy_balance.total_exchanged)?;
+    result.set_item("closure", run.energy_balance.closure())?;
     let vapour = PyDict::new(py);
     for flow in VapourFlow::ALL {
-        vapour.set_item(flow.name(), run.ledger.vapour.into[flow as usize])?;
+        vapour.set_item(flow.name(), run.energy_balance.vapour.into[flow as usize])?;
     }
-    vapour.set_item("stored", run.ledger.vapour.stored)?;
-    vapour.set_item("exchanged", run.ledger.vapour.total_exchanged)?;
-    vapour.set_item("closure", run.ledger.vapour.closure())?;
-    vapour.set_item("corrected", run.ledger.vapour.corrected)?;
-    vapour.set_item("fastest", run.ledger.vapour.fastest)?;
+    vapour.set_item("stored", run.energy_balance.vapour.stored)?;
+    vapour.set_item("exchanged", run.energy_balance.vapour.total_exchanged)?;
+    vapour.set_item("closure", run.energy_balance.vapour.closure())?;
+    vapour.set_item("corrected", run.energy_balance.vapour.corrected)?;
+    vapour.set_item("fastest", run.energy_balance.vapour.fastest)?;
     result.set_item("vapour", vapour)?;
     result.set_item("outside", run.outside)?;
     let outlier = run

@@ -2,15 +2,15 @@
 //! the building.
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::ids::SurfaceId;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::ids::SideId;
+use crate::building::plan::{Plan, SideRole};
 use crate::number::real::Real;
 use crate::weather::index::WeatherIndex;
 
 /// A surface outdoors.
 #[derive(Debug, Clone)]
 pub(crate) struct Outdoors<S> {
-    pub(crate) surface: SurfaceId,
+    pub(crate) surface: SideId,
     pub(crate) area: S,
     pub(crate) emissivity: S,
     /// Whether it absorbs sun itself: the panes of windows are counted by themselves.
@@ -19,14 +19,14 @@ pub(crate) struct Outdoors<S> {
     pub(crate) radiates: bool,
     pub(crate) absorptance: S,
     /// Absorbed parts of the emission of the sky and of the outdoor air [-].
-    pub(crate) of_sky: S,
-    pub(crate) of_air: S,
+    pub(crate) sky_factor: S,
+    pub(crate) air_factor: S,
 }
 
 /// Another opaque surface with a measured irradiance.
 #[derive(Debug, Clone)]
 pub(crate) struct Lit<S> {
-    pub(crate) surface: SurfaceId,
+    pub(crate) surface: SideId,
     pub(crate) area: S,
     pub(crate) absorptance: S,
 }
@@ -34,7 +34,7 @@ pub(crate) struct Lit<S> {
 /// A surface with an imposed temperature.
 #[derive(Debug, Clone)]
 pub(crate) struct ImposedSurface<S> {
-    pub(crate) surface: SurfaceId,
+    pub(crate) surface: SideId,
     pub(crate) area: S,
     /// Whether the surface is held at it; else it is that of the air that the surface convects to.
     pub(crate) held: bool,
@@ -46,9 +46,9 @@ pub(crate) struct FlowIndex<S> {
     pub(crate) outdoors: Vec<Outdoors<S>>,
     pub(crate) lit: Vec<Lit<S>>,
     /// Surfaces with a given heat flux, and their areas.
-    pub(crate) heated: Vec<(SurfaceId, S)>,
+    pub(crate) heated: Vec<(SideId, S)>,
     /// Other surfaces that sun reaches through windows, and their areas.
-    pub(crate) indirectly_lit: Vec<(SurfaceId, S)>,
+    pub(crate) transmitted_sun: Vec<(SideId, S)>,
     pub(crate) imposed: Vec<ImposedSurface<S>>,
     /// Zones with gains, and those with ventilation or openings.
     pub(crate) gaining: Vec<usize>,
@@ -57,8 +57,8 @@ pub(crate) struct FlowIndex<S> {
 
 impl<S: Real> FlowIndex<S> {
     pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, weather: &WeatherIndex<S>) -> Self {
-        let (mut lit, mut indirectly_lit, mut imposed) = (Vec::new(), Vec::new(), Vec::new());
-        let of = |surface: SurfaceId| {
+        let (mut lit, mut transmitted_sun, mut imposed) = (Vec::new(), Vec::new(), Vec::new());
+        let of = |surface: SideId| {
             (numbers.walls[surface.wall()].area, plan.walls[surface.wall()].glass.is_none())
         };
         for (index, surface) in numbers.surfaces.entries() {
@@ -67,14 +67,14 @@ impl<S: Real> FlowIndex<S> {
             if matches!(surface.boundary, Boundary::Imposed(_)) {
                 imposed.push(ImposedSurface { surface: index, area, held });
             }
-            let in_zone = matches!(plan.surfaces[index].role, SurfaceRole::Zone { .. });
+            let in_zone = matches!(plan.surfaces[index].role, SideRole::Zone { .. });
             if matches!(surface.boundary, Boundary::Outdoors(_)) {
                 continue;
             }
             if opaque && surface.irradiance.is_some() {
                 lit.push(Lit { surface: index, area, absorptance: surface.absorptance });
             } else if in_zone || (!opaque && !held) {
-                indirectly_lit.push((index, area));
+                transmitted_sun.push((index, area));
             }
         }
         let outdoors = weather.outdoors.iter().map(|outside| {
@@ -86,8 +86,8 @@ impl<S: Real> FlowIndex<S> {
                 opaque,
                 radiates: outside.emission.is_some(),
                 absorptance: outside.absorptance,
-                of_sky: outside.of_sky,
-                of_air: outside.of_air,
+                sky_factor: outside.sky_factor,
+                air_factor: outside.air_factor,
             }
         });
         let zones = |has: &dyn Fn(usize) -> bool| (0..plan.zones.len()).filter(|&zone| has(zone)).collect();
@@ -96,7 +96,7 @@ impl<S: Real> FlowIndex<S> {
             heated: heated.collect(),
             outdoors: outdoors.collect(),
             lit,
-            indirectly_lit,
+            transmitted_sun,
             imposed,
             gaining: zones(&|zone| !numbers.zones[zone].gains.is_empty()),
             ventilated: zones(&|zone| {

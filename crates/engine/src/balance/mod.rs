@@ -1,6 +1,6 @@
 //! Heat balances and the energy ledger.
 
+pub mod energy_balance;
 pub mod flow_index;
-pub mod ledger;
 pub(crate) mod terms;
 pub mod vapour;

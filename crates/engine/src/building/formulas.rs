@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::ids::{BySurface, SurfaceId};
+use super::ids::{BySide, SideId};
 use crate::error::EngineError;
 use crate::input::description::{
     Convection, DerivedOutput, Description, Facing, Material, MeltingCurve, PcmLaw, PublishedLaw, Side, Sky,
@@ -22,11 +22,11 @@ use crate::physics::pcm::text::FractionText;
 use crate::physics::sorption;
 
 /// The law of each surface that is written as text.
-pub(crate) fn read(description: &Description) -> Result<BySurface<Option<Arc<FormulaText>>>, EngineError> {
+pub(crate) fn read(description: &Description) -> Result<BySide<Option<Arc<FormulaText>>>, EngineError> {
     let mut known: Vec<(&Convection, SideNames, Arc<FormulaText>)> = Vec::new();
     let mut texts = Vec::with_capacity(2 * description.surfaces.len());
     for (index, wall) in description.surfaces.iter().enumerate() {
-        for id in SurfaceId::pair(index) {
+        for id in SideId::pair(index) {
             let (side, name) =
                 if id.is_outside() { (&wall.outside, "outside") } else { (&wall.inside, "inside") };
             check_law(side).map_err(|fault| {

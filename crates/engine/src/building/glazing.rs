@@ -14,7 +14,7 @@
 //! Source of the surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 
 use super::cell::{Cell, Matter};
-use super::ids::SurfaceId;
+use super::ids::SideId;
 use crate::input::description::{self, Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::elementary::sin_of_degrees;
@@ -304,7 +304,7 @@ pub(crate) fn rated_resistance<S: Real>(u_value: S, surface_resistances: S) -> S
 impl<S: Real> Glass<S> {
     /// Optics for diffuse radiation on one of its sides.
     #[inline(always)]
-    pub(crate) fn facing(&self, surface: SurfaceId) -> &Diffuse<S> {
+    pub(crate) fn facing(&self, surface: SideId) -> &Diffuse<S> {
         if surface.is_outside() { &self.optics.front } else { &self.optics.back }
     }
 

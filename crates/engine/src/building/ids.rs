@@ -1,15 +1,15 @@
 //! Identifiers of the parts of a building, and tables indexed by them.
 //!
 //! A wall has two surfaces, its outside and its inside. A wall is named by its position in the description; a surface by
-//! [`SurfaceId`].
+//! [`SideId`].
 
 use core::ops::{Deref, DerefMut, Index, IndexMut};
 
 /// One of the two surfaces of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SurfaceId(usize);
+pub struct SideId(usize);
 
-impl SurfaceId {
+impl SideId {
     /// The surface of a wall on a side: 0 outside, 1 inside.
     #[must_use]
     #[inline(always)]
@@ -83,21 +83,21 @@ impl SurfaceId {
 
 /// A value for each surface of a building, wall by wall, the outside before the inside.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct BySurface<T>(Vec<T>);
+pub struct BySide<T>(Vec<T>);
 
-impl<T> BySurface<T> {
+impl<T> BySide<T> {
     /// All surfaces with their values.
-    pub fn entries(&self) -> impl Iterator<Item = (SurfaceId, &T)> {
-        self.0.iter().enumerate().map(|(index, value)| (SurfaceId(index), value))
+    pub fn entries(&self) -> impl Iterator<Item = (SideId, &T)> {
+        self.0.iter().enumerate().map(|(index, value)| (SideId(index), value))
     }
 
     /// All surfaces.
-    pub fn ids(&self) -> impl Iterator<Item = SurfaceId> + Clone + use<T> {
-        (0..self.0.len()).map(SurfaceId)
+    pub fn ids(&self) -> impl Iterator<Item = SideId> + Clone + use<T> {
+        (0..self.0.len()).map(SideId)
     }
 }
 
-impl<T: Copy> BySurface<T> {
+impl<T: Copy> BySide<T> {
     /// The values of both surfaces of a wall: outside, inside.
     #[inline(always)]
     pub fn pair(&self, wall: usize) -> [T; 2] {
@@ -111,19 +111,19 @@ impl<T: Copy> BySurface<T> {
     }
 }
 
-impl<T> From<Vec<T>> for BySurface<T> {
+impl<T> From<Vec<T>> for BySide<T> {
     fn from(values: Vec<T>) -> Self {
         Self(values)
     }
 }
 
-impl<T> FromIterator<T> for BySurface<T> {
+impl<T> FromIterator<T> for BySide<T> {
     fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
         Self(values.into_iter().collect())
     }
 }
 
-impl<'a, T> IntoIterator for &'a BySurface<T> {
+impl<'a, T> IntoIterator for &'a BySide<T> {
     type Item = &'a T;
     type IntoIter = core::slice::Iter<'a, T>;
     #[inline(always)]
@@ -132,7 +132,7 @@ impl<'a, T> IntoIterator for &'a BySurface<T> {
     }
 }
 
-impl<'a, T> IntoIterator for &'a mut BySurface<T> {
+impl<'a, T> IntoIterator for &'a mut BySide<T> {
     type Item = &'a mut T;
     type IntoIter = core::slice::IterMut<'a, T>;
     #[inline(always)]
@@ -141,22 +141,22 @@ impl<'a, T> IntoIterator for &'a mut BySurface<T> {
     }
 }
 
-impl<T> Index<SurfaceId> for BySurface<T> {
+impl<T> Index<SideId> for BySide<T> {
     type Output = T;
     #[inline(always)]
-    fn index(&self, surface: SurfaceId) -> &T {
+    fn index(&self, surface: SideId) -> &T {
         &self.0[surface.0]
     }
 }
 
-impl<T> IndexMut<SurfaceId> for BySurface<T> {
+impl<T> IndexMut<SideId> for BySide<T> {
     #[inline(always)]
-    fn index_mut(&mut self, surface: SurfaceId) -> &mut T {
+    fn index_mut(&mut self, surface: SideId) -> &mut T {
         &mut self.0[surface.0]
     }
 }
 
-impl<T> Deref for BySurface<T> {
+impl<T> Deref for BySide<T> {
     type Target = [T];
     #[inline(always)]
     fn deref(&self) -> &[T] {
@@ -164,7 +164,7 @@ impl<T> Deref for BySurface<T> {
     }
 }
 
-impl<T> DerefMut for BySurface<T> {
+impl<T> DerefMut for BySide<T> {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [T] {
         &mut self.0
@@ -178,21 +178,21 @@ mod tests {
     #[test]
     fn a_surface_knows_its_wall_and_the_other_side() {
         for wall in 0..3 {
-            let [outside, inside] = SurfaceId::pair(wall);
+            let [outside, inside] = SideId::pair(wall);
             assert_eq!((outside.wall(), outside.side()), (wall, 0));
             assert_eq!((inside.wall(), inside.side()), (wall, 1));
             assert_eq!((outside.opposite(), inside.opposite()), (inside, outside));
             assert!(outside.is_outside() && !inside.is_outside());
-            assert_eq!(SurfaceId::new(wall, 1), SurfaceId::from_index(inside.index()));
+            assert_eq!(SideId::new(wall, 1), SideId::from_index(inside.index()));
         }
     }
 
     #[test]
     fn a_table_has_a_pair_for_each_wall() {
-        let mut table: BySurface<f64> = [1.0, 2.0, 3.0, 4.0].into_iter().collect();
+        let mut table: BySide<f64> = [1.0, 2.0, 3.0, 4.0].into_iter().collect();
         table.set_pair(1, [7.0, 8.0]);
         assert_eq!((table.pair(0), table.pair(1)), ([1.0, 2.0], [7.0, 8.0]));
-        assert_eq!(table[SurfaceId::inside(1)], 8.0);
+        assert_eq!(table[SideId::inside(1)], 8.0);
         assert_eq!(table.ids().count(), 4);
     }
 }

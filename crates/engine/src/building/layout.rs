@@ -1,12 +1,12 @@
 //! Walls, surfaces and zones of a compiled building: how cells, layers and rows of unknowns are laid out.
 
 use super::glazing::GlassPlan;
-use super::ids::SurfaceId;
+use super::ids::SideId;
 use crate::input::description::{Construction, Description, Material, Zone, ZoneLongwave};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
-pub struct WallPlan {
+pub struct SurfacePlan {
     /// Index of its first cell in the flat cell arrays.
     pub first_cell: usize,
     /// Layer (or pane) of each cell.
@@ -24,12 +24,12 @@ pub struct WallPlan {
     /// Whether its surfaces are eliminated each with its own zone, see the module `thick_walls`.
     pub thick: bool,
     /// Whether the front of a zone eliminates it, see `eliminated_in_front`.
-    pub in_front: bool,
+    pub condensed_in_zone: bool,
 }
 
 /// How a surface takes part in the solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SurfaceRole {
+pub enum SideRole {
     /// Unknown `row` of the coupled system, in contact with a zone.
     Zone {
         /// Index of the zone.
@@ -43,20 +43,20 @@ pub enum SurfaceRole {
 
 /// A surface.
 #[derive(Debug, Clone)]
-pub struct SurfacePlan {
+pub struct SidePlan {
     /// Wall it belongs to.
     pub wall: usize,
     /// 0 outside, 1 inside.
     pub side: usize,
     /// Its part in the solution.
-    pub role: SurfaceRole,
+    pub role: SideRole,
 }
 
 /// A zone.
 #[derive(Debug, Clone)]
 pub struct ZonePlan {
     /// Its surfaces, in the order of all surfaces.
-    pub surfaces: Vec<SurfaceId>,
+    pub surfaces: Vec<SideId>,
     /// Row of each of its surfaces in the coupled system.
     pub surface_rows: Vec<usize>,
     /// Row of its air in the coupled system.
@@ -65,7 +65,7 @@ pub struct ZonePlan {
     pub windows: Vec<(usize, usize)>,
 }
 
-impl WallPlan {
+impl SurfacePlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
     pub(crate) fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
         if let Some(glazing) = &construction.glazing {
@@ -102,7 +102,7 @@ impl WallPlan {
             glass: None,
             window: None,
             thick: false,
-            in_front: false,
+            condensed_in_zone: false,
         }
     }
 
@@ -116,7 +116,7 @@ impl WallPlan {
             glass: Some(glass),
             window: None,
             thick: false,
-            in_front: false,
+            condensed_in_zone: false,
         }
     }
 

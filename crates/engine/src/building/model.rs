@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use crate::building::coefficients::{Boundary, Coefficients, SurfaceCoefficients};
-use crate::building::ids::SurfaceId;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::ids::SideId;
+use crate::building::plan::{Plan, SideRole};
 use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
@@ -41,20 +41,17 @@ impl<'a, S: Real> Model<'a, S> {
     }
 
     /// Law of convection at a surface; none where no heat passes it, or where the surface is held at a temperature.
-    pub(crate) fn convection(&self, surface: SurfaceId) -> Option<&SurfaceConvection<S>> {
+    pub(crate) fn convection(&self, surface: SideId) -> Option<&SurfaceConvection<S>> {
         convection_law(&self.coefficients, surface)
     }
 
     /// Law of emission of a surface; none where it exchanges no long-wave radiation of its own.
-    pub(crate) fn emission(&self, surface: SurfaceId) -> Option<Emission<S>> {
+    pub(crate) fn emission(&self, surface: SideId) -> Option<Emission<S>> {
         emission_law(self.plan, &self.coefficients, surface)
     }
 }
 
-fn convection_law<S: Real>(
-    coefficients: &Coefficients<S>,
-    surface: SurfaceId,
-) -> Option<&SurfaceConvection<S>> {
+fn convection_law<S: Real>(coefficients: &Coefficients<S>, surface: SideId) -> Option<&SurfaceConvection<S>> {
     let surface = &coefficients.surfaces[surface];
     let adiabatic = matches!(surface.boundary, Boundary::Adiabatic);
     surface.convection.as_ref().filter(|_| !adiabatic)
@@ -63,12 +60,12 @@ fn convection_law<S: Real>(
 fn emission_law<S: Real>(
     plan: &Plan,
     coefficients: &Coefficients<S>,
-    surface: SurfaceId,
+    surface: SideId,
 ) -> Option<Emission<S>> {
     match plan.surfaces[surface].role {
-        SurfaceRole::Zone { zone, .. } if coefficients.zones[zone].exchange.is_empty() => None,
-        SurfaceRole::Zone { zone, .. } => Some(coefficients.zones[zone].emission),
-        SurfaceRole::Exterior => outdoor_emission(&coefficients.surfaces[surface]),
+        SideRole::Zone { zone, .. } if coefficients.zones[zone].exchange.is_empty() => None,
+        SideRole::Zone { zone, .. } => Some(coefficients.zones[zone].emission),
+        SideRole::Exterior => outdoor_emission(&coefficients.surfaces[surface]),
     }
 }
 
@@ -93,7 +90,7 @@ pub(crate) struct Parts {
     /// Those of them that touch no zone.
     pub(crate) detached_walls: Vec<usize>,
     /// Their surfaces in zones.
-    pub(crate) zone_surfaces: Vec<SurfaceId>,
+    pub(crate) zone_surfaces: Vec<SideId>,
     /// Walls whose properties depend on temperature, and the cells of each.
     pub(crate) nonlinear_walls: Vec<usize>,
     pub(crate) nonlinear_cells: Vec<Range<usize>>,
@@ -104,7 +101,7 @@ pub(crate) struct Parts {
     pub(crate) surfaces: VariableSurfaces,
     pub(crate) other_surfaces: VariableSurfaces,
     /// Surfaces at which something is linearised: convection, radiation or the wall behind; and those of thick walls.
-    pub(crate) linearised: Vec<SurfaceId>,
+    pub(crate) linearised: Vec<SideId>,
     /// Whether the heat balance of a surface of a linear wall is nonlinear.
     pub(crate) nonlinear_balances: bool,
     /// Whether the wind changes the slope of such a balance.
@@ -115,18 +112,17 @@ pub(crate) struct Parts {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VariableSurfaces {
     /// Convection that depends on the wind alone.
-    pub(crate) windy: Vec<SurfaceId>,
+    pub(crate) windy: Vec<SideId>,
     /// Convection that depends on the temperature difference.
-    pub(crate) nonlinear: Vec<SurfaceId>,
+    pub(crate) nonlinear: Vec<SideId>,
     /// Emission with the fourth power of the temperature.
-    pub(crate) radiant: Vec<SurfaceId>,
+    pub(crate) radiant: Vec<SideId>,
 }
 
 impl VariableSurfaces {
     /// Those for which a condition holds.
-    fn filter(&self, holds: impl Fn(SurfaceId) -> bool) -> Self {
-        let some =
-            |surfaces: &[SurfaceId]| surfaces.iter().copied().filter(|&surface| holds(surface)).collect();
+    fn filter(&self, holds: impl Fn(SideId) -> bool) -> Self {
+        let some = |surfaces: &[SideId]| surfaces.iter().copied().filter(|&surface| holds(surface)).collect();
         Self { windy: some(&self.windy), nonlinear: some(&self.nonlinear), radiant: some(&self.radiant) }
     }
 }
@@ -135,19 +131,17 @@ impl Parts {
     fn new<S: Real>(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
         let (nonlinear_walls, linear_walls): (Vec<_>, Vec<_>) =
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
-        let exterior = |surface: SurfaceId| plan.surfaces[surface].role == SurfaceRole::Exterior;
+        let exterior = |surface: SideId| plan.surfaces[surface].role == SideRole::Exterior;
         let (linear, nonlinear) = (|| linear_walls.iter().copied(), || nonlinear_walls.iter().copied());
         let cells = nonlinear_walls.iter().map(|&wall| &plan.walls[wall]);
         let mut parts = Self {
             thick_walls: linear().filter(|&wall| plan.walls[wall].thick).collect(),
-            shared_walls: linear().filter(|&wall| !plan.walls[wall].in_front).collect(),
-            detached_walls: linear()
-                .filter(|&wall| SurfaceId::pair(wall).into_iter().all(exterior))
-                .collect(),
-            zone_surfaces: linear().flat_map(SurfaceId::pair).filter(|&surface| !exterior(surface)).collect(),
+            shared_walls: linear().filter(|&wall| !plan.walls[wall].condensed_in_zone).collect(),
+            detached_walls: linear().filter(|&wall| SideId::pair(wall).into_iter().all(exterior)).collect(),
+            zone_surfaces: linear().flat_map(SideId::pair).filter(|&surface| !exterior(surface)).collect(),
             nonlinear_cells: cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect(),
-            front_windows: nonlinear().filter(|&wall| plan.walls[wall].in_front).collect(),
-            coupled_walls: nonlinear().filter(|&wall| !plan.walls[wall].in_front).collect(),
+            front_windows: nonlinear().filter(|&wall| plan.walls[wall].condensed_in_zone).collect(),
+            coupled_walls: nonlinear().filter(|&wall| !plan.walls[wall].condensed_in_zone).collect(),
             linear_walls,
             nonlinear_walls,
             surfaces: VariableSurfaces::default(),
@@ -160,24 +154,25 @@ impl Parts {
             parts.sort(plan, coefficients, surface);
         }
         let surfaces = &parts.surfaces;
-        let linearised = |surface: &SurfaceId| {
+        let linearised = |surface: &SideId| {
             plan.walls[surface.wall()].nonlinear
                 || plan.walls[surface.wall()].thick
                 || surfaces.nonlinear.contains(surface)
                 || surfaces.radiant.contains(surface)
         };
         parts.linearised = plan.surfaces.ids().filter(linearised).collect();
-        parts.other_surfaces =
-            parts.surfaces.filter(|surface| exterior(surface) && !plan.walls[surface.wall()].in_front);
+        parts.other_surfaces = parts
+            .surfaces
+            .filter(|surface| exterior(surface) && !plan.walls[surface.wall()].condensed_in_zone);
         parts
     }
 
     /// Sorts a surface by its laws.
-    fn sort<S: Real>(&mut self, plan: &Plan, coefficients: &Coefficients<S>, surface: SurfaceId) {
+    fn sort<S: Real>(&mut self, plan: &Plan, coefficients: &Coefficients<S>, surface: SideId) {
         // The exterior surface of a wall that is nonlinear itself is eliminated with its wall, in every iteration.
-        let of_linear_wall = matches!(plan.surfaces[surface].role, SurfaceRole::Zone { .. })
+        let of_linear_wall = matches!(plan.surfaces[surface].role, SideRole::Zone { .. })
             || !plan.walls[surface.wall()].nonlinear;
-        self.nonlinear_balances |= plan.walls[surface.wall()].in_front && !of_linear_wall;
+        self.nonlinear_balances |= plan.walls[surface.wall()].condensed_in_zone && !of_linear_wall;
         match convection_law(coefficients, surface) {
             Some(law) if law.constant().is_some() => {}
             Some(law) if law.straight() => {

@@ -14,8 +14,8 @@
 
 use std::collections::BTreeSet;
 
-use super::ids::SurfaceId;
-use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
+use super::ids::SideId;
+use super::layout::{SidePlan, SideRole, SurfacePlan, ZonePlan};
 use super::pattern::Pattern;
 use crate::input::description::{Description, Facing, Vent, ZoneLongwave};
 
@@ -33,9 +33,9 @@ pub(crate) struct Order {
 /// always.
 pub(crate) fn number_unknowns(
     description: &Description,
-    walls: &[WallPlan],
+    walls: &[SurfacePlan],
     (thick, always): (Vec<bool>, bool),
-) -> (Vec<SurfacePlan>, Vec<ZonePlan>, Order) {
+) -> (Vec<SidePlan>, Vec<ZonePlan>, Order) {
     let (mut surfaces, mut zones) = find_unknowns(description);
     // Positions and order, if the work on the coupled system and on the fronts is not more than allowed; and that work.
     let arrange = |thick: Vec<bool>, most_work: usize| {
@@ -56,7 +56,7 @@ pub(crate) fn number_unknowns(
     #[allow(clippy::expect_used, reason = "one of both is followed to its end")]
     let (position, order, _) = found.expect("an order");
     for surface in &mut surfaces {
-        if let SurfaceRole::Zone { row, .. } = &mut surface.role {
+        if let SideRole::Zone { row, .. } = &mut surface.role {
             *row = position[*row];
         }
     }
@@ -132,7 +132,7 @@ pub(crate) fn number_zones(count: usize, pairs: &[[usize; 2]]) -> (Vec<usize>, P
 }
 
 /// The unknowns in the order of the description: the surfaces in contact with zones, then the air of each zone.
-fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>) {
+fn find_unknowns(description: &Description) -> (Vec<SidePlan>, Vec<ZonePlan>) {
     let mut zones: Vec<ZonePlan> = description
         .zones
         .iter()
@@ -143,14 +143,14 @@ fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>)
     for (wall, definition) in description.surfaces.iter().enumerate() {
         for (side, part) in [&definition.outside, &definition.inside].into_iter().enumerate() {
             let role = if let Facing::Zone { zone } = part.facing {
-                zones[zone].surfaces.push(SurfaceId::new(wall, side));
+                zones[zone].surfaces.push(SideId::new(wall, side));
                 zones[zone].surface_rows.push(row);
                 row += 1;
-                SurfaceRole::Zone { zone, row: row - 1 }
+                SideRole::Zone { zone, row: row - 1 }
             } else {
-                SurfaceRole::Exterior
+                SideRole::Exterior
             };
-            surfaces.push(SurfacePlan { wall, side, role });
+            surfaces.push(SidePlan { wall, side, role });
         }
     }
     for zone in &mut zones {
@@ -171,16 +171,16 @@ const CHANGING: usize = 2;
 /// Group of each unknown, and the place among the groups of the first kind.
 fn groups(
     description: &Description,
-    walls: &[WallPlan],
-    surfaces: &[SurfacePlan],
+    walls: &[SurfacePlan],
+    surfaces: &[SidePlan],
     thick: &[bool],
 ) -> Vec<(usize, usize)> {
-    let in_zones = surfaces.iter().filter(|surface| surface.role != SurfaceRole::Exterior).count();
+    let in_zones = surfaces.iter().filter(|surface| surface.role != SideRole::Exterior).count();
     let mut groups = vec![(CHANGING, 0); in_zones + description.zones.len()];
     for pair in surfaces.chunks_exact(2) {
-        let between_zones = pair.iter().all(|surface| matches!(surface.role, SurfaceRole::Zone { .. }));
+        let between_zones = pair.iter().all(|surface| matches!(surface.role, SideRole::Zone { .. }));
         for surface in pair {
-            let SurfaceRole::Zone { zone, row } = surface.role else { continue };
+            let SideRole::Zone { zone, row } = surface.role else { continue };
             let wall = &walls[surface.wall];
             if !between_zones && wall.eliminated_in_front(&description.zones[zone]) {
                 groups[row] = (OWN, 3 * zone + usize::from(wall.nonlinear));
@@ -196,13 +196,13 @@ fn groups(
 /// meets in its zone meets already, so that their elimination couples nothing anew.
 fn neighbours(
     description: &Description,
-    surfaces: &[SurfacePlan],
+    surfaces: &[SidePlan],
     zones: &[ZonePlan],
     (groups, thick): (&[(usize, usize)], &[bool]),
 ) -> Vec<BTreeSet<usize>> {
-    let row = |surface: SurfaceId| match surfaces[surface.index()].role {
-        SurfaceRole::Zone { row, .. } => Some(row),
-        SurfaceRole::Exterior => None,
+    let row = |surface: SideId| match surfaces[surface.index()].role {
+        SideRole::Zone { row, .. } => Some(row),
+        SideRole::Exterior => None,
     };
     let unknowns = zones.iter().map(|zone| zone.surfaces.len() + 1).sum();
     let mut neighbours = vec![BTreeSet::new(); unknowns];
@@ -221,7 +221,7 @@ fn neighbours(
         }
     }
     for wall in (0..description.surfaces.len()).filter(|&wall| !thick[wall]) {
-        if let (Some(a), Some(b)) = (row(SurfaceId::outside(wall)), row(SurfaceId::inside(wall))) {
+        if let (Some(a), Some(b)) = (row(SideId::outside(wall)), row(SideId::inside(wall))) {
             couple(a, b);
         }
     }

@@ -1,6 +1,6 @@
 //! Ways of the sun through windows between zones.
 
-use super::ids::SurfaceId;
+use super::ids::SideId;
 use super::layout::ZonePlan;
 
 /// One direction through a window between two zones.
@@ -19,13 +19,13 @@ pub struct Passage {
 impl Passage {
     /// All passages of a building: of each window between zones the way in and the way out.
     pub(crate) fn all(windows: &[usize], zones: &[ZonePlan]) -> Vec<Self> {
-        let place = |surface: SurfaceId| {
+        let place = |surface: SideId| {
             zones.iter().enumerate().find_map(|(z, zone)| {
                 zone.surfaces.iter().position(|&other| other == surface).map(|i| (z, i))
             })
         };
         let both = windows.iter().enumerate().filter_map(|(window, &w)| {
-            let [outside, inside] = SurfaceId::pair(w).map(place);
+            let [outside, inside] = SideId::pair(w).map(place);
             let (outside, inside) = (outside?, inside?);
             Some([
                 Self { window, from: outside, to: inside, inwards: true },

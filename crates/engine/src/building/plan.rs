@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::formulas;
 use super::humidity::HumidityPlan;
-use super::ids::{BySurface, SurfaceId};
-pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
+use super::ids::{BySide, SideId};
+pub use super::layout::{SidePlan, SideRole, SurfacePlan, ZonePlan};
 use super::order::{Order, number_unknowns};
 use super::passages::Passage;
 use super::pattern::Pattern;
@@ -25,9 +25,9 @@ pub struct Plan {
     /// The description it came from.
     pub description: Description,
     /// Walls.
-    pub walls: Vec<WallPlan>,
+    pub walls: Vec<SurfacePlan>,
     /// The two surfaces of each wall.
-    pub surfaces: BySurface<SurfacePlan>,
+    pub surfaces: BySide<SidePlan>,
     /// Zones.
     pub zones: Vec<ZonePlan>,
     /// Zones with ideal heating or cooling.
@@ -39,7 +39,7 @@ pub struct Plan {
     /// Geometry of sun and shade.
     pub solar_geometry: SolarGeometry,
     /// Convection at each surface where it is written as text.
-    pub(crate) formulas: BySurface<Option<Arc<FormulaText>>>,
+    pub(crate) formulas: BySide<Option<Arc<FormulaText>>>,
     /// Model of the diffuse radiation of the sky.
     pub(crate) diffuse: DiffuseSky,
     /// Vapour balance of the zones.
@@ -83,7 +83,8 @@ impl Plan {
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
         for wall in &description.surfaces {
-            let wall = WallPlan::new(&description, &description.constructions[wall.construction], first_cell);
+            let wall =
+                SurfacePlan::new(&description, &description.constructions[wall.construction], first_cell);
             first_cell += wall.cell_layers.len();
             walls.push(wall);
         }
@@ -94,8 +95,8 @@ impl Plan {
             wall.thick = thick;
         }
         for surface in &surfaces {
-            if let SurfaceRole::Zone { row, .. } = surface.role {
-                walls[surface.wall].in_front |= row < own_rows;
+            if let SideRole::Zone { row, .. } = surface.role {
+                walls[surface.wall].condensed_in_zone |= row < own_rows;
             }
         }
         let conditioned = |zone: &Zone| zone.heating.is_some() || zone.cooling.is_some();
@@ -105,9 +106,8 @@ impl Plan {
             walls[window].window = Some(position);
         }
         for zone in &mut zones {
-            let place = |surface: SurfaceId| zone.surfaces.iter().position(|&other| other == surface);
-            let sides =
-                windows.iter().enumerate().flat_map(|(k, &w)| SurfaceId::pair(w).map(|side| (k, side)));
+            let place = |surface: SideId| zone.surfaces.iter().position(|&other| other == surface);
+            let sides = windows.iter().enumerate().flat_map(|(k, &w)| SideId::pair(w).map(|side| (k, side)));
             zone.windows = sides.filter_map(|(k, side)| place(side).map(|at| (k, at))).collect();
         }
         let passages = Passage::all(&windows, &zones);
@@ -136,14 +136,14 @@ impl Plan {
     /// The description of a surface.
     #[must_use]
     #[inline(always)]
-    pub fn side(&self, surface: SurfaceId) -> &Side {
+    pub fn side(&self, surface: SideId) -> &Side {
         let wall = &self.description.surfaces[surface.wall()];
         if surface.is_outside() { &wall.outside } else { &wall.inside }
     }
 
     /// Whether the measured irradiance of a surface is that of the free plane, and something stands in front of it.
     #[must_use]
-    pub(crate) fn takes_from_measured(&self, surface: SurfaceId) -> bool {
+    pub(crate) fn takes_from_measured(&self, surface: SideId) -> bool {
         let side = self.side(surface);
         let obstructed = !self.description.site.horizon.is_empty() || self.solar_geometry.shaded(surface);
         side.facing == Facing::Outdoors && side.irradiance.is_some() && !side.behind_obstacles && obstructed
@@ -155,17 +155,17 @@ impl Plan {
     /// When the surface is not in a zone: a fault of the engine.
     #[must_use]
     #[inline(always)]
-    pub fn row(&self, surface: SurfaceId) -> usize {
+    pub fn row(&self, surface: SideId) -> usize {
         match self.surfaces[surface].role {
-            SurfaceRole::Zone { row, .. } => row,
-            SurfaceRole::Exterior => unreachable!("{} is in no zone", self.surface_name(surface)),
+            SideRole::Zone { row, .. } => row,
+            SideRole::Exterior => unreachable!("{} is in no zone", self.surface_name(surface)),
         }
     }
 
     /// Whether a surface is a side of a window between two zones.
     #[must_use]
-    pub(crate) fn lets_pass(&self, surface: SurfaceId) -> bool {
-        let in_zone = |side| matches!(self.surfaces[side].role, SurfaceRole::Zone { .. });
+    pub(crate) fn lets_pass(&self, surface: SideId) -> bool {
+        let in_zone = |side| matches!(self.surfaces[side].role, SideRole::Zone { .. });
         self.walls[surface.wall()].glass.is_some() && in_zone(surface) && in_zone(surface.opposite())
     }
 
@@ -183,7 +183,7 @@ impl Plan {
 
     /// Name of a surface for messages.
     #[must_use]
-    pub fn surface_name(&self, surface: SurfaceId) -> String {
+    pub fn surface_name(&self, surface: SideId) -> String {
         let side = if surface.is_outside() { "outside" } else { "inside" };
         format!("surface {} ({side})", self.description.surfaces[surface.wall()].name)
     }
@@ -212,11 +212,11 @@ mod tests {
         let plan = Plan::new(zones_in_a_row(3)).unwrap();
         assert_eq!((plan.own_rows, plan.constant_rows, plan.rows()), (3, 4, 10));
         for (z, zone) in plan.zones.iter().enumerate() {
-            assert_eq!(plan.row(SurfaceId::inside(2 * z)), z);
+            assert_eq!(plan.row(SideId::inside(2 * z)), z);
             assert!(zone.surface_rows.iter().all(|row| *row == z || (3..7).contains(row)));
             assert!((7..10).contains(&zone.air_row));
             for (&surface, &row) in zone.surfaces.iter().zip(&zone.surface_rows) {
-                assert_eq!(plan.surfaces[surface].role, SurfaceRole::Zone { zone: z, row });
+                assert_eq!(plan.surfaces[surface].role, SideRole::Zone { zone: z, row });
             }
         }
         // The walls between zones couple their air: the two surfaces of a wall have two later neighbours each, the air of a zone
@@ -236,7 +236,7 @@ mod tests {
         }
         assert!(plan.walls[WINDOW].nonlinear && plan.walls[WINDOW].len() == 2);
         assert_eq!(plan.zones[0].windows, [(0, WINDOW)]);
-        assert_eq!(plan.surfaces[SurfaceId::outside(WINDOW)].role, SurfaceRole::Exterior);
-        assert_eq!(plan.surface_name(SurfaceId::inside(0)), "surface wall (inside)");
+        assert_eq!(plan.surfaces[SideId::outside(WINDOW)].role, SideRole::Exterior);
+        assert_eq!(plan.surface_name(SideId::inside(0)), "surface wall (inside)");
     }
 }

@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::ids::{BySurface, SurfaceId};
+use super::ids::{BySide, SideId};
 use super::layout::ZonePlan;
 use crate::geometry::patches::{BeamTracer, Target};
 use crate::geometry::shading::Receiver;
@@ -19,7 +19,7 @@ use crate::physics::solar::{SkyVisibility, Sunlight};
 #[derive(Debug, Clone, Default)]
 pub struct SolarGeometry {
     /// Surfaces outdoors with obstacles in front of them.
-    receivers: BySurface<Option<Shaded>>,
+    receivers: BySide<Option<Shaded>>,
     /// By window, in the order of the plan: the beam where it is traced.
     tracers: Vec<Option<Traced>>,
     /// Number of fractions at an instant.
@@ -86,14 +86,14 @@ impl SolarGeometry {
             size += count;
             size - count
         };
-        let surfaces: Vec<SurfaceId> = (0..2 * walls.len()).map(SurfaceId::from_index).collect();
-        let outdoors = |surface: SurfaceId| side(description, surface).facing == Facing::Outdoors;
+        let surfaces: Vec<SideId> = (0..2 * walls.len()).map(SideId::from_index).collect();
+        let outdoors = |surface: SideId| side(description, surface).facing == Facing::Outdoors;
         // What each sees of the sky takes milliseconds.
         let all: Vec<Option<Receiver>> = surfaces
             .par_iter()
             .map(|&surface| outdoors(surface).then(|| drawn.receiver(description, surface)).flatten())
             .collect();
-        let receivers: BySurface<_> = surfaces
+        let receivers: BySide<_> = surfaces
             .iter()
             .zip(all)
             .map(|(&surface, receiver)| {
@@ -109,7 +109,7 @@ impl SolarGeometry {
         let mut tracers: Vec<Option<Traced>> = windows
             .iter()
             .map(|&w| {
-                let zone = zones.iter().position(|zone| zone.surfaces.contains(&(SurfaceId::inside(w))))?;
+                let zone = zones.iter().position(|zone| zone.surfaces.contains(&(SideId::inside(w))))?;
                 let outdoors = walls[w].outside.facing == Facing::Outdoors;
                 let window = drawn.net[w].as_ref().filter(|_| traced(zone) && outdoors)?;
                 let targets: Vec<_> = zones[zone]
@@ -118,7 +118,7 @@ impl SolarGeometry {
                     .map(|&surface| target(description, window, &drawn.net, surface))
                     .collect();
                 let first = place(targets.len());
-                let outside = SurfaceId::outside(w);
+                let outside = SideId::outside(w);
                 let receiver = match &receivers[outside] {
                     Some(shaded) => shaded.receiver.clone(),
                     None => drawn.receiver(description, outside)?,
@@ -166,13 +166,13 @@ impl SolarGeometry {
 
     /// Whether an obstacle stands in front of a surface.
     #[must_use]
-    pub fn shaded(&self, surface: SurfaceId) -> bool {
+    pub fn shaded(&self, surface: SideId) -> bool {
         self.receivers[surface].is_some()
     }
 
     /// Fractions that obstacles leave of sun, sky and ground on a surface.
     #[must_use]
-    pub fn visibility(&self, surface: SurfaceId, fractions: &[f64]) -> SkyVisibility {
+    pub fn visibility(&self, surface: SideId, fractions: &[f64]) -> SkyVisibility {
         let Some(Shaded { receiver, place, given_sky }) = &self.receivers[surface] else {
             return SkyVisibility::FULL;
         };
@@ -185,7 +185,7 @@ impl SolarGeometry {
 
     /// Fraction of the sky that walls leave of a surface, for its long-wave radiation [-].
     #[must_use]
-    pub fn open_sky(&self, surface: SurfaceId) -> f64 {
+    pub fn open_sky(&self, surface: SideId) -> f64 {
         match &self.receivers[surface] {
             Some(shaded) if !shaded.given_sky => shaded.receiver.open_sky,
             _ => 1.0,
@@ -205,7 +205,7 @@ fn sides(wall: &Surface) -> [&Side; 2] {
 }
 
 /// The description of a surface.
-fn side(description: &Description, surface: SurfaceId) -> &Side {
+fn side(description: &Description, surface: SideId) -> &Side {
     sides(&description.surfaces[surface.wall()])[surface.side()]
 }
 
@@ -229,7 +229,7 @@ impl Drawn {
     }
 
     /// A surface, and what stands in front of it; none without vertices and without an outline of its own.
-    fn receiver(&self, description: &Description, surface: SurfaceId) -> Option<Receiver> {
+    fn receiver(&self, description: &Description, surface: SideId) -> Option<Receiver> {
         let side = side(description, surface);
         let own = side.own_shades.iter().map(|shade| PlaneSurface::of(shade));
         let Some(net) = self.net[surface.wall()].as_ref() else {
@@ -252,7 +252,7 @@ fn target(
     description: &Description,
     window: &PlaneSurface,
     surfaces: &[Option<PlaneSurface>],
-    surface: SurfaceId,
+    surface: SideId,
 ) -> Target {
     let wall = &description.surfaces[surface.wall()];
     let is_frame = wall.frame.as_ref().is_some_and(|frame| frame.is_frame);
@@ -290,7 +290,7 @@ mod tests {
         assert!(plan.solar_geometry.is_empty());
         let half = 0.5_f64.sqrt();
         assert!(plan.solar_geometry.at(&sunlight([0.0, -half, half])).is_empty());
-        assert_eq!(plan.solar_geometry.visibility(SurfaceId::outside(0), &[]), SkyVisibility::FULL);
+        assert_eq!(plan.solar_geometry.visibility(SideId::outside(0), &[]), SkyVisibility::FULL);
         assert_eq!(plan.solar_geometry.beam_fractions(0, &[]), None);
     }
 
@@ -302,16 +302,16 @@ mod tests {
         let geometry = &plan.solar_geometry;
         let half = 0.5_f64.sqrt();
         let fractions = geometry.at(&sunlight([0.0, -half, half]));
-        assert!(geometry.shaded(SurfaceId::outside(0)) && geometry.shaded(SurfaceId::outside(WINDOW)));
-        let wall = geometry.visibility(SurfaceId::outside(0), &fractions);
+        assert!(geometry.shaded(SideId::outside(0)) && geometry.shaded(SideId::outside(WINDOW)));
+        let wall = geometry.visibility(SideId::outside(0), &fractions);
         assert!((wall.sun - (8.0 * 1.7 - 3.0 * 1.5) / 15.6).abs() < 1e-12, "{wall:?}");
         assert!(wall.sky < 1.0 && wall.sky > 0.5);
-        assert!((geometry.visibility(SurfaceId::outside(WINDOW), &fractions).sun - 0.75).abs() < 1e-12);
+        assert!((geometry.visibility(SideId::outside(WINDOW), &fractions).sun - 0.75).abs() < 1e-12);
         let beam = geometry.beam_fractions(0, &fractions).unwrap();
         assert!((beam[4] - 1.0).abs() < 1e-12 && beam.iter().sum::<f64>() < 1.0 + 1e-12, "{beam:?}");
         // At night no fractions are stored: all of the sun's disc, and no beam.
         let night = geometry.at(&sunlight([0.0, -half, -half]));
-        assert!(night.is_empty() && geometry.visibility(SurfaceId::outside(0), &night).sun == 1.0);
+        assert!(night.is_empty() && geometry.visibility(SideId::outside(0), &night).sun == 1.0);
         assert_eq!(geometry.beam_fractions(0, &night), None);
     }
 }

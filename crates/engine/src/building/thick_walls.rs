@@ -6,7 +6,7 @@
 //! `t` seconds falls off by `exp(-depth)` across a wall of `depth = sum d sqrt(rho c / (k t))`. The nominal values decide how a
 //! building is solved, never what the solution is.
 
-use super::layout::WallPlan;
+use super::layout::SurfacePlan;
 use crate::input::description::{Description, Facing, Material, ParamId};
 
 /// Length of a stage of a step of 15 min [s].
@@ -15,7 +15,7 @@ const STAGE: f64 = 264.0;
 pub(crate) const LEAST_DEPTH: f64 = 7.0;
 
 /// Whether each wall has at least this depth, constant properties and both surfaces in zones.
-pub(crate) fn find(description: &Description, walls: &[WallPlan], least_depth: f64) -> Vec<bool> {
+pub(crate) fn find(description: &Description, walls: &[SurfacePlan], least_depth: f64) -> Vec<bool> {
     let described = description.surfaces.iter().zip(walls);
     described
         .map(|(surface, wall)| {

@@ -4,12 +4,12 @@
 //! temperatures are constants, those of the solution. Equations count heat into a node as positive, in the order and scale of
 //! [`crate::linear::stage_matrix`]: of cells and of surfaces outside the zones per square metre, of all others whole; the equation
 //! of a surface held at a temperature is that temperature. Terms that are the same in all stages but for the solution are left to
-//! [`super::steady_terms`].
+//! [`super::constant_terms`].
 
 use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink, Stage};
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::linear::building_system::is_held;
 use crate::linear::stage_matrix::StageMatrix;
 use crate::linear::wall::{Link, Storage};
@@ -22,7 +22,7 @@ pub(super) struct Carries {
     /// By wall: its area.
     area: Vec<bool>,
     /// Scales of the equations of surfaces.
-    scales: BySurface<Scale>,
+    scales: BySide<Scale>,
 }
 
 impl Carries {
@@ -52,11 +52,11 @@ pub(super) enum Scale {
 }
 
 impl Scale {
-    pub(super) fn of<S: Real>(model: &Model<'_, S>, surface: SurfaceId) -> Self {
+    pub(super) fn of<S: Real>(model: &Model<'_, S>, surface: SideId) -> Self {
         match model.plan.surfaces[surface].role {
-            SurfaceRole::Zone { .. } => Self::Whole,
+            SideRole::Zone { .. } => Self::Whole,
             _ if is_held(model, surface) => Self::Held,
-            SurfaceRole::Exterior => Self::PerArea,
+            SideRole::Exterior => Self::PerArea,
         }
     }
 }
@@ -275,10 +275,10 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
 
     /// Steady terms.
     #[inline(always)]
-    fn radiate(&mut self, _surfaces: [SurfaceId; 2], _area: S, _emission: [&Line<S>; 2]) {}
+    fn radiate(&mut self, _surfaces: [SideId; 2], _area: S, _emission: [&Line<S>; 2]) {}
 
     #[inline(always)]
-    fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>) {
+    fn radiate_outdoors(&mut self, surface: SideId, area: S, radiation: &OutdoorRadiation<'_, S>) {
         let node = Node::Surface(surface);
         let (at, emissivity) = (self.temperature(node), radiation.emissivity.lane(0));
         let emitted = Line::of(radiation.emission).at(at);
@@ -302,7 +302,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     }
 
     #[inline(always)]
-    fn impose(&mut self, surface: SurfaceId, _area: S, temperature: S) {
+    fn impose(&mut self, surface: SideId, _area: S, temperature: S) {
         let row = self.row(Node::Surface(surface));
         self.equations.add(row, temperature, 1.0);
     }

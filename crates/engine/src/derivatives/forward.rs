@@ -18,8 +18,8 @@ use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
 use super::kept_steps::{KeptRun, StepKeeper, keep_period};
-use super::known_steps::DerivativeStepper;
 use super::periodic_slopes::settle;
+use super::stored_steps::DerivativeStepper;
 
 /// Records of a run and their slopes.
 #[derive(Debug)]
@@ -133,9 +133,9 @@ fn run_with_slopes(
         .map(|(numbers, parameters)| {
             let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme.converged());
             if options.outputs.iter().any(Output::averages_absorbed_sun) {
-                stepper.follower.average_absorbed_sun();
+                stepper.linearized_stepper.average_absorbed_sun();
             }
-            let state = stepper.follower.begin(&options.initial, weather.row(0, 0));
+            let state = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
@@ -159,7 +159,7 @@ fn run_with_slopes(
             // The values are those of the plain run, as in reverse: rounding and tolerances must not add up.
             state.change_by(reached, |number, value| number.value = value);
             if action.row(options).is_some() {
-                let step = stepper.follower.readings();
+                let step = stepper.linearized_stepper.readings();
                 slopes.records.extend(options.outputs.iter().map(|output| output.read(plan, &step, state)));
             }
         }

@@ -2,7 +2,7 @@
 //! solutions of their stages. Where these would take too much memory, only every n-th state is kept and the steps between are
 //! run again.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::run::Action;
@@ -103,7 +103,8 @@ fn run_again(run: KeptRun<'_, '_>, start: &Start, actions: &[Action]) -> Result<
     let mut stepper = Stepper::new(run.plan, run.numbers, run.options.scheme.converged());
     stepper.known.start();
     stepper.set_history(&start.history);
-    let (mut before, mut state, mut unused) = (start.state.clone(), start.state.clone(), Ledger::new());
+    let (mut before, mut state, mut unused) =
+        (start.state.clone(), start.state.clone(), EnergyBalance::new());
     let mut stretch = Stretch::default();
     for action in actions {
         before.copy_from(&state);

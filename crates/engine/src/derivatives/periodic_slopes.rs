@@ -16,7 +16,7 @@ use crate::step::stage_solutions::StageSolutions;
 use crate::step::state::State;
 
 use super::kept_steps::{KeptRun, KeptSteps};
-use super::known_steps::DerivativeStepper;
+use super::stored_steps::DerivativeStepper;
 
 /// Changes from one pass to the next that are remembered.
 const DEPTH: usize = 12;
@@ -24,7 +24,7 @@ const DEPTH: usize = 12;
 const CHANGE: f64 = 1e-12;
 /// A search ends where the change has not fallen by a tenth in as many passes: round-off is left, or parts of a state that no period
 /// changes, such as the memory of a cell that does not melt.
-const PATIENCE: usize = 12;
+const DAMPING_START: usize = 12;
 
 /// Weights of the squares of the numbers of a state in the size of slopes, in plain numbers.
 pub(super) fn plain_weights<S: Real>(model: &Model<'_, S>, state: &State<S>) -> Vec<f64> {
@@ -63,7 +63,7 @@ impl SlopeSearch {
             self.smallest = square;
             self.since = 0;
         }
-        let found = square <= CHANGE * CHANGE * anderson.square(image) || self.since >= PATIENCE;
+        let found = square <= CHANGE * CHANGE * anderson.square(image) || self.since >= DAMPING_START;
         (!found).then(|| anderson.next())
     }
 }
@@ -76,9 +76,9 @@ pub(super) fn settle<const K: usize>(
     run: KeptRun<'_, '_>,
     watch: &RunControl,
 ) -> Result<(), EngineError> {
-    let (mut known, unknowns) = (StageSolutions::nothing(), stepper.follower.place());
+    let (mut known, unknowns) = (StageSolutions::nothing(), stepper.linearized_stepper.place());
     let stages = run.options.scheme.weights().len();
-    let weights = plain_weights(&stepper.follower.model, state);
+    let weights = plain_weights(&stepper.linearized_stepper.model, state);
     let mut searches: Vec<_> = (0..K).map(|_| SlopeSearch::new(weights.clone())).collect();
     let mut searching = [true; K];
     let slopes_of = |state: &State<Dual<K>>| -> Vec<[f64; K]> {
@@ -92,7 +92,7 @@ pub(super) fn settle<const K: usize>(
             for (&action, (before, solution)) in actions.iter().zip(stretch.iter()) {
                 watch.check()?;
                 state.read(before, |number, value| number.value = value);
-                let cells = &stepper.follower.model.parts.nonlinear_cells;
+                let cells = &stepper.linearized_stepper.model.parts.nonlinear_cells;
                 known.read(cells, solution, stages, (&unknowns, end));
                 stepper.take(action, state, run.weather, run.options.dt, &known);
             }

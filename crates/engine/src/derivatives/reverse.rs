@@ -23,8 +23,8 @@ use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
 use super::kept_steps::{KeptRun, KeptSteps, StepKeeper, Stretch};
-use super::known_steps::DerivativeStepper;
 use super::periodic_slopes::{SlopeSearch, plain_weights};
+use super::stored_steps::DerivativeStepper;
 
 /// A run, and what its reverse pass needs.
 #[derive(Debug)]
@@ -142,16 +142,16 @@ impl<'a> ReversePass<'a> {
     ) -> Self {
         let mut stepper = DerivativeStepper::new(plan, leaves, options.scheme.converged());
         if options.outputs.iter().any(Output::averages_absorbed_sun) {
-            stepper.follower.average_absorbed_sun();
+            stepper.linearized_stepper.average_absorbed_sun();
         }
         let length = Tape::len();
-        let now = stepper.follower.begin(&options.initial, weather.row(0, 0));
+        let now = stepper.linearized_stepper.begin(&options.initial, weather.row(0, 0));
         Tape::truncate(length);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
         Self {
             known: StageSolutions::nothing(),
-            blank: (stepper.follower.place(), reached.clone()),
+            blank: (stepper.linearized_stepper.place(), reached.clone()),
             stepper,
             weather,
             options,
@@ -174,7 +174,7 @@ impl<'a> ReversePass<'a> {
     ) -> Result<(), EngineError> {
         let coefficients: Vec<f64> = self.weights.iter().copied().take(self.base).collect();
         let own = self.state.clone();
-        let model = &self.stepper.follower.model;
+        let model = &self.stepper.linearized_stepper.model;
         let dual = |weight: f64| if weight > 0.0 { 1.0 / weight } else { 0.0 };
         let mut search = SlopeSearch::new(plain_weights(model, &self.now).into_iter().map(dual).collect());
         let mut weights = own.clone();
@@ -214,7 +214,7 @@ impl<'a> ReversePass<'a> {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = &stepper.follower.model.parts.nonlinear_cells;
+        let cells = &stepper.linearized_stepper.model.parts.nonlinear_cells;
         let stages = if action == Action::Balance { 1 } else { self.options.scheme.weights().len() };
         self.known.read(cells, solution, stages, (&self.blank.0, &self.blank.1));
         stepper.take(action, state, self.weather, self.options.dt, &self.known);
@@ -222,7 +222,7 @@ impl<'a> ReversePass<'a> {
         let weights = &mut self.weights;
         state.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
         if let Some(row) = action.row(self.options) {
-            let (outputs, step) = (&self.options.outputs, stepper.follower.readings());
+            let (outputs, step) = (&self.options.outputs, stepper.linearized_stepper.readings());
             for (output, weight) in outputs.iter().zip(&self.records[row * outputs.len()..]) {
                 let record = output.read(step.model.plan, &step, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
@@ -241,7 +241,7 @@ impl<'a> ReversePass<'a> {
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::truncate(self.base);
-        let start = self.stepper.follower.begin(&self.options.initial, self.weather.row(0, 0));
+        let start = self.stepper.linearized_stepper.begin(&self.options.initial, self.weather.row(0, 0));
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         start.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));

@@ -40,7 +40,11 @@ fn thick_walls_change_the_way_and_not_the_result() {
         let (options, watch) = (case.options(), RunControl::default());
         let run = |plan: &Plan| simulate(plan, &numbers, &forcing, &options, &watch).unwrap();
         let (expected, found) = (run(&coupled), run(&thick));
-        assert!(found.ledger.closure() < 1e-11, "seed {seed}: closure {:e}", found.ledger.closure());
+        assert!(
+            found.energy_balance.closure() < 1e-11,
+            "seed {seed}: closure {:e}",
+            found.energy_balance.closure()
+        );
         let outputs = outputs(&case.description);
         for (k, (&a, &b)) in expected.records.iter().zip(&found.records).enumerate() {
             // Loads are as precise as the airs that they hold.

@@ -114,7 +114,7 @@ impl Receiver {
 
     /// Adds the nearest walls first: what they shade needs no other.
     fn add_walls(&mut self, walls: &[&PlaneSurface]) {
-        let pieces = walls.iter().flat_map(|wall| self.in_front(wall));
+        let pieces = walls.iter().flat_map(|wall| self.condensed_in_zone(wall));
         let mut sorted: Vec<(f64, Obstacle)> = pieces
             .map(|corners| {
                 let (cone, nearest) = Cone::round(&self.surface.pieces, &corners);
@@ -127,7 +127,7 @@ impl Receiver {
 
     /// Adds thin shades, before the walls; whether there are any.
     fn add_shades(&mut self, shades: &[PlaneSurface]) -> bool {
-        let pieces = shades.iter().flat_map(|shade| self.in_front(shade));
+        let pieces = shades.iter().flat_map(|shade| self.condensed_in_zone(shade));
         let mut all: Vec<Obstacle> =
             pieces.map(|corners| Obstacle { corners, cone: None, wall: false }).collect();
         let any = !all.is_empty();
@@ -137,7 +137,7 @@ impl Receiver {
     }
 
     /// The parts of an obstacle in front of the plane.
-    fn in_front(&self, obstacle: &PlaneSurface) -> Vec<Vec<Vertex>> {
+    fn condensed_in_zone(&self, obstacle: &PlaneSurface) -> Vec<Vec<Vertex>> {
         let pieces = obstacle.pieces_in_space();
         let front = pieces.iter().filter_map(|piece| {
             let local: Vec<Vertex> = piece.iter().map(|&vertex| self.surface.plane.local(vertex)).collect();

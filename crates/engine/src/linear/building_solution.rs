@@ -1,6 +1,6 @@
 //! The solution of the linear system of a stage: temperatures from that of the coupled system, and other right-hand sides.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
 use crate::linear::surface_balance::ExteriorSurfaces;
@@ -65,16 +65,16 @@ impl<S: Real> BuildingSystem<'_, S> {
     /// Both surfaces of a wall.
     #[inline(always)]
     pub(super) fn resolve_surfaces(&self, model: &Model<'_, S>, w: usize) -> [S; 2] {
-        let of_zone = |surface: SurfaceId| self.coupled.right[model.plan.row(surface)];
+        let of_zone = |surface: SideId| self.coupled.right[model.plan.row(surface)];
         match self.exterior[w] {
             ExteriorSurfaces::Both(surfaces) => surfaces,
-            ExteriorSurfaces::None => SurfaceId::pair(w).map(of_zone),
+            ExteriorSurfaces::None => SideId::pair(w).map(of_zone),
             ExteriorSurfaces::One { side: 0, line } => {
-                let inner = of_zone(SurfaceId::inside(w));
+                let inner = of_zone(SideId::inside(w));
                 [line.at(inner), inner]
             }
             ExteriorSurfaces::One { line, .. } => {
-                let outer = of_zone(SurfaceId::outside(w));
+                let outer = of_zone(SideId::outside(w));
                 [outer, line.at(outer)]
             }
         }

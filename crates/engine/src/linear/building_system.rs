@@ -5,17 +5,17 @@
 //! system ([`CoupledSystem`]). Walls of constant properties are factored once for each stage length.
 
 use crate::building::coefficients::{Boundary, BridgeEnd};
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::model::Model;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::plan::{Plan, SideRole};
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::laws::{LinearisedLaws, StageInputs};
-use crate::linear::step_maps::StepMaps;
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
 use crate::linear::thick_walls::ThickWalls;
+use crate::linear::transition_matrices::TransitionMatrices;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::{Response, WallSystem};
-use crate::linear::zone_front::{Elimination, ZoneFronts};
+use crate::linear::zone_elimination::{Elimination, ZoneFronts};
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::weather::conditions::Conditions;
@@ -26,7 +26,7 @@ pub(crate) struct BuildingSystem<'a, S> {
     /// The linearised walls and their elimination.
     pub(crate) walls: Vec<WallSystem<S>>,
     /// Steps of the linear walls.
-    pub(crate) step_maps: StepMaps<S>,
+    pub(crate) transition_matrices: TransitionMatrices<S>,
     /// How the heat from each wall follows its surfaces.
     pub(crate) responses: Vec<Response<S>>,
     /// Heat of the walls into their surfaces at surfaces of 0 degC [W/m2].
@@ -61,7 +61,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         Self {
             single_walls: single(&model.parts.nonlinear_walls),
             single_windows: single(&model.parts.front_windows),
-            step_maps: StepMaps::new(plan, coefficients, &walls, diagonal),
+            transition_matrices: TransitionMatrices::new(plan, coefficients, &walls, diagonal),
             walls,
             responses: vec![Response::none(); count],
             sources: vec![[S::zero(); 2]; count],
@@ -87,7 +87,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             for &w in &model.parts.nonlinear_walls {
                 self.walls[w].set_stage_length(&model.coefficients.walls[w], length);
             }
-            self.step_maps.factor(&self.walls);
+            self.transition_matrices.factor(&self.walls);
             self.zone_fronts.set_responses(&self.responses);
             self.thick_walls.set_responses(&self.responses);
             self.factored_length = length;
@@ -108,9 +108,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         let parts = &inputs.model.parts;
         let matrix = self.factor_linear_walls(inputs.model, inputs.length) | parts.wind_changes_balances;
         if stage == 0 {
-            self.step_maps.first_sources(&self.walls, cells, &mut self.sources);
+            self.transition_matrices.first_sources(&self.walls, cells, &mut self.sources);
         } else {
-            self.step_maps.second_sources(&mut self.sources);
+            self.transition_matrices.second_sources(&mut self.sources);
         }
         self.zone_fronts.begin_stage(inputs, &self.sources);
         if !parts.nonlinear_balances {
@@ -171,10 +171,10 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         if self.thick_walls.is_empty() {
             return S::zero();
         }
-        let lacked = self.thick_walls.heat_since(iterate, solution);
-        let (mut lacking, mut round) = (lacked, S::zero());
+        let load_residual_before = self.thick_walls.heat_since(iterate, solution);
+        let (mut lacking, mut round) = (load_residual_before, S::zero());
         loop {
-            let lanes = self.thick_walls.lacks(lacking, lacked, round);
+            let lanes = self.thick_walls.load_residual(lacking, load_residual_before, round);
             if !lanes.any() {
                 break;
             }
@@ -191,7 +191,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         if S::zero().lt(round).any() {
             self.resolve_all(model, solution);
         }
-        lacked
+        load_residual_before
     }
 
     /// Solves for the unknowns that [`Self::solve`] does not compute, and copies laws and exterior surfaces of the zone fronts to
@@ -200,7 +200,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     pub(crate) fn finish(
         &mut self,
         model: &Model<'_, S>,
-        laws: &mut BySurface<SurfaceLaws<S>>,
+        laws: &mut BySide<SurfaceLaws<S>>,
         solution: &mut Unknowns<S>,
     ) -> S::Mask {
         if !model.parts.nonlinear_balances && self.thick_walls.is_empty() {
@@ -215,7 +215,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         }
         let mut sum = S::zero();
         for &w in &model.parts.detached_walls {
-            sum += solution.surfaces[SurfaceId::outside(w)] + solution.surfaces[SurfaceId::inside(w)];
+            sum += solution.surfaces[SideId::outside(w)] + solution.surfaces[SideId::inside(w)];
         }
         sum.abs().lt(S::constant(f64::MAX))
     }
@@ -327,14 +327,14 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         let model = inputs.model;
         let (source, response) = (self.sources[w], self.responses[w]);
         let area = model.coefficients.walls[w].area;
-        let roles = SurfaceId::pair(w).map(|surface| model.plan.surfaces[surface].role);
+        let roles = SideId::pair(w).map(|surface| model.plan.surfaces[surface].role);
         match roles {
-            [SurfaceRole::Exterior, SurfaceRole::Exterior] => {
-                let [outer, inner] = SurfaceId::pair(w)
+            [SideRole::Exterior, SideRole::Exterior] => {
+                let [outer, inner] = SideId::pair(w)
                     .map(|surface| exterior_balance(model, inputs.conditions, inputs.laws, surface));
                 ExteriorSurfaces::Both(solve_pair(outer, inner, source, &response))
             }
-            [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
+            [SideRole::Zone { row: outer, .. }, SideRole::Zone { row: inner, .. }] => {
                 for (e, mine) in [outer, inner].into_iter().enumerate() {
                     if matrix {
                         self.coupled.add_diagonal(mine, -(area * response.own(e)));
@@ -344,11 +344,11 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
                 }
                 ExteriorSurfaces::None
             }
-            [SurfaceRole::Zone { row, .. }, SurfaceRole::Exterior] => {
-                self.eliminate_one(inputs, SurfaceId::outside(w), row, matrix)
+            [SideRole::Zone { row, .. }, SideRole::Exterior] => {
+                self.eliminate_one(inputs, SideId::outside(w), row, matrix)
             }
-            [SurfaceRole::Exterior, SurfaceRole::Zone { row, .. }] => {
-                self.eliminate_one(inputs, SurfaceId::inside(w), row, matrix)
+            [SideRole::Exterior, SideRole::Zone { row, .. }] => {
+                self.eliminate_one(inputs, SideId::inside(w), row, matrix)
             }
         }
     }
@@ -358,7 +358,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     fn eliminate_one(
         &mut self,
         inputs: &StageInputs<'_, S>,
-        surface: SurfaceId,
+        surface: SideId,
         row: usize,
         matrix: bool,
     ) -> ExteriorSurfaces<S> {
@@ -379,7 +379,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             ExteriorBalance::Gain(gain) => (source[o] + gain.offset) * self.inverses[w],
         };
         if matrix {
-            // Heat that leaves the surface in the zone and does not come back, as in `zone_front::exterior`.
+            // Heat that leaves the surface in the zone and does not come back, as in `zone_elimination::exterior`.
             let lost = match balance {
                 ExteriorBalance::Fixed(_) => -response.own(e),
                 ExteriorBalance::Gain(gain) => response.stored[e] + slope * (gain.slope + response.stored[o]),
@@ -394,9 +394,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
 /// Places in the coupled matrix of the entries between the two surfaces of a wall, in the rows of the outside and of the inside
 /// surface; nowhere where these are not both unknowns of it.
 fn entries_across(plan: &Plan, w: usize) -> [usize; 2] {
-    let rows = SurfaceId::pair(w).map(|surface| match plan.surfaces[surface].role {
-        SurfaceRole::Zone { row, .. } => row.checked_sub(plan.own_rows),
-        SurfaceRole::Exterior => None,
+    let rows = SideId::pair(w).map(|surface| match plan.surfaces[surface].role {
+        SideRole::Zone { row, .. } => row.checked_sub(plan.own_rows),
+        SideRole::Exterior => None,
     });
     let place = |[row, column]: [Option<usize>; 2]| plan.pattern.place(row?, column?);
     [rows, [rows[1], rows[0]]].map(|entry| place(entry).unwrap_or(plan.pattern.nowhere()))
@@ -404,7 +404,7 @@ fn entries_across(plan: &Plan, w: usize) -> [usize; 2] {
 
 /// Whether an exterior surface has an imposed temperature.
 #[inline(always)]
-pub(crate) fn is_held<S: Real>(model: &Model<'_, S>, index: SurfaceId) -> bool {
+pub(crate) fn is_held<S: Real>(model: &Model<'_, S>, index: SideId) -> bool {
     let surface = &model.coefficients.surfaces[index];
     surface.convection.is_none() && matches!(surface.boundary, Boundary::Imposed(_))
 }
@@ -415,7 +415,7 @@ pub(crate) fn exterior_balance<S: Real>(
     model: &Model<'_, S>,
     conditions: &Conditions<S>,
     laws: &LinearisedLaws<S>,
-    index: SurfaceId,
+    index: SideId,
 ) -> ExteriorBalance<S> {
     let surface = &model.coefficients.surfaces[index];
     let (at, laws) = (&conditions.surfaces[index], &laws.surfaces[index]);

@@ -1,6 +1,6 @@
 //! The laws of a building as straight lines: what the linear system of a stage is made of beside the walls.
 
-use crate::building::ids::BySurface;
+use crate::building::ids::BySide;
 use crate::building::model::Model;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
@@ -13,7 +13,7 @@ use crate::weather::conditions::Conditions;
 #[derive(Debug, Clone)]
 pub(crate) struct LinearisedLaws<S> {
     /// Convection and emission of each surface.
-    pub(crate) surfaces: BySurface<SurfaceLaws<S>>,
+    pub(crate) surfaces: BySide<SurfaceLaws<S>>,
     /// Heat that infiltration brings into each zone, of `T_outdoor - T_air` [W].
     pub(crate) infiltration: Vec<Line<S>>,
     /// Heat that ventilation and openings bring into each zone, of `T_outdoor - T_air` [W].

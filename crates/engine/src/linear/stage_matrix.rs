@@ -5,9 +5,9 @@
 //! at a temperature is that temperature.
 
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::plan::{Plan, SideRole};
 use crate::linear::building_system::{BuildingSystem, exterior_balance, is_held};
 use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, determinant};
@@ -88,23 +88,23 @@ impl<'a> StageMatrix<'a> {
 
     /// Balance of an exterior surface.
     #[inline(always)]
-    fn balance(&self, surface: SurfaceId) -> ExteriorBalance<f64> {
+    fn balance(&self, surface: SideId) -> ExteriorBalance<f64> {
         exterior_balance(&self.model, &self.conditions, &self.laws, surface)
     }
 
     /// Factor of the heat from a wall in the equation of its surface [-], in zones [m2].
     #[inline(always)]
-    fn takes(&self, surface: SurfaceId) -> f64 {
+    fn takes(&self, surface: SideId) -> f64 {
         match self.model.plan.surfaces[surface].role {
-            SurfaceRole::Zone { .. } => self.model.coefficients.walls[surface.wall()].area,
-            SurfaceRole::Exterior if is_held(&self.model, surface) => 0.0,
-            SurfaceRole::Exterior => 1.0,
+            SideRole::Zone { .. } => self.model.coefficients.walls[surface.wall()].area,
+            SideRole::Exterior if is_held(&self.model, surface) => 0.0,
+            SideRole::Exterior => 1.0,
         }
     }
 
     /// Rise of an exterior surface by heat, at a constant temperature of the other surface of its wall.
     #[inline(always)]
-    fn yields(&self, surface: SurfaceId) -> f64 {
+    fn yields(&self, surface: SideId) -> f64 {
         if is_held(&self.model, surface) { 1.0 } else { self.system.inverses[surface.wall()] }
     }
 
@@ -112,7 +112,7 @@ impl<'a> StageMatrix<'a> {
     #[inline(always)]
     fn pair(&self, w: usize) -> ([[f64; 2]; 2], f64) {
         let response = self.system.responses[w];
-        let (outer, inner) = (self.balance(SurfaceId::outside(w)), self.balance(SurfaceId::inside(w)));
+        let (outer, inner) = (self.balance(SideId::outside(w)), self.balance(SideId::inside(w)));
         let ([a, b], _) = outer.equation(0, [0.0; 2], &response);
         let ([d, c], _) = inner.equation(1, [0.0; 2], &response);
         ([[a, b], [c, d]], 1.0 / determinant(outer, inner, &response))
@@ -137,15 +137,15 @@ impl<'a> StageMatrix<'a> {
             let heat =
                 self.system.walls[w].forward(&mut cells[wall.first_cell..wall.first_cell + wall.len()]);
             for e in 0..2 {
-                surfaces[SurfaceId::new(w, e).index()] += heat[e].scale(self.takes(SurfaceId::new(w, e)));
-                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[SurfaceId::new(w, e)].role {
-                    block[row] += surfaces[SurfaceId::new(w, e).index()];
+                surfaces[SideId::new(w, e).index()] += heat[e].scale(self.takes(SideId::new(w, e)));
+                if let SideRole::Zone { row, .. } = self.model.plan.surfaces[SideId::new(w, e)].role {
+                    block[row] += surfaces[SideId::new(w, e).index()];
                 }
             }
             match self.system.exterior[w] {
                 ExteriorSurfaces::None => {}
                 ExteriorSurfaces::One { side, .. } => {
-                    let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
+                    let (local, zone) = (SideId::new(w, side), SideId::new(w, 1 - side));
                     surfaces[local.index()] = surfaces[local.index()].scale(self.yields(local));
                     let gain =
                         self.model.coefficients.walls[w].area * self.system.responses[w].other(1 - side);
@@ -154,10 +154,10 @@ impl<'a> StageMatrix<'a> {
                 ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
                     let [f, g] = [
-                        surfaces[SurfaceId::outside(w).index()].scale(inverse),
-                        surfaces[SurfaceId::inside(w).index()].scale(inverse),
+                        surfaces[SideId::outside(w).index()].scale(inverse),
+                        surfaces[SideId::inside(w).index()].scale(inverse),
                     ];
-                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
+                    (surfaces[SideId::outside(w).index()], surfaces[SideId::inside(w).index()]) =
                         (f.scale(d) - g.scale(b), g.scale(a) - f.scale(c));
                 }
             }
@@ -171,17 +171,17 @@ impl<'a> StageMatrix<'a> {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.model.plan.walls.iter().enumerate() {
-            for surface in SurfaceId::pair(w) {
-                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+            for surface in SideId::pair(w) {
+                if let SideRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
                     surfaces[surface.index()] = block[row];
                 }
             }
             if let ExteriorSurfaces::One { side, line } = self.system.exterior[w] {
-                let zone = surfaces[SurfaceId::new(w, 1 - side).index()].scale(line.slope);
-                surfaces[SurfaceId::new(w, side).index()] += zone;
+                let zone = surfaces[SideId::new(w, 1 - side).index()].scale(line.slope);
+                surfaces[SideId::new(w, side).index()] += zone;
             }
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
-            self.system.walls[w].back(SurfaceId::pair(w).map(|surface| surfaces[surface.index()]), own);
+            self.system.walls[w].back(SideId::pair(w).map(|surface| surfaces[surface.index()]), own);
         }
     }
 
@@ -202,27 +202,27 @@ impl<'a> StageMatrix<'a> {
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             let weights = self.system.walls[w].back_transposed(own);
             for e in 0..2 {
-                surfaces[SurfaceId::new(w, e).index()] += weights[e];
+                surfaces[SideId::new(w, e).index()] += weights[e];
             }
             match self.system.exterior[w] {
                 ExteriorSurfaces::None => {}
                 ExteriorSurfaces::One { side, line } => {
-                    let local = SurfaceId::new(w, side);
+                    let local = SideId::new(w, side);
                     surfaces[local.opposite().index()] += line.slope * surfaces[local.index()];
                     surfaces[local.index()] *= self.yields(local);
                 }
                 ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
                     let [f, g] = [
-                        surfaces[SurfaceId::outside(w).index()] * inverse,
-                        surfaces[SurfaceId::inside(w).index()] * inverse,
+                        surfaces[SideId::outside(w).index()] * inverse,
+                        surfaces[SideId::inside(w).index()] * inverse,
                     ];
-                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
+                    (surfaces[SideId::outside(w).index()], surfaces[SideId::inside(w).index()]) =
                         (f * d - g * c, g * a - f * b);
                 }
             }
-            for surface in SurfaceId::pair(w) {
-                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+            for surface in SideId::pair(w) {
+                if let SideRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
                     block[row] += surfaces[surface.index()];
                 }
             }
@@ -236,18 +236,17 @@ impl<'a> StageMatrix<'a> {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.model.plan.walls.iter().enumerate() {
-            for surface in SurfaceId::pair(w) {
-                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+            for surface in SideId::pair(w) {
+                if let SideRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
                     surfaces[surface.index()] = block[row];
                 }
             }
             if let ExteriorSurfaces::One { side, .. } = self.system.exterior[w] {
-                let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
+                let (local, zone) = (SideId::new(w, side), SideId::new(w, 1 - side));
                 let gain = self.model.coefficients.walls[w].area * self.system.responses[w].other(1 - side);
                 surfaces[local.index()] += self.yields(local) * gain * surfaces[zone.index()];
             }
-            let heat =
-                [0, 1].map(|e| self.takes(SurfaceId::new(w, e)) * surfaces[SurfaceId::new(w, e).index()]);
+            let heat = [0, 1].map(|e| self.takes(SideId::new(w, e)) * surfaces[SideId::new(w, e).index()]);
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             self.system.walls[w].forward_transposed(heat, own);
         }

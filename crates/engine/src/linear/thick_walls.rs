@@ -7,7 +7,7 @@
 //! doi:10.1007/978-3-642-05156-2). Where a stage is iterated anyway, the iterate stands for `x_k`, and what is left at the end is
 //! removed by a few solutions with the factors at hand.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::Response;
@@ -25,7 +25,7 @@ const MOST_ROUNDS: usize = 10_000;
 /// A surface of a thick wall.
 #[derive(Debug, Clone, Copy)]
 struct ThickSurface<S> {
-    surface: SurfaceId,
+    surface: SideId,
     /// Rows of the surface and of the other one of its wall.
     rows: [usize; 2],
     area: S,
@@ -46,14 +46,14 @@ pub(crate) struct ThickWalls<S> {
 impl<S: Real> ThickWalls<S> {
     pub(crate) fn new(model: &Model<'_, S>) -> Self {
         let (plan, walls) = (model.plan, &model.coefficients.walls);
-        let of = |surface: SurfaceId| ThickSurface {
+        let of = |surface: SideId| ThickSurface {
             surface,
             rows: [surface, surface.opposite()].map(|surface| plan.row(surface)),
             area: walls[surface.wall()].area,
             from_other: S::zero(),
         };
         let surfaces: Vec<_> =
-            model.parts.thick_walls.iter().flat_map(|&wall| SurfaceId::pair(wall).map(of)).collect();
+            model.parts.thick_walls.iter().flat_map(|&wall| SideId::pair(wall).map(of)).collect();
         let rows = if surfaces.is_empty() { 0 } else { plan.rows() };
         Self { surfaces, rounds: S::zero(), heat: vec![S::zero(); rows] }
     }
@@ -115,16 +115,16 @@ impl<S: Real> ThickWalls<S> {
 
     /// Where the solution may be the last: it had lacked little before anything was added.
     #[inline(always)]
-    pub(crate) fn accepts(lacked: S) -> S::Mask {
-        lacked.lt(S::constant(ACCEPTED.of::<S>()))
+    pub(crate) fn accepts(load_residual_before: S) -> S::Mask {
+        load_residual_before.lt(S::constant(ACCEPTED.of::<S>()))
     }
 
     /// Where another round is needed: by the heat that is lacking, and what had been lacking at first. Derivatives take all rounds:
     /// of them nothing is known.
     #[inline(always)]
-    pub(crate) fn lacks(&self, lacking: S, lacked: S, round: S) -> S::Mask {
+    pub(crate) fn load_residual(&self, lacking: S, load_residual_before: S, round: S) -> S::Mask {
         let enough = S::select(
-            Self::accepts(lacked),
+            Self::accepts(load_residual_before),
             S::constant(ROUNDING.of::<S>()),
             S::constant(ACCEPTED.of::<S>()),
         );

@@ -2,14 +2,14 @@
 
 use core::ops::Range;
 
-use crate::building::ids::BySurface;
+use crate::building::ids::BySide;
 use crate::number::real::Real;
 
 /// Temperatures of an iterate or a state, to read [degC].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Temperatures<'a, S> {
     pub(crate) cells: &'a [S],
-    pub(crate) surfaces: &'a BySurface<S>,
+    pub(crate) surfaces: &'a BySide<S>,
     pub(crate) air: &'a [S],
 }
 
@@ -17,7 +17,7 @@ pub(crate) struct Temperatures<'a, S> {
 #[derive(Debug, Clone)]
 pub(crate) struct Unknowns<S> {
     pub(crate) cells: Vec<S>,
-    pub(crate) surfaces: BySurface<S>,
+    pub(crate) surfaces: BySide<S>,
     pub(crate) air: Vec<S>,
 }
 

@@ -179,13 +179,13 @@ impl<S: Real> WallSystem<S> {
 
     /// The same evaluated, to rounding: the largest [W/m2]. Cells at the start of the step have a memory.
     #[inline(always)]
-    pub(crate) fn remainder(
+    pub(crate) fn linearization_error(
         &self,
         wall: &WallCoefficients<S>,
         memory: &[PcmHistory<S>],
         surfaces: [S; 2],
     ) -> S {
-        self.phase_change.remainder(
+        self.phase_change.linearization_error(
             wall,
             memory,
             (&self.storage, &self.rate),

@@ -356,7 +356,7 @@ impl<S: Real> PhaseChange<S> {
 
     /// See [`WallSystem::remainder`](super::wall::WallSystem::remainder); `flux`: along a link.
     #[inline(always)]
-    pub(super) fn remainder(
+    pub(super) fn linearization_error(
         &self,
         wall: &WallCoefficients<S>,
         memory: &[PcmHistory<S>],

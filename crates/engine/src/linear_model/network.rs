@@ -1,9 +1,9 @@
 //! The heat balances of a linear building as a network: conductances, heat capacities and inputs.
 
-use crate::balance::ledger::Flow;
+use crate::balance::energy_balance::Flow;
 use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink};
 use crate::building::coefficients::{Boundary, Coefficients, Imposed};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::CLIMATE_CHANNELS;
@@ -105,14 +105,14 @@ impl<'a> Network<'a> {
     }
 
     /// `<wall>.<side>_<quantity>`.
-    fn surface_input(&self, surface: SurfaceId, quantity: &str) -> String {
+    fn surface_input(&self, surface: SideId, quantity: &str) -> String {
         let wall = &self.plan.description.surfaces[surface.wall()].name;
         let side = if surface.is_outside() { "outside" } else { "inside" };
         format!("{wall}.{side}_{quantity}")
     }
 
     /// Name of the temperature imposed on a surface.
-    fn imposed_input(&self, surface: SurfaceId) -> String {
+    fn imposed_input(&self, surface: SideId) -> String {
         match &self.coefficients.surfaces[surface].boundary {
             Boundary::Imposed(Imposed::Channel(channel)) => {
                 self.plan.description.channels[channel - CLIMATE_CHANNELS].clone()
@@ -258,20 +258,20 @@ impl Sink<f64> for Network<'_> {
         }
     }
 
-    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: f64, [from, to]: [&Line<f64>; 2]) {
+    fn radiate(&mut self, surfaces: [SideId; 2], area: f64, [from, to]: [&Line<f64>; 2]) {
         let offset = area * (from.offset - to.offset);
         self.couple(surfaces.map(Node::Surface), [area * from.slope, area * to.slope], offset);
     }
 
-    fn radiate_outdoors(&mut self, surface: SurfaceId, area: f64, radiation: &OutdoorRadiation<'_, f64>) {
+    fn radiate_outdoors(&mut self, surface: SideId, area: f64, radiation: &OutdoorRadiation<'_, f64>) {
         let (node, place) = (Node::Surface(surface), surface.index());
-        let (row, OutdoorRadiation { emissivity, emission, of_sky, of_air, .. }) =
+        let (row, OutdoorRadiation { emissivity, emission, sky_factor, air_factor, .. }) =
             (self.row(node), radiation);
         // Surface and outdoor air emit by one linear law, `offset + slope T`.
         self.add(row, row, -(area * emissivity) * emission.slope);
-        self.drive(node, (place, 1), "outdoor_air_temperature", area * of_air * emission.slope);
-        self.drive(node, (place, 2), "sky_emission", area * of_sky);
-        self.drive(node, (place, 3), "one", area * (of_air - emissivity) * emission.offset);
+        self.drive(node, (place, 1), "outdoor_air_temperature", area * air_factor * emission.slope);
+        self.drive(node, (place, 2), "sky_emission", area * sky_factor);
+        self.drive(node, (place, 3), "one", area * (air_factor - emissivity) * emission.offset);
     }
 
     fn release(&mut self, node: Node, size: f64, _heat: f64, origin: Origin<f64>) {
@@ -287,7 +287,7 @@ impl Sink<f64> for Network<'_> {
         }
     }
 
-    fn impose(&mut self, surface: SurfaceId, _area: f64, _temperature: f64) {
+    fn impose(&mut self, surface: SideId, _area: f64, _temperature: f64) {
         let name = self.imposed_input(surface);
         let input = self.input((surface.index(), 1), &name);
         self.held.push((self.n_states + surface.index(), input));

@@ -9,7 +9,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::step::Scheme;
 use crate::step::control::RunControl;
-use crate::step::follower::Follower;
+use crate::step::linearized_stepper::TangentStepper;
 
 /// Writes a plan at a parameter vector as matrices.
 ///
@@ -19,12 +19,12 @@ pub fn state_space(plan: &Plan, numbers: &[f64], control: &RunControl) -> Result
     let coefficients = Coefficients::new(plan, numbers);
     require_linear(plan, numbers, &coefficients)?;
     // Laws are linear: their tangents at 0 degC and in calm air are the laws themselves.
-    let mut follower = Follower::new(plan, numbers, Scheme::BackwardEuler);
-    follower.linearise_at_rest();
+    let mut linearized_stepper = TangentStepper::new(plan, numbers, Scheme::BackwardEuler);
+    linearized_stepper.linearise_at_rest();
     let mut network = Network::new(plan, &coefficients);
     let nothing = vec![0.0; plan.n_cells.max(plan.zones.len())];
     let contents = Contents { cells: &nothing, enthalpy: &nothing, air: &nothing };
     let stage = Stage { length: f64::INFINITY, ratio: 0.0, start: contents, first: contents };
-    follower.balances().visit(&stage, &mut network);
+    linearized_stepper.balances().visit(&stage, &mut network);
     network.eliminate_surfaces(control)
 }

@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::lanes::Lanes;
 use crate::number::macros::{add_assign, chain_rule};
-use crate::number::real::{Equations, LinearSystem, Logistic, Real, SteadyTerm};
+use crate::number::real::{ConstantTerm, Equations, LinearSystem, Logistic, Real};
 
 /// A number with `K` forward derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,8 +133,8 @@ impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
     }
 
     #[inline(always)]
-    fn add_steady(&mut self, terms: &[SteadyTerm<Dual<K>>], known: &[f64]) {
-        for &SteadyTerm { number, between: [a, b], equations, factors } in terms {
+    fn add_steady(&mut self, terms: &[ConstantTerm<Dual<K>>], known: &[f64]) {
+        for &ConstantTerm { number, between: [a, b], equations, factors } in terms {
             let difference = known[a] - known[b];
             for (equation, factor) in equations.into_iter().zip(factors) {
                 self.add(equation, number, factor * difference);
@@ -224,7 +224,7 @@ mod tests {
     fn a_steady_term_is_added_to_both_of_its_equations() {
         // p = 10 is multiplied by 5 - 3, and -2 and 3 times that are added: slopes 2 (-2) and 2 (3).
         let number = Dual::<1>::variable(10.0, 0);
-        let term = SteadyTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
+        let term = ConstantTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
         let mut equations = EquationSlopes::default();
         equations.begin(2);
         equations.add_steady(&[term], &[5.0, 1.0, 3.0]);

@@ -326,7 +326,7 @@ pub trait LinearSystem {
 /// A term of two equations that is the same in all stages but for the solution: `factors[e] number (known[a] - known[b])` is added to
 /// equation `equations[e]`, where `known` are the values of a stage and `between` is `[a, b]`.
 #[derive(Debug, Clone, Copy)]
-pub struct SteadyTerm<S> {
+pub struct ConstantTerm<S> {
     /// The number, which stays the same during a run.
     pub number: S,
     /// The values whose difference it multiplies.
@@ -346,7 +346,7 @@ pub trait Equations<S: Copy>: Clone + Debug + Default + Send + Sync {
     fn begin(&mut self, equations: usize);
 
     /// Adds terms that are the same in all stages but for the solution. Numbers on a tape do so in the reverse pass.
-    fn add_steady(&mut self, terms: &[SteadyTerm<S>], known: &[f64]);
+    fn add_steady(&mut self, terms: &[ConstantTerm<S>], known: &[f64]);
 
     /// Adds the term `factor * number` to an equation.
     fn add(&mut self, equation: usize, number: S, factor: f64);
@@ -359,7 +359,7 @@ pub trait Equations<S: Copy>: Clone + Debug + Default + Send + Sync {
 impl<S: Copy + Debug> Equations<S> for () {
     fn begin(&mut self, _equations: usize) {}
 
-    fn add_steady(&mut self, _terms: &[SteadyTerm<S>], _known: &[f64]) {}
+    fn add_steady(&mut self, _terms: &[ConstantTerm<S>], _known: &[f64]) {}
 
     fn add(&mut self, _equation: usize, _number: S, _factor: f64) {}
 

@@ -16,7 +16,7 @@ use core::mem::ManuallyDrop;
 use core::ops::{Add, Div, Mul, Neg, Range, Sub};
 
 use crate::number::macros::{add_assign, chain_rule};
-use crate::number::real::{Equations, LinearSystem, Logistic, Real, SteadyTerm};
+use crate::number::real::{ConstantTerm, Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
     // Emptied by each recording at its end; a value without a destructor is reached faster.
@@ -148,12 +148,12 @@ impl Tape {
 
 /// Adds the weights on the numbers of steady terms, from weights on the equations of a stage.
 pub(crate) fn add_steady_weights(
-    terms: &[SteadyTerm<Taped>],
+    terms: &[ConstantTerm<Taped>],
     known: &[f64],
     equations: &[f64],
     weights: &mut [f64],
 ) {
-    for &SteadyTerm { number, between: [a, b], equations: [i, j], factors } in terms {
+    for &ConstantTerm { number, between: [a, b], equations: [i, j], factors } in terms {
         let slope = (known[a] - known[b]) * (factors[0] * equations[i] + factors[1] * equations[j]);
         weights[number.place as usize] += number.slope * slope;
     }
@@ -203,7 +203,7 @@ impl Equations<Taped> for EquationTerms {
 
     /// They need no place on the tape, see `add_steady_weights`.
     #[inline(always)]
-    fn add_steady(&mut self, _terms: &[SteadyTerm<Taped>], _known: &[f64]) {}
+    fn add_steady(&mut self, _terms: &[ConstantTerm<Taped>], _known: &[f64]) {}
 
     #[inline(always)]
     fn add(&mut self, equation: usize, number: Taped, factor: f64) {
@@ -437,7 +437,7 @@ mod tests {
         let _recording = Tape::record();
         // 7 p with p = 1.5 is multiplied by 5 - 3, and -2 and 3 times that are added to equations of weights 0.5 and -2.
         let number = Taped::variable(1.5).scale(7.0);
-        let term = SteadyTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
+        let term = ConstantTerm { number, between: [0, 2], equations: [0, 1], factors: [-2.0, 3.0] };
         let mut weights = [0.0; 2];
         add_steady_weights(&[term], &[5.0, 1.0, 3.0], &[0.5, -2.0], &mut weights);
         assert_eq!(weights, [0.0, 7.0 * 2.0 * (-2.0 * 0.5 + 3.0 * -2.0)]);

@@ -1,6 +1,6 @@
 //! The actions of a run: each changes the state.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::run::options::Options;
@@ -33,12 +33,12 @@ impl Action {
         state: &mut State<S>,
         weather: &Weather<'_>,
         dt: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) -> Result<(), EngineError> {
         match self {
             Self::BeginPeriod => Ok(()),
-            Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
-            Self::FirstStep => stepper.first_step(state, weather, dt, ledger),
+            Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, energy_balance),
+            Self::FirstStep => stepper.first_step(state, weather, dt, energy_balance),
             Self::Balance => {
                 stepper.forget();
                 // The weather of the first stage is used for the start.

@@ -194,7 +194,7 @@ impl LaneTask for InLanes<'_, '_, '_> {
         let of = |p: usize| (0..S::LANES).map(move |lane| numbers[lane.min(members - 1) * width + p]);
         let lanes: Vec<S> = (0..width).map(|p| pack(&of(p).collect::<Vec<_>>())).collect();
         let run = simulate_in(plan, &lanes, weather, options, control)?;
-        let closure = run.ledger.worst_closure();
+        let closure = run.energy_balance.worst_closure();
         self.target.write(&run.records, closure, run.outside);
         let closed = closure.lt(S::constant(CLOSES)) | S::Mask::splat(!S::SINGLE);
         let lost = |lane: usize| run.failed.lane(lane) || !closed.lane(lane);
@@ -259,7 +259,7 @@ impl<'a> Pack<'a, '_> {
         match found {
             Ok(run) => {
                 records.copy_from_slice(&run.records);
-                (*closure, *outside) = (run.ledger.worst_closure(), run.outside);
+                (*closure, *outside) = (run.energy_balance.worst_closure(), run.outside);
                 Ok(())
             }
             Err(error) => {

@@ -10,7 +10,7 @@
 //! radiation and air flow keep temperatures within these bounds (the maximum principle). A scheme may overshoot them, see `OVERSHOOT`.
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Imposed};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::channel;
@@ -109,7 +109,7 @@ impl<S: Real> PhysicalLimits<S> {
             if const { S::LANES == 1 } {
                 return Err(name_impossible(stepper, state, row, (action, step)));
             }
-            stepper.give_up(impossible);
+            stepper.mark_failed(impossible);
         }
         self.compare_with_causes(stepper, state, rows, coldest, step);
         Ok(())
@@ -334,7 +334,7 @@ fn extreme<S: Real>(plan: &Plan, state: &State<S>, before: impl Fn(f64, f64) -> 
 fn name(plan: &Plan, k: usize) -> String {
     if let Some(k) = k.checked_sub(plan.n_cells) {
         return match k.checked_sub(plan.surfaces.len()) {
-            None => plan.surface_name(SurfaceId::new(k / 2, k % 2)),
+            None => plan.surface_name(SideId::new(k / 2, k % 2)),
             Some(zone) => format!("zone {} (air)", plan.description.zones[zone].name),
         };
     }
@@ -345,7 +345,7 @@ fn name(plan: &Plan, k: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::balance::ledger::Ledger;
+    use crate::balance::energy_balance::EnergyBalance;
     use crate::common::conditioned::{conditioned, conditioned_weather};
     use crate::common::{ALL_SCHEMES, cell, cell_outputs, forcing, options, run, set, values};
     use crate::input::forcing::Forcing;
@@ -366,7 +366,7 @@ mod tests {
         let mut stepper = Stepper::new(plan, &numbers, scheme);
         let mut state = stepper.begin(&Initial::Everywhere(20.0), weather.row(0, 0));
         let mut limits = PhysicalLimits::new(&state, scheme);
-        Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
+        Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut EnergyBalance::new()).unwrap();
         let at = Action::Balance.weather_rows(&weather, scheme);
         limits.judge(&mut stepper, &state, at, (Action::Balance, 0)).unwrap();
         change(&mut state, &mut stepper);
@@ -391,7 +391,7 @@ mod tests {
             cold.contains("step 7") && cold.contains("surface north (layer layer_0) has -273.2 degC"),
             "{cold}"
         );
-        let surface = text(&|state, _| state.surfaces[SurfaceId::inside(1)] = -764.0);
+        let surface = text(&|state, _| state.surfaces[SideId::inside(1)] = -764.0);
         assert!(surface.contains("surface east (inside) has -764.0 degC"), "{surface}");
         let air = text(&|state, _| state.air[1] = -300.0);
         assert!(air.contains("zone gap (air) has -300.0 degC"), "{air}");
@@ -409,7 +409,7 @@ mod tests {
         let weather = Weather::new(&plan, &Forcing::new(&rows, 2, plan.n_channels()).unwrap());
         let mut stepper = Stepper::new(&plan, &numbers, Scheme::Sdirk2);
         let mut state = stepper.begin(&Initial::Everywhere(20.0), weather.row(0, 0));
-        Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut Ledger::new()).unwrap();
+        Action::Balance.take(&mut stepper, &mut state, &weather, HOUR, &mut EnergyBalance::new()).unwrap();
         state.load[0] = 1e6;
         let mut limits = PhysicalLimits::new(&state, Scheme::Sdirk2);
         let at = Action::Balance.weather_rows(&weather, Scheme::Sdirk2);

@@ -1,6 +1,6 @@
 //! Time stepping: a plan at a parameter vector, driven by a forcing, from the start to the end.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
@@ -24,7 +24,7 @@ pub struct Run<S: Real> {
     /// Rows x outputs.
     pub records: Vec<S>,
     /// Heat since the start of the record's first step.
-    pub ledger: Ledger<S>,
+    pub energy_balance: EnergyBalance<S>,
     /// State at the end.
     pub state: State<S>,
     /// Repetitions of the warm-up.
@@ -93,18 +93,18 @@ pub(crate) fn simulate_observed<'a, S: Real>(
     mut observe: impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
     let plan = stepper.model.plan;
-    stepper.attend(control);
+    stepper.set_control(control);
     prepare(&mut stepper, options);
     let mut state = stepper.begin(&options.initial, weather.row(0, 0));
     let (cycles, warm_up_change) =
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.outputs.len());
-    let mut ledger = Ledger::new();
+    let mut energy_balance = EnergyBalance::new();
     let mut limits = PhysicalLimits::new(&state, options.scheme);
     let mut validity = Validity::new(&stepper.model);
     for action in Action::all(weather.steps(), options) {
         control.check()?;
-        action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
+        action.take(&mut stepper, &mut state, weather, options.dt, &mut energy_balance)?;
         control.count_step();
         let rows = action.weather_rows(weather, options.scheme);
         limits.judge(&mut stepper, &state, rows, (action, action.step()))?;
@@ -118,10 +118,10 @@ pub(crate) fn simulate_observed<'a, S: Real>(
         }
         observe(&stepper, &state, action)?;
     }
-    ledger.set_content(state.heat_content(&stepper.model), weather.steps());
+    energy_balance.set_content(state.heat_content(&stepper.model), weather.steps());
     Ok(Run {
         records,
-        ledger,
+        energy_balance,
         state,
         cycles,
         warm_up_change,
@@ -148,7 +148,7 @@ fn judge_records<S: Real>(
             let values: Vec<f64> = row.iter().map(|value| value.lane(0)).collect();
             require_limits(stepper.model.plan, outputs, &values, step)?;
         }
-        stepper.give_up(beyond);
+        stepper.mark_failed(beyond);
     }
     Ok(())
 }

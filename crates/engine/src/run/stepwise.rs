@@ -2,7 +2,7 @@
 //!
 //! The actions are those of [`simulate`](crate::run::simulate::simulate), so that the same weather gives the same bits.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
@@ -27,7 +27,7 @@ pub struct StepByStep<'a> {
     /// Weather of nothing, from which that of each step is made.
     weather: Weather<'a>,
     state: State<f64>,
-    ledger: Ledger<f64>,
+    energy_balance: EnergyBalance<f64>,
     limits: PhysicalLimits<f64>,
     validity: Validity,
     /// Steps made since the start.
@@ -59,14 +59,15 @@ impl<'a> StepByStep<'a> {
         let mut state = stepper.begin(&options.initial, weather.row(0, 0));
         let control = RunControl::default();
         warm_up(&mut stepper, &mut state, &weather, options, &control, &mut |_, _, _| Ok(()))?;
-        let (mut ledger, mut limits) = (Ledger::new(), PhysicalLimits::new(&state, options.scheme));
+        let (mut energy_balance, mut limits) =
+            (EnergyBalance::new(), PhysicalLimits::new(&state, options.scheme));
         let first = weather.of(first_step);
-        Action::Balance.take(&mut stepper, &mut state, &first, options.dt, &mut ledger)?;
+        Action::Balance.take(&mut stepper, &mut state, &first, options.dt, &mut energy_balance)?;
         let rows = Action::Balance.weather_rows(&first, options.scheme);
         limits.judge(&mut stepper, &state, rows, (Action::Balance, 0))?;
         let weather = Weather::for_single_run(plan, &Forcing::none(), 0);
         let validity = Validity::new(&stepper.model);
-        Ok(Self { plan, options, stepper, weather, state, ledger, limits, validity, steps: 0 })
+        Ok(Self { plan, options, stepper, weather, state, energy_balance, limits, validity, steps: 0 })
     }
 
     /// Makes a step in its weather. The state stays as it was where the step fails; after an impossible one the run cannot go on.
@@ -78,13 +79,15 @@ impl<'a> StepByStep<'a> {
         // The forcing holds one step.
         let action = if self.steps == 0 { Action::first(self.options) } else { Action::Step(0) };
         let weather = self.weather.of(forcing);
-        let Self { stepper, state, ledger, limits, .. } = self;
-        action.take(stepper, state, &weather, self.options.dt, ledger).map_err(|error| match error {
-            EngineError::NotConverged { stage, place, residual, iterations, .. } => {
-                EngineError::NotConverged { step: self.steps, stage, place, residual, iterations }
-            }
-            other => other,
-        })?;
+        let Self { stepper, state, energy_balance, limits, .. } = self;
+        action.take(stepper, state, &weather, self.options.dt, energy_balance).map_err(
+            |error| match error {
+                EngineError::NotConverged { stage, place, residual, iterations, .. } => {
+                    EngineError::NotConverged { step: self.steps, stage, place, residual, iterations }
+                }
+                other => other,
+            },
+        )?;
         let rows = action.weather_rows(&weather, self.options.scheme);
         limits.judge(stepper, state, rows, (action, self.steps))?;
         self.validity.judge(&self.stepper, &self.state, self.steps);
@@ -122,9 +125,9 @@ impl<'a> StepByStep<'a> {
     /// Relative residual of the energy balance so far, or of the vapour balance if that is larger [-].
     #[must_use]
     pub fn closure(&self) -> f64 {
-        let mut ledger = self.ledger;
-        ledger.set_content(self.state.heat_content(&self.stepper.model), self.steps);
-        ledger.worst_closure()
+        let mut energy_balance = self.energy_balance;
+        energy_balance.set_content(self.state.heat_content(&self.stepper.model), self.steps);
+        energy_balance.worst_closure()
     }
 
     /// All numbers that the steps to come depend on beside weather and parameters.
@@ -152,7 +155,7 @@ impl<'a> StepByStep<'a> {
         }
         self.state.read(state, |mine, saved| *mine = saved);
         self.stepper.set_history(&history);
-        self.ledger = Ledger::new();
+        self.energy_balance = EnergyBalance::new();
         self.limits = PhysicalLimits::new(&self.state, self.options.scheme);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and not negative")]
         let steps = steps as usize;

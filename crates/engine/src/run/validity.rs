@@ -4,9 +4,9 @@
 //! and of the sky. A law goes on outside of it; the caller warns.
 
 use crate::building::cell::Matter;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::formula::function::Function;
@@ -48,7 +48,7 @@ type Values = Vec<(&'static str, &'static str, f64)>;
 /// A law that says where it holds.
 #[derive(Debug, Clone, Copy)]
 enum Limited {
-    Convection(SurfaceId),
+    Convection(SideId),
     Conductivity { wall: usize, layer: usize },
     Infiltration(usize),
     Sky,
@@ -106,7 +106,7 @@ impl Validity {
 /// The laws of a building that say where they hold.
 fn limited<S: Real>(model: &Model<'_, S>) -> Vec<Limited> {
     let (plan, coefficients) = (model.plan, &model.coefficients);
-    let convects = |surface: &SurfaceId| model.convection(*surface).is_some_and(SurfaceConvection::limited);
+    let convects = |surface: &SideId| model.convection(*surface).is_some_and(SurfaceConvection::limited);
     let layers = plan.walls.iter().enumerate();
     let layers =
         layers.flat_map(|(wall, layout)| (0..layout.layer_cells.len()).map(move |layer| (wall, layer)));
@@ -138,8 +138,8 @@ impl Limited {
         match self {
             Self::Convection(surface) => {
                 let air = match model.plan.surfaces[surface].role {
-                    SurfaceRole::Zone { zone, .. } => state.air[zone],
-                    SurfaceRole::Exterior => conditions.surfaces[surface].temperature,
+                    SideRole::Zone { zone, .. } => state.air[zone],
+                    SideRole::Exterior => conditions.surfaces[surface].temperature,
                 };
                 let difference = state.surfaces[surface] - air;
                 let law = model.convection(surface);

@@ -3,7 +3,7 @@
 //! A lane that has converged keeps what it passes on: its state, and what its guesses are made from. Other lanes repeat the period, and
 //! it with them, to no effect.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::error::EngineError;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::run::action::Action;
@@ -37,7 +37,7 @@ pub(super) fn warm_up<'a, S: Real>(
     let mut history: Option<History<S>> = None;
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
-        let mut unused = Ledger::new();
+        let mut unused = EnergyBalance::new();
         observe(stepper, state, Action::BeginPeriod)?;
         for action in (0..warmup.steps).map(Action::WarmUp) {
             control.check()?;
@@ -72,7 +72,7 @@ pub(super) fn warm_up<'a, S: Real>(
     }
     // Lanes that have converged do not depend on the others: these are run again alone.
     if S::LANES > 1 && (!(active | stepper.failed())).any() {
-        stepper.give_up(active);
+        stepper.mark_failed(active);
         restore(stepper, history.as_ref());
         return Ok((warmup.max_cycles, change_left));
     }

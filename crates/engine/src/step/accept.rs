@@ -1,6 +1,6 @@
 //! The end of a step: the last stage becomes the new state, and the ledger receives the heat of the step.
 
-use crate::balance::ledger::{Ledger, Power};
+use crate::balance::energy_balance::{EnergyBalance, Power};
 use crate::building::coefficients::Matter;
 use crate::building::model::Model;
 use crate::linear::wall::{StorageRule, WallSystem};
@@ -19,10 +19,11 @@ impl<S: Real> Stepper<'_, S> {
         state: &mut State<S>,
         energy: &Power<S>,
         length: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) {
         let Self { model, scheme, solver, histories, .. } = &mut *self;
-        let mut stored = solver.system.step_maps.finish(&solver.solution.surfaces, &mut state.cells);
+        let mut stored =
+            solver.system.transition_matrices.finish(&solver.solution.surfaces, &mut state.cells);
         let reached = Reached {
             walls: &solver.system.walls,
             cells: &solver.solution.cells,
@@ -53,7 +54,7 @@ impl<S: Real> Stepper<'_, S> {
         {
             *largest = residuals.stages.iter().fold(*largest, |largest, &residual| largest.max(residual));
         }
-        ledger.add_step(energy, stored);
+        energy_balance.add_step(energy, stored);
     }
 }
 

@@ -1,8 +1,8 @@
 //! The heat balances of the stage just solved, and the heat that it adds to the ledger.
 
-use crate::balance::ledger::Power;
+use crate::balance::energy_balance::Power;
 use crate::balance::terms::Balances;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::number::real::Real;
 use crate::step::stage::Stage;
 use crate::step::state::State;
@@ -45,7 +45,7 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Conduction from a surface into its wall [W/m2].
     #[inline(always)]
-    fn flux_into_wall(&self, surface: SurfaceId) -> S {
+    fn flux_into_wall(&self, surface: SideId) -> S {
         let (w, e) = (surface.wall(), surface.side());
         let (system, surfaces) = (&self.solver.system, self.solver.solution.surfaces.pair(w));
         let wall = &self.model.plan.walls[w];

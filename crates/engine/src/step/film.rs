@@ -1,6 +1,6 @@
 //! Convective heat transfer coefficients at temperatures.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::number::real::Real;
 use crate::weather::conditions::Conditions;
@@ -14,7 +14,7 @@ const LEAST: f64 = 1e-3;
 pub(crate) fn film<S: Real>(
     model: &Model<'_, S>,
     conditions: &Conditions<S>,
-    surface: SurfaceId,
+    surface: SideId,
     temperature: S,
     air: S,
 ) -> S {

@@ -1,7 +1,7 @@
 //! The temperatures that the iteration of a stage starts from, extrapolated from what went before.
 
 use crate::building::coefficients::Matter;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::linear::unknowns::{Temperatures, Unknowns, line};
@@ -104,7 +104,7 @@ impl<S: Real> Unknowns<S> {
     #[inline(always)]
     pub(crate) fn shift(
         &mut self,
-        surfaces: &[SurfaceId],
+        surfaces: &[SideId],
         from: &Temperatures<'_, S>,
         known: &[Temperatures<'_, S>; 2],
     ) {

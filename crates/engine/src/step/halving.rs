@@ -60,7 +60,7 @@ impl Part {
 
 /// The parts of a step.
 #[derive(Debug, Clone)]
-pub(crate) struct StepParts<S> {
+pub(crate) struct Substeps<S> {
     /// Still to be solved, the next one last.
     left: Vec<Part>,
     /// Ideal load of each zone, summed over the parts solved so far, each by its share of the step [W].
@@ -69,7 +69,7 @@ pub(crate) struct StepParts<S> {
     before: usize,
 }
 
-impl<S: Real> StepParts<S> {
+impl<S: Real> Substeps<S> {
     /// For a number of zones.
     pub(crate) fn new(zones: usize) -> Self {
         Self { left: Vec::new(), load: vec![S::zero(); zones], before: 0 }
@@ -102,7 +102,7 @@ impl<S: Real> StepParts<S> {
 
     /// Whether the step has taken more iterations than it may, of those made so far.
     #[inline(always)]
-    pub(crate) fn exhausted(&self, iterations: usize) -> bool {
+    pub(crate) fn limit_reached(&self, iterations: usize) -> bool {
         iterations - self.before > MAX_WORK
     }
 
@@ -164,7 +164,7 @@ mod tests {
     /// Halves follow each other without gap, down to 1/64 of the step, and then the error is given back.
     #[test]
     fn halves_cover_the_step() {
-        let mut parts = StepParts::<f64>::new(1);
+        let mut parts = Substeps::<f64>::new(1);
         parts.begin(3);
         let (mut end, mut count, mut mean) = (0.0, 0, 0.0_f64);
         while let Some(part) = parts.next() {

@@ -5,7 +5,7 @@ use crate::building::coefficients::Matter;
 use crate::linear::unknowns::line;
 use crate::linear::wall::StorageRule;
 use crate::number::real::Real;
-use crate::step::newton::{PATIENCE, StageSolver};
+use crate::step::newton::{DAMPING_START, StageSolver};
 use crate::step::stage::Stage;
 use crate::step::state::blend;
 
@@ -17,7 +17,7 @@ impl<S: Real> StageSolver<'_, S> {
     /// Moves the iterate of the active lanes to the solution, limited where it would cross a melting range.
     #[inline(always)]
     pub(super) fn advance(&mut self, stage: &Stage<'_, S>, active: S::Mask, iteration: usize) {
-        if iteration >= PATIENCE && iteration.is_multiple_of(3) {
+        if iteration >= DAMPING_START && iteration.is_multiple_of(3) {
             self.damp();
         }
         let model = stage.model;

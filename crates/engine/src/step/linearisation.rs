@@ -1,7 +1,7 @@
 //! The laws of a building linearised about an iterate.
 
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::linear::laws::LinearisedLaws;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::{Iterate, Link, Start, WallSystem};
@@ -109,8 +109,8 @@ impl<S: Real> Linearisation<S> {
         for &index in &variable.nonlinear {
             let (surface, at) = (&model.coefficients.surfaces[index], &conditions.surfaces[index]);
             let air = match model.plan.surfaces[index].role {
-                SurfaceRole::Zone { zone, .. } => iterate.air[zone],
-                SurfaceRole::Exterior => at.temperature,
+                SideRole::Zone { zone, .. } => iterate.air[zone],
+                SideRole::Exterior => at.temperature,
             };
             if let Some(convection) = &surface.convection {
                 let difference = iterate.surfaces[index] - air;

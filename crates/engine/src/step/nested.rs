@@ -38,7 +38,7 @@ impl<S: Real> StageSolver<'_, S> {
             let places = [&outer, &self.solution];
             let moved = self.distance(model, &outer);
             if moved.lt(enough).any()
-                && ThickWalls::accepts(self.lacked).any()
+                && ThickWalls::accepts(self.load_residual_before).any()
                 && self.nonlinear.accepts_with_all_evaluated(stage, change, &self.system, places).any()
             {
                 self.counters.nested += 1;

@@ -13,14 +13,14 @@ use crate::linear::unknowns::Unknowns;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::control::RunControl;
 use crate::step::linearisation::Linearisation;
-use crate::step::remainder::NonlinearLaws;
+use crate::step::linearization_error::NonlinearLaws;
 use crate::step::scheme::Tableau;
 use crate::step::stage::{Stage, StageStart};
 
 /// Largest change of a temperature in the last iteration, where many have not brought the residual down [K].
 pub(super) const TOLERANCE: ByPrecision = ByPrecision { double: 1e-6, single: 1e-4 };
 /// Iterations after which every third moves half of the step only, so that the iteration leaves a cycle.
-pub(super) const PATIENCE: usize = 20;
+pub(super) const DAMPING_START: usize = 20;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
 pub(super) const MAX_ITERATIONS: usize = 60;
 
@@ -66,7 +66,7 @@ pub(crate) struct StageSolver<'a, S: Real> {
     pub(crate) failed: S::Mask,
     pub(crate) counters: Counters<S>,
     /// What the last linear solve lacked of the heat through thick walls [W/m2].
-    pub(super) lacked: S,
+    pub(super) load_residual_before: S,
     /// Where the caller can stop it.
     pub(crate) control: Option<&'a RunControl>,
 }
@@ -97,7 +97,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 largest_change: S::zero(),
                 largest_residual: None,
             },
-            lacked: S::zero(),
+            load_residual_before: S::zero(),
             control: None,
         }
     }
@@ -152,7 +152,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         }
         linearisation.linearise_surfaces(model, conditions, iterate, false);
         system.solve(&inputs(stage, linearisation, start), iterate, solution);
-        self.lacked = system.couple_thick_walls(model, iterate, solution);
+        self.load_residual_before = system.couple_thick_walls(model, iterate, solution);
     }
 
     /// Newton's iteration. A lane that has converged, or was not active from the start, keeps its iterate: later solves
@@ -220,17 +220,17 @@ impl<'a, S: Real> StageSolver<'a, S> {
     /// Where the solution is accepted: what the tangents leave out is small, or after many iterations the change.
     #[inline(always)]
     fn accepts(&self, stage: &Stage<'_, S>, change: S, iteration: usize) -> S::Mask {
-        let small = self.small_remainder(stage, change);
-        if iteration < PATIENCE {
+        let small = self.small_linearization_error(stage, change);
+        if iteration < DAMPING_START {
             return small;
         }
-        small | (change.lt(S::constant(TOLERANCE.of::<S>())) & ThickWalls::accepts(self.lacked))
+        small | (change.lt(S::constant(TOLERANCE.of::<S>())) & ThickWalls::accepts(self.load_residual_before))
     }
 
     /// Where what the tangents leave out at the solution is accepted, see [`NonlinearLaws::accepts`].
     #[inline(always)]
-    pub(super) fn small_remainder(&self, stage: &Stage<'_, S>, change: S) -> S::Mask {
-        let coupled = ThickWalls::accepts(self.lacked);
+    pub(super) fn small_linearization_error(&self, stage: &Stage<'_, S>, change: S) -> S::Mask {
+        let coupled = ThickWalls::accepts(self.load_residual_before);
         coupled & self.nonlinear.accepts(stage, change, &self.system, [&self.iterate, &self.solution])
     }
 

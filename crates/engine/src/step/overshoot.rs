@@ -78,10 +78,10 @@ impl<S: Real> Stepper<'_, S> {
             return false;
         }
         if const { S::LANES > 1 } {
-            self.give_up(left);
+            self.mark_failed(left);
             return false;
         }
-        part.divisible() && !self.exhausted()
+        part.divisible() && !self.limit_reached()
     }
 
     /// Lowest and highest temperature of what acts on the air of a zone in the part just solved, beside heat [degC].

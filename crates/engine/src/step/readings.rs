@@ -1,7 +1,7 @@
 //! What outputs read after a step beside the state.
 
-use crate::building::ids::{BySurface, SurfaceId};
-use crate::building::layout::SurfaceRole;
+use crate::building::ids::{BySide, SideId};
+use crate::building::layout::SideRole;
 use crate::building::model::Model;
 use crate::linear::wall::WallSystem;
 use crate::number::real::{Mask, Real};
@@ -20,7 +20,7 @@ pub(crate) struct Readings<'r, S: Real> {
     pub(crate) weather: &'r StageWeather<S>,
     /// Walls, and temperatures of surfaces, of the last stage.
     pub(super) walls: &'r [WallSystem<S>],
-    pub(super) surfaces: &'r BySurface<S>,
+    pub(super) surfaces: &'r BySide<S>,
     pub(super) vapour: Option<&'r VapourBalances<'r, S>>,
 }
 
@@ -62,17 +62,17 @@ impl<S: Real> Readings<'_, S> {
     }
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
-    pub(crate) fn incident(&self, surface: SurfaceId) -> S {
+    pub(crate) fn incident(&self, surface: SideId) -> S {
         self.weather.incident(surface)
     }
 
     /// Long-wave radiation that a surface gains in the weather of the last stage [W/m2]; zero where the heat transfer
     /// coefficient contains it.
-    pub(crate) fn net_longwave(&self, state: &State<S>, surface: SurfaceId) -> S {
+    pub(crate) fn net_longwave(&self, state: &State<S>, surface: SideId) -> S {
         let Some(emission) = self.model.emission(surface) else { return S::zero() };
         let numbers = &self.model.coefficients;
         let own = emission.at(state.surfaces[surface]).0;
-        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
+        let SideRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
             return self.weather.conditions.surfaces[surface].longwave
                 - numbers.surfaces[surface].emissivity * own;
         };
@@ -87,10 +87,10 @@ impl<S: Real> Readings<'_, S> {
     }
 
     /// Convective heat transfer coefficient of a surface in the weather of the last stage [W/(m2 K)].
-    pub(crate) fn convection(&self, state: &State<S>, surface: SurfaceId) -> S {
+    pub(crate) fn convection(&self, state: &State<S>, surface: SideId) -> S {
         let air = match self.model.plan.surfaces[surface].role {
-            SurfaceRole::Zone { zone, .. } => state.air[zone],
-            SurfaceRole::Exterior => self.weather.conditions.surfaces[surface].temperature,
+            SideRole::Zone { zone, .. } => state.air[zone],
+            SideRole::Exterior => self.weather.conditions.surfaces[surface].temperature,
         };
         film(self.model, &self.weather.conditions, surface, state.surfaces[surface], air)
     }
@@ -106,14 +106,14 @@ impl<S: Real> Readings<'_, S> {
     }
 
     /// Relative humidity of the air of a zone at the temperature of a surface in it [-]; zero in no zone.
-    pub(crate) fn surface_humidity(&self, state: &State<S>, surface: SurfaceId) -> S {
-        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else { return S::zero() };
+    pub(crate) fn surface_humidity(&self, state: &State<S>, surface: SideId) -> S {
+        let SideRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else { return S::zero() };
         relative_humidity(state.surfaces[surface], state.vapour[zone], self.pressure())
     }
 
     /// Whether vapour of the air of a zone condenses on a surface in it, or forms frost there.
-    pub(crate) fn condenses(&self, state: &State<S>, surface: SurfaceId) -> S::Mask {
-        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
+    pub(crate) fn condenses(&self, state: &State<S>, surface: SideId) -> S::Mask {
+        let SideRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
             return S::Mask::splat(false);
         };
         condenses(state.surfaces[surface], state.vapour[zone], self.pressure())

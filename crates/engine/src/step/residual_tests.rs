@@ -1,6 +1,6 @@
 //! The fast elimination is held to the terms of the balances: the residual of each solved stage.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::building::plan::Plan;
 use crate::common::random::{Case, Contents as CaseContents};
 use crate::common::values;
@@ -24,9 +24,9 @@ fn worst<S: Real>(case: &Case, plan: &Plan, numbers: &[S]) -> [f64; 3] {
     stepper.evaluate_residuals();
     let mut state = stepper.begin(&case.options().initial, weather.row(0, 0));
     stepper.balance_surfaces(&mut state, &weather.at(0, 0)).unwrap();
-    let (mut ledger, mut apart, mut largest) = (Ledger::new(), S::zero(), S::zero());
+    let (mut energy_balance, mut apart, mut largest) = (EnergyBalance::new(), S::zero(), S::zero());
     for step in 0..case.steps {
-        stepper.step(&mut state, &weather, step, case.dt, &mut ledger).unwrap();
+        stepper.step(&mut state, &weather, step, case.dt, &mut energy_balance).unwrap();
         let residuals = stepper.residuals.as_ref().unwrap();
         // What is not a number is larger than all others.
         for &relative in &residuals.relative[..case.scheme.weights().len()] {

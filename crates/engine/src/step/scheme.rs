@@ -46,7 +46,7 @@ pub(crate) struct Tableau {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tolerance {
     /// Heat that the tangents of the laws leave out, over the largest heat flow density [-].
-    pub(crate) remainder: ByPrecision,
+    pub(crate) linearization_error: ByPrecision,
     /// How far the ideal loads that are missing would move the air [K]: the last stage supplies them.
     pub(crate) load: ByPrecision,
     /// Whether the first solution of a stage may be the last.
@@ -58,13 +58,13 @@ const SDIRK2: f64 = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
 
 /// Tight enough for difference quotients of results.
 const TIGHT: Tolerance = Tolerance {
-    remainder: ByPrecision { double: 1e-9, single: 1e-5 },
+    linearization_error: ByPrecision { double: 1e-9, single: 1e-5 },
     load: ByPrecision { double: 1e-5, single: 2e-3 },
     first: false,
 };
 /// Temperatures within some thousandths of a kelvin (docs/speed.md).
 const LOOSE: Tolerance = Tolerance {
-    remainder: ByPrecision { double: 1e-3, single: 1e-3 },
+    linearization_error: ByPrecision { double: 1e-3, single: 1e-3 },
     load: ByPrecision { double: 1e-2, single: 1e-2 },
     first: true,
 };

@@ -1,6 +1,6 @@
 //! The weather of the stages of a step, as numbers at the surfaces and zones of the building.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::number::real::Real;
 use crate::physics::longwave::black_temperature;
@@ -118,7 +118,7 @@ impl<S: Real> StageWeather<S> {
     }
 
     /// Sun absorbed by a surface, or by all panes of a window, mean over the last step [W/m2].
-    pub(crate) fn absorbed(&self, surface: SurfaceId) -> S {
+    pub(crate) fn absorbed(&self, surface: SideId) -> S {
         self.absorbed.get(surface.index()).copied().unwrap_or_else(S::zero)
     }
 
@@ -143,7 +143,7 @@ impl<S: Real> StageWeather<S> {
     }
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
-    pub(crate) fn incident(&self, surface: SurfaceId) -> S {
+    pub(crate) fn incident(&self, surface: SideId) -> S {
         self.index.irradiance_source(surface).map_or_else(S::zero, |source| self.sun.irradiances[source])
     }
 
@@ -164,7 +164,7 @@ fn add_absorbed<S: Real>(means: &mut [S], model: &Model<'_, S>, conditions: &Con
     }
     for (&w, window) in model.plan.windows.iter().zip(&conditions.sun.windows) {
         let all = window.panes.iter().fold(S::zero(), |sum, &pane| sum + pane);
-        for surface in SurfaceId::pair(w) {
+        for surface in SideId::pair(w) {
             let shared = conditions.surfaces[surface].solar;
             means[surface.index()] += (all - shared).scale(weight);
         }

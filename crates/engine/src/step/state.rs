@@ -2,7 +2,7 @@
 
 use crate::building::coefficients::Matter;
 use crate::building::coefficients::humidity::VapourSurface;
-use crate::building::ids::BySurface;
+use crate::building::ids::BySide;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
@@ -74,7 +74,7 @@ pub struct State<S> {
     /// Memory of the cells: their history, as far as the laws depend on it.
     pub memory: Vec<PcmHistory<S>>,
     /// Surface temperatures [degC].
-    pub surfaces: BySurface<S>,
+    pub surfaces: BySide<S>,
     /// Zone air temperatures [degC].
     pub air: Vec<S>,
     /// Ideal load of each zone, mean over the step that ended here [W]; cooling is negative.

@@ -3,8 +3,8 @@
 //! The state changes only when the step is accepted. A step that does not converge, or carries the air of a zone beyond what acts on it,
 //! is made in parts.
 
+use crate::balance::energy_balance::{EnergyBalance, Power};
 use crate::balance::flow_index::FlowIndex;
-use crate::balance::ledger::{Ledger, Power};
 use crate::building::coefficients::Coefficients;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
@@ -13,7 +13,7 @@ use crate::linear::vent_network::VentNetwork;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::control::RunControl;
 use crate::step::guess::Guess;
-use crate::step::halving::{Part, StepParts};
+use crate::step::halving::{Part, Substeps};
 use crate::step::ideal_loads::loads::IdealLoads;
 use crate::step::newton::{Counters, Search, StageSolver};
 use crate::step::residual::StageResiduals;
@@ -39,7 +39,7 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) solver: StageSolver<'a, S>,
     pub(crate) guess: Guess<S>,
     pub(crate) ideal_loads: IdealLoads<S>,
-    pub(crate) parts: StepParts<S>,
+    pub(crate) parts: Substeps<S>,
     pub(crate) known: StageSolutions<S>,
     /// Present only in a building with vapour balances.
     pub(crate) vapour: Option<Box<VapourBalances<'a, S>>>,
@@ -66,7 +66,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             guess: Guess::none(),
             vapour: VapourBalances::new(&model, tableau.weights.len()).map(Box::new),
             vents: plan.vents.as_ref().map(|network| Box::new(VentNetwork::new(network))),
-            parts: StepParts::new(plan.zones.len()),
+            parts: Substeps::new(plan.zones.len()),
             known: StageSolutions::nothing(),
             residuals: None,
             histories: StageHistories::new(&model),
@@ -81,7 +81,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Lets the caller stop it, also within a step.
-    pub(crate) fn attend(&mut self, control: &'a RunControl) {
+    pub(crate) fn set_control(&mut self, control: &'a RunControl) {
         self.solver.control = Some(control);
     }
 
@@ -102,7 +102,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Marks lanes as failed.
-    pub(crate) fn give_up(&mut self, lanes: S::Mask) {
+    pub(crate) fn mark_failed(&mut self, lanes: S::Mask) {
         self.solver.failed = self.solver.failed | lanes;
     }
 
@@ -148,14 +148,14 @@ impl<'a, S: Real> Stepper<'a, S> {
         weather: &Weather<'_>,
         step: usize,
         dt: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) -> Result<(), EngineError> {
         self.parts.begin(step);
         self.control_vents(state, weather.row(step, 0), dt);
-        self.take_parts(state, weather, dt, ledger)
+        self.take_parts(state, weather, dt, energy_balance)
     }
 
-    /// The first step of a run that starts from one temperature everywhere: in parts that grow, see [`StepParts::begin_first`].
+    /// The first step of a run that starts from one temperature everywhere: in parts that grow, see [`Substeps::begin_first`].
     ///
     /// # Errors
     /// [`EngineError::NotConverged`].
@@ -164,11 +164,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         state: &mut State<S>,
         weather: &Weather<'_>,
         dt: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) -> Result<(), EngineError> {
         self.parts.begin_first();
         self.control_vents(state, weather.row(0, 0), dt);
-        self.take_parts(state, weather, dt, ledger)
+        self.take_parts(state, weather, dt, energy_balance)
     }
 
     // One copy only: inlining multiplies compile time.
@@ -178,7 +178,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         state: &mut State<S>,
         weather: &Weather<'_>,
         dt: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) -> Result<(), EngineError> {
         self.parts.count_from(self.solver.counters.iterations);
         self.known.begin();
@@ -187,7 +187,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             #[inline(always)]
             || {
                 while let Some(part) = self.parts.next() {
-                    match self.attempt(state, weather, part, dt, ledger) {
+                    match self.attempt(state, weather, part, dt, energy_balance) {
                         Ok(true) if part.halvings == 0 => {}
                         // Parts differ in length: no part is guessed from the one before it.
                         Ok(true) => {
@@ -208,7 +208,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[cold]
     #[inline(never)]
     fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
-        if S::LANES > 1 || self.exhausted() {
+        if S::LANES > 1 || self.limit_reached() {
             self.parts.clear();
             return Err(error);
         }
@@ -228,8 +228,8 @@ impl<'a, S: Real> Stepper<'a, S> {
 
     /// Whether the step has taken more iterations than it may.
     #[inline(always)]
-    pub(super) fn exhausted(&self) -> bool {
-        self.parts.exhausted(self.solver.counters.iterations)
+    pub(super) fn limit_reached(&self) -> bool {
+        self.parts.limit_reached(self.solver.counters.iterations)
     }
 
     /// A part of a step; the state stays as it was when it fails, and where it has to be divided: false.
@@ -240,7 +240,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         weather: &Weather<'_>,
         part: Part,
         dt: f64,
-        ledger: &mut Ledger<S>,
+        energy_balance: &mut EnergyBalance<S>,
     ) -> Result<bool, EngineError> {
         let (length, tableau) = (part.share * dt, self.scheme.tableau());
         self.begin_step(state, tableau.nodes[0], length);
@@ -257,8 +257,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         if self.overshoots(state, weather, part) {
             return Ok(false);
         }
-        self.accept(state, &energy, length, ledger);
-        self.advance_vapour(state, length, ledger);
+        self.accept(state, &energy, length, energy_balance);
+        self.advance_vapour(state, length, energy_balance);
         self.known.accept(part, state);
         Ok(true)
     }
@@ -296,7 +296,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         solver.start.begin(model, state);
         solver.start.load.copy_from_slice(&state.load);
         solver.start.holding.clear();
-        solver.system.step_maps.begin();
+        solver.system.transition_matrices.begin();
         self.known.restart();
         self.guess.first(model, state, node, &mut solver.iterate);
         solver.linearisation.extrapolate_gaps(0, &state.cells);
@@ -309,7 +309,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let Self { model, solver, histories, .. } = self;
         let StageSolver { system, start, solution, .. } = solver;
         histories.begin_second(model, state, tableau, &solution.cells);
-        system.step_maps.set_first_surfaces(&solution.surfaces);
+        system.transition_matrices.set_first_surfaces(&solution.surfaces);
         start.begin_second_stage(model, state, tableau.ratio, (&system.walls, solution));
         self.extrapolate_stage(state);
     }

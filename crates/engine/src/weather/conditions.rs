@@ -2,7 +2,7 @@
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
 use crate::building::humidity::HumidityPlan;
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::plan::Plan;
 use crate::input::forcing::{channel, scheduled};
 use crate::number::real::Real;
@@ -23,7 +23,7 @@ use crate::weather::zone_conditions::ZoneConditions;
 #[derive(Debug, Clone)]
 pub struct Conditions<S: Real> {
     /// Per surface.
-    pub surfaces: BySurface<SurfaceConditions<S>>,
+    pub surfaces: BySide<SurfaceConditions<S>>,
     /// Per zone.
     pub zones: Vec<ZoneConditions<S>>,
     /// Heat carried between two zones, per path [W/K].
@@ -53,7 +53,7 @@ pub struct Conditions<S: Real> {
     /// Emission of the outdoor air by each of [`WeatherIndex::emissions`] [W/m2].
     from_air: Vec<S>,
     /// Surfaces whose convection is written as text.
-    with_text: Box<[SurfaceId]>,
+    with_text: Box<[SideId]>,
 }
 
 impl<S: Real> Conditions<S> {
@@ -61,7 +61,7 @@ impl<S: Real> Conditions<S> {
     #[must_use]
     pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>, weather_index: &WeatherIndex<S>) -> Self {
         let zero = S::zero();
-        let is_text = |&surface: &SurfaceId| {
+        let is_text = |&surface: &SideId| {
             coefficients.surfaces[surface].convection.as_ref().is_some_and(SurfaceConvection::is_text)
         };
         let surfaces = coefficients.surfaces.iter().map(|surface| {
@@ -90,7 +90,7 @@ impl<S: Real> Conditions<S> {
             sky_weather: SkyWeather::default(),
             sun: SolarConditions::new(plan, weather_index),
             from_air: vec![zero; weather_index.emissions.len()],
-            with_text: (0..coefficients.surfaces.len()).map(SurfaceId::from_index).filter(is_text).collect(),
+            with_text: (0..coefficients.surfaces.len()).map(SideId::from_index).filter(is_text).collect(),
         }
     }
 
@@ -157,9 +157,9 @@ impl<S: Real> Conditions<S> {
         let mut turn = S::one();
         let mut keep = |a: S, b: S| {
             let (rise, mean) = (b - a, a + (b - a).scale(middle));
-            let rises = S::zero().lt(rise);
-            let most = mean / S::select(rises, rise.scale(middle - start), S::one());
-            turn = S::select(rises, turn.min(most.max(S::zero())), turn);
+            let load_sensitivities = S::zero().lt(rise);
+            let most = mean / S::select(load_sensitivities, rise.scale(middle - start), S::one());
+            turn = S::select(load_sensitivities, turn.min(most.max(S::zero())), turn);
         };
         for (a, b) in first.surfaces.iter().zip(&second.surfaces) {
             keep(a.solar, b.solar);
@@ -284,7 +284,7 @@ impl<S: Real> Conditions<S> {
                 at.solar = outside.absorptance * irradiances[source];
             }
             if let Some(emission) = outside.emission {
-                at.longwave = outside.of_air * self.from_air[emission] + outside.of_sky * sky;
+                at.longwave = outside.air_factor * self.from_air[emission] + outside.sky_factor * sky;
             }
         }
         for &index in &weather_index.windy {
@@ -346,7 +346,7 @@ mod tests {
     fn a_horizontal_plane_receives_the_global_radiation() {
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
         let at = conditions(&plan, &row());
-        let solar = |wall| at.surfaces[SurfaceId::outside(wall)].solar;
+        let solar = |wall| at.surfaces[SideId::outside(wall)].solar;
         assert!((solar(5) - 0.6 * 420.0).abs() < 1e-10, "{}", solar(5));
         assert!((solar(4) - 0.6 * 0.2 * 420.0).abs() < 1e-10, "{}", solar(4));
         // On the south wall the beam alone gives 600 cos 30; on the north wall there is none.
@@ -360,10 +360,10 @@ mod tests {
         let at = conditions(&plan, &row());
         let black = |kelvin: f64| 5.670_374_419e-8 * kelvin.pow4();
         assert!((at.sky / black(273.15) - 1.0).abs() < 1e-12);
-        let longwave = |wall| at.surfaces[SurfaceId::outside(wall)].longwave;
+        let longwave = |wall| at.surfaces[SideId::outside(wall)].longwave;
         assert!((longwave(5) / (0.9 * black(273.15)) - 1.0).abs() < 1e-12);
         assert!((longwave(4) / (0.9 * black(283.15)) - 1.0).abs() < 1e-12);
-        assert_eq!(at.surfaces[SurfaceId::outside(0)].temperature, 10.0);
+        assert_eq!(at.surfaces[SideId::outside(0)].temperature, 10.0);
     }
 
     /// Whatever the law, the surfaces and the glass absorb and lose what the window transmits.
@@ -373,13 +373,13 @@ mod tests {
             let plan = Plan::new(glazed_zone(sun, overhang)).unwrap();
             let at = conditions(&plan, &row());
             let areas = Coefficients::new(&plan, &values(&plan.description)).zones.remove(0).areas;
-            let opaque = (0..WINDOW).map(|wall| areas[wall] * at.surfaces[SurfaceId::inside(wall)].solar);
+            let opaque = (0..WINDOW).map(|wall| areas[wall] * at.surfaces[SideId::inside(wall)].solar);
             let zone = &at.sun.zones[0];
             assert!(zone.transmitted > 1000.0 && zone.transmitted == at.sun.windows[0].transmitted);
             let sum = opaque.sum::<f64>() + zone.in_glass + zone.lost;
             assert!((sum / zone.transmitted - 1.0).abs() < 1e-9, "{sun}: {sum} of {}", zone.transmitted);
             // What each of the two panes absorbs acts on its surface.
-            let solar = SurfaceId::pair(WINDOW).map(|surface| at.surfaces[surface].solar);
+            let solar = SideId::pair(WINDOW).map(|surface| at.surfaces[surface].solar);
             let panes = &at.sun.windows[0].panes;
             assert!(solar.iter().zip(panes).all(|(solar, pane)| (solar - pane).abs() < 1e-12));
         }
@@ -390,7 +390,7 @@ mod tests {
     fn a_traced_beam_ends_on_the_floor() {
         let floor = |sun: &str| {
             let plan = Plan::new(glazed_zone(sun, false)).unwrap();
-            conditions(&plan, &row()).surfaces[SurfaceId::inside(4)].solar
+            conditions(&plan, &row()).surfaces[SideId::inside(4)].solar
         };
         assert!(floor("geometry") > 2.0 * floor("area"), "{} and {}", floor("geometry"), floor("area"));
     }
@@ -424,7 +424,7 @@ mod tests {
         let second = conditions(&plan, &later);
         let mut at = first.clone();
         at.interpolate(&first, &second, (0.5, 0.5));
-        let wall = SurfaceId::outside(0);
+        let wall = SideId::outside(0);
         assert_eq!((at.outdoor_air, at.wind, at.surfaces[wall].temperature), (12.0, 2.0, 12.0));
         let mean = 0.5 * (first.sun.windows[0].transmitted + second.sun.windows[0].transmitted);
         assert!((at.sun.windows[0].transmitted / mean - 1.0).abs() < 1e-12);
@@ -454,10 +454,10 @@ mod tests {
                 for (surface, solar) in now.surfaces.iter().enumerate() {
                     assert!(solar.solar >= -1e-12, "{} W/m2 on {surface} at {place}", solar.solar);
                 }
-                now.surfaces[SurfaceId::outside(5)].solar
+                now.surfaces[SideId::outside(5)].solar
             };
-            let whole = (1.0 - node) * first.surfaces[SurfaceId::outside(5)].solar
-                + node * last.surfaces[SurfaceId::outside(5)].solar;
+            let whole = (1.0 - node) * first.surfaces[SideId::outside(5)].solar
+                + node * last.surfaces[SideId::outside(5)].solar;
             let mut sum = 0.0;
             for part in 0..8 {
                 let from = f64::from(part) / 8.0;

@@ -1,8 +1,8 @@
 //! Which parts of the weather act on which surfaces, sorted once: what several surfaces have in common is computed once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::ids::SurfaceId;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::ids::SideId;
+use crate::building::plan::{Plan, SideRole};
 use crate::input::forcing::Schedule;
 use crate::number::real::{Real, same};
 use crate::physics::convection::SurfaceConvection;
@@ -15,17 +15,17 @@ pub(crate) enum IrradianceSource<S> {
     /// A forcing channel.
     Measured(usize),
     /// A forcing channel with the irradiance of the free plane of a surface, from which obstacles take their part.
-    Obstructed(usize, SurfaceId),
+    Obstructed(usize, SideId),
     /// A plane and a reflectance of the ground that are the same in all lanes, and the surface whose shading applies.
-    Uniform(Plane<f64>, f64, SurfaceId),
+    Uniform(Plane<f64>, f64, SideId),
     /// Another plane, and the surface whose shading applies.
-    Varied(Plane<S>, SurfaceId),
+    Varied(Plane<S>, SideId),
 }
 
 /// A surface outdoors.
 #[derive(Debug, Clone)]
 pub(crate) struct OutdoorSurface<S> {
-    pub(crate) surface: SurfaceId,
+    pub(crate) surface: SideId,
     /// Position among [`WeatherIndex::irradiance_sources`]; none: no sun.
     pub(crate) source: Option<usize>,
     /// Solar absorptance [-].
@@ -34,8 +34,8 @@ pub(crate) struct OutdoorSurface<S> {
     pub(crate) emission: Option<usize>,
     /// Fractions absorbed of the long-wave emission of the outdoor air and of the sky [-]:
     /// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, `beta = sqrt(F_sky)`; the ground is at air temperature.
-    pub(crate) of_air: S,
-    pub(crate) of_sky: S,
+    pub(crate) air_factor: S,
+    pub(crate) sky_factor: S,
 }
 
 /// All surfaces that weather or measurements act on.
@@ -47,19 +47,19 @@ pub(crate) struct WeatherIndex<S> {
     pub(crate) emissions: Vec<Emission<S>>,
     pub(crate) outdoors: Vec<OutdoorSurface<S>>,
     /// Surfaces outdoors whose heat transfer coefficients depend on the wind.
-    pub(crate) windy: Vec<SurfaceId>,
+    pub(crate) windy: Vec<SideId>,
     /// Surfaces in no zone with a law as text that depends on what is around them, and the sources of their irradiance.
-    pub(crate) surrounded: Vec<(SurfaceId, Option<usize>)>,
+    pub(crate) surrounded: Vec<(SideId, Option<usize>)>,
     /// Surfaces in zones with such a law, their zone, and whether the law depends on its air change.
-    pub(crate) surrounded_in_zones: Vec<(SurfaceId, usize, bool)>,
+    pub(crate) surrounded_in_zones: Vec<(SideId, usize, bool)>,
     /// Surfaces with a given heat flux [W/m2], and its schedule.
-    pub(crate) heated: Vec<(SurfaceId, S, Schedule)>,
+    pub(crate) heated: Vec<(SideId, S, Schedule)>,
     /// Surfaces at imposed temperatures.
-    pub(crate) imposed: Vec<SurfaceId>,
+    pub(crate) imposed: Vec<SideId>,
     /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
-    pub(crate) irradiated: Vec<(SurfaceId, usize, S)>,
+    pub(crate) irradiated: Vec<(SideId, usize, S)>,
     /// Surfaces with a measured heat transfer coefficient: forcing channel and factor [-].
-    pub(crate) measured: Vec<(SurfaceId, usize, S)>,
+    pub(crate) measured: Vec<(SideId, usize, S)>,
 }
 
 impl<S: Real> WeatherIndex<S> {
@@ -84,23 +84,23 @@ impl<S: Real> WeatherIndex<S> {
             all.heated.extend(surface.heat_flux.map(|(flux, schedule)| (index, flux, schedule)));
             let text = surface.convection.as_ref().filter(|law| law.surrounded());
             match (text, plan.surfaces[index].role) {
-                (Some(law), SurfaceRole::Zone { zone, .. }) => {
+                (Some(law), SideRole::Zone { zone, .. }) => {
                     all.surrounded_in_zones.push((index, zone, law.needs_air_change()));
                 }
-                (Some(_), SurfaceRole::Exterior) => all.surrounded.push((index, source)),
+                (Some(_), SideRole::Exterior) => all.surrounded.push((index, source)),
                 (None, _) => {}
             }
             match (&surface.boundary, source) {
                 (Boundary::Outdoors(outdoors), _) => {
                     let emission = outdoors.emission.as_ref().map(|law| all.add_emission(law));
-                    let of_sky = surface.emissivity * outdoors.to_sky;
+                    let sky_factor = surface.emissivity * outdoors.to_sky;
                     all.outdoors.push(OutdoorSurface {
                         surface: index,
                         source,
                         absorptance: surface.absorptance,
                         emission,
-                        of_air: surface.emissivity - of_sky,
-                        of_sky,
+                        air_factor: surface.emissivity - sky_factor,
+                        sky_factor,
                     });
                     if surface.exposure.wind
                         && text.is_none()
@@ -121,10 +121,10 @@ impl<S: Real> WeatherIndex<S> {
     }
 
     /// Position of the source of a surface's irradiance, added where no earlier surface has the same; none: no sun.
-    fn add_source(&mut self, plan: &Plan, coefficients: &Coefficients<S>, index: SurfaceId) -> Option<usize> {
+    fn add_source(&mut self, plan: &Plan, coefficients: &Coefficients<S>, index: SideId) -> Option<usize> {
         let source = source_of(plan, coefficients, index)?;
-        let shaded = |surface: SurfaceId| plan.solar_geometry.shaded(surface);
-        let unshaded = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
+        let shaded = |surface: SideId| plan.solar_geometry.shaded(surface);
+        let unshaded = |a: SideId, b: SideId| !shaded(a) && !shaded(b);
         let known = self.irradiance_sources.iter().position(|known| match (known, &source) {
             (IrradianceSource::Measured(a), IrradianceSource::Measured(b)) => a == b,
             (IrradianceSource::Uniform(a, _, surface), IrradianceSource::Uniform(b, _, other)) => {
@@ -149,7 +149,7 @@ impl<S: Real> WeatherIndex<S> {
     }
 
     /// Position of the source of irradiance of a surface outdoors; none: no sun.
-    pub(crate) fn irradiance_source(&self, surface: SurfaceId) -> Option<usize> {
+    pub(crate) fn irradiance_source(&self, surface: SideId) -> Option<usize> {
         self.outdoors.iter().find(|outside| outside.surface == surface)?.source
     }
 }
@@ -158,7 +158,7 @@ impl<S: Real> WeatherIndex<S> {
 fn source_of<S: Real>(
     plan: &Plan,
     coefficients: &Coefficients<S>,
-    index: SurfaceId,
+    index: SideId,
 ) -> Option<IrradianceSource<S>> {
     let surface = &coefficients.surfaces[index];
     match (surface.irradiance, &surface.boundary) {
@@ -194,10 +194,10 @@ mod tests {
     #[test]
     fn surfaces_of_one_orientation_share_a_source() {
         let index = index_of(false);
-        let source = |index: &WeatherIndex<f64>, wall| index.irradiance_source(SurfaceId::outside(wall));
+        let source = |index: &WeatherIndex<f64>, wall| index.irradiance_source(SideId::outside(wall));
         assert_eq!(index.irradiance_sources.len(), 6);
         assert_eq!((source(&index, 0), source(&index, WINDOW)), (Some(0), Some(0)));
-        assert_eq!(index.irradiance_source(SurfaceId::inside(0)), None);
+        assert_eq!(index.irradiance_source(SideId::inside(0)), None);
         assert_eq!((index.emissions.len(), index.outdoors.len(), index.windy.len()), (1, 7, 7));
         let shaded = index_of(true);
         assert_eq!(shaded.irradiance_sources.len(), 7);
@@ -208,8 +208,8 @@ mod tests {
     #[test]
     fn long_wave_fractions() {
         let index = index_of(false);
-        let of_sky = 0.9 * 0.5 * 0.5_f64.sqrt();
-        assert!((index.outdoors[0].of_sky - of_sky).abs() < 1e-15);
-        assert!((index.outdoors[0].of_air - (0.9 - of_sky)).abs() < 1e-15);
+        let sky_factor = 0.9 * 0.5 * 0.5_f64.sqrt();
+        assert!((index.outdoors[0].sky_factor - sky_factor).abs() < 1e-15);
+        assert!((index.outdoors[0].air_factor - (0.9 - sky_factor)).abs() < 1e-15);
     }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use crate::building::coefficients::Outdoors;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
@@ -63,7 +63,7 @@ impl<'a> Instant<'a> {
     }
 
     /// Fractions that obstacles leave of sun, sky and ground on a surface.
-    pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
+    pub(crate) fn visibility(&self, plan: &Plan, surface: SideId) -> SkyVisibility {
         plan.solar_geometry.visibility(surface, &self.fractions)
     }
 
@@ -82,7 +82,7 @@ impl<'a> Instant<'a> {
     pub(crate) fn measured<S: Real>(
         &self,
         plan: &Plan,
-        surface: SurfaceId,
+        surface: SideId,
         outdoors: &Outdoors<S>,
         (ground, channel): (S, usize),
     ) -> Irradiance<S> {
@@ -245,7 +245,7 @@ mod tests {
         let now = weather.at(0, 0);
         let mut conditions = Conditions::new(&plan, &coefficients, &index);
         conditions.update(&plan, &coefficients, &index, &now);
-        let wall = SurfaceId::outside(0);
+        let wall = SideId::outside(0);
         // The wall absorbs 0.6 of it.
         (conditions.surfaces[wall].solar / 0.6, now.visibility(&plan, wall))
     }

@@ -6,8 +6,8 @@
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::glazing::{Glass, Node, Site};
-use crate::building::ids::{BySurface, SurfaceId};
-use crate::building::layout::{SurfaceRole, ZonePlan};
+use crate::building::ids::{BySide, SideId};
+use crate::building::layout::{SideRole, ZonePlan};
 use crate::building::plan::Plan;
 use crate::building::solar_distribution::{FixedDistribution, SolarDistribution, TracedDistribution};
 use crate::number::real::{Mask, Real};
@@ -165,11 +165,11 @@ impl<S: Real> SolarConditions<S> {
             at.beam = S::zero();
             at.panes.fill(S::zero());
             let (Some(glass), Boundary::Outdoors(outdoors)) =
-                (&wall.glass, &coefficients.surfaces[SurfaceId::outside(w)].boundary)
+                (&wall.glass, &coefficients.surfaces[SideId::outside(w)].boundary)
             else {
                 continue;
             };
-            let (outside, ground) = (SurfaceId::outside(w), coefficients.ground_reflectance);
+            let (outside, ground) = (SideId::outside(w), coefficients.ground_reflectance);
             let light = match coefficients.surfaces[outside].irradiance {
                 // Without sun in the climate it is the offset of a sensor by night, and by day diffuse.
                 Some(channel) if now.row[channel] > 0.0 && !(now.sunlight.dark() && now.sunlight.night()) => {
@@ -209,7 +209,7 @@ impl<S: Real> SolarConditions<S> {
                 at.beam = wall.area * through * directed;
                 at.transmitted = at.beam + wall.area * spread;
             }
-            if let SurfaceRole::Zone { zone, .. } = plan.surfaces[SurfaceId::inside(w)].role {
+            if let SideRole::Zone { zone, .. } = plan.surfaces[SideId::inside(w)].role {
                 self.zones[zone].transmitted += at.transmitted;
             }
         }
@@ -305,7 +305,7 @@ impl<S: Real> SolarConditions<S> {
         &mut self,
         plan: &Plan,
         coefficients: &Coefficients<S>,
-        surfaces: &mut BySurface<SurfaceConditions<S>>,
+        surfaces: &mut BySide<SurfaceConditions<S>>,
     ) {
         for (z, (zone, numbers)) in plan.zones.iter().zip(&coefficients.zones).enumerate() {
             let Some(distribution) = &numbers.solar_distribution else { continue };
@@ -346,7 +346,7 @@ impl<S: Real> SolarConditions<S> {
         z: usize,
         zone: &ZonePlan,
         fixed: &FixedDistribution<S>,
-        surfaces: &mut BySurface<SurfaceConditions<S>>,
+        surfaces: &mut BySide<SurfaceConditions<S>>,
     ) {
         let transmitted = self.reaching(z);
         self.zones[z].lost = fixed.lost * transmitted;
@@ -364,7 +364,7 @@ impl<S: Real> SolarConditions<S> {
         z: usize,
         zone: &ZonePlan,
         [beam, diffuse]: &[FixedDistribution<S>; 2],
-        surfaces: &mut BySurface<SurfaceConditions<S>>,
+        surfaces: &mut BySide<SurfaceConditions<S>>,
     ) {
         let [direct, scattered] = self.parts(z, zone);
         self.zones[z].lost = beam.lost * direct + diffuse.lost * scattered;
@@ -421,7 +421,7 @@ impl<S: Real> SolarConditions<S> {
         z: usize,
         traced: &TracedDistribution<S>,
         coefficients: &Coefficients<S>,
-        surfaces: &mut BySurface<SurfaceConditions<S>>,
+        surfaces: &mut BySide<SurfaceConditions<S>>,
     ) {
         let (mut lost, mut in_glass) = (S::zero(), S::zero());
         for (i, &surface) in plan.zones[z].surfaces.iter().enumerate() {
@@ -440,7 +440,7 @@ impl<S: Real> SolarConditions<S> {
 
     /// Assigns the heat absorbed in panes to the cells and surfaces where it acts.
     #[inline(always)]
-    pub(crate) fn absorb_in_panes(&mut self, plan: &Plan, surfaces: &mut BySurface<SurfaceConditions<S>>) {
+    pub(crate) fn absorb_in_panes(&mut self, plan: &Plan, surfaces: &mut BySide<SurfaceConditions<S>>) {
         for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
             let Some(glass) = &plan.walls[w].glass else { continue };
             let mut both = [S::zero(); 2];
@@ -459,8 +459,8 @@ impl<S: Real> SolarConditions<S> {
                     }
                 }
             }
-            surfaces[SurfaceId::outside(w)].solar = both[0];
-            surfaces[SurfaceId::inside(w)].solar += both[1];
+            surfaces[SideId::outside(w)].solar = both[0];
+            surfaces[SideId::inside(w)].solar += both[1];
         }
     }
 }

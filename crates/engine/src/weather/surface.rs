@@ -1,7 +1,7 @@
 //! What acts on a single surface: absorbed radiation, the temperature beside it and the wind on it.
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, Outdoors};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::input::forcing::channel;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::convection::wind::angle_of_cosine;
@@ -40,11 +40,7 @@ fn facing<S: Real>(outdoors: &Outdoors<S>, upward: S, now: &Instant<'_>) -> (S, 
 }
 
 #[inline(always)]
-pub(crate) fn forced<S: Real>(
-    coefficients: &Coefficients<S>,
-    index: SurfaceId,
-    now: &Instant<'_>,
-) -> Driven<S> {
+pub(crate) fn forced<S: Real>(coefficients: &Coefficients<S>, index: SideId, now: &Instant<'_>) -> Driven<S> {
     let surface = &coefficients.surfaces[index];
     let (Some(convection), Boundary::Outdoors(outdoors)) = (&surface.convection, &surface.boundary) else {
         return [S::zero(); 4];
@@ -58,7 +54,7 @@ pub(crate) fn forced<S: Real>(
 #[inline(never)]
 pub(crate) fn driven_outside<S: Real>(
     coefficients: &Coefficients<S>,
-    index: SurfaceId,
+    index: SideId,
     now: &Instant<'_>,
     (air, sun): (S, S),
 ) -> Driven<S> {

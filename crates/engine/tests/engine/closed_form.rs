@@ -98,7 +98,7 @@ impl Melting {
         let mut options = options(Scheme::Sdirk2, dt, vec![Output::LiquidFraction { surface: 0, layer: 0 }]);
         options.initial = Initial::Everywhere(self.initial);
         let result = run(&plan, &rows, &options);
-        assert!(result.ledger.closure() < 1e-10);
+        assert!(result.energy_balance.closure() < 1e-10);
         result.records[steps] * self.thickness
     }
 
@@ -206,7 +206,7 @@ fn step_response(law: impl Fn(&mut Builder) -> Convection) {
         let expected = end + (20.0 - end) * (-(through + entering) * row as f64 * dt / air).exp();
         assert!((t - expected).abs() < 1e-5, "{t} is not {expected} in row {row}");
     }
-    assert!(result.ledger.closure() < 1e-11);
+    assert!(result.energy_balance.closure() < 1e-11);
 }
 
 /// Two zones in series between 30 and 10 degC, with air changes, worked out by hand from the two balances.

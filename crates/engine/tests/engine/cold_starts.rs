@@ -73,7 +73,7 @@ fn radiant_heating_of_a_cold_room_freezes_nothing() {
             let coldest = run.records.iter().copied().fold(f64::INFINITY, f64::min);
             assert!(coldest > -80.0, "{name}: {coldest} degC");
             hottest = run.records.iter().copied().fold(hottest, f64::max);
-            assert!(run.ledger.closure() < 1e-10, "{name}: {}", run.ledger.closure());
+            assert!(run.energy_balance.closure() < 1e-10, "{name}: {}", run.energy_balance.closure());
             // The tangents of linearly implicit stages leave out up to a thousandth of the heat.
             let missing = run.counters.largest_residual.unwrap();
             assert!(scheme == Scheme::LinearlyImplicit || missing < 1e-2, "{name}: {missing} W are missing");

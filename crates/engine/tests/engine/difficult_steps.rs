@@ -26,7 +26,7 @@ fn energy_balance_closes() {
             .flat_map(|heated| steps(scheme, heated).into_iter().map(move |step| (heated, step)))
         {
             assert!(step.run.records.iter().all(|record| record.is_finite()), "{}", step.name);
-            let closure = step.run.ledger.closure();
+            let closure = step.run.energy_balance.closure();
             assert!(closure < 1e-10, "{}: {closure:e}", step.name);
             let (air, load) = (step.run.state.air[0], step.run.state.load[0]);
             let was_halved = step.run.counters.halvings > 0;
@@ -65,7 +65,8 @@ fn a_halved_step_is_two_steps() {
             let temperature = apart(&one.cells, &two.cells).max(apart(&one.air, &two.air));
             // Each stage is found to within 1e-8 K; what melts passes on ten times that from half to half.
             assert!(temperature < 1e-6, "{}: {temperature} K", step.name);
-            let heat = apart(&step.run.ledger.into, &halves.ledger.into) / halves.ledger.total_exchanged;
+            let heat = apart(&step.run.energy_balance.into, &halves.energy_balance.into)
+                / halves.energy_balance.total_exchanged;
             assert!(heat < 1e-7, "{}: flows differ by {heat:e} of all heat", step.name);
         }
         assert!(compared > 3, "{compared} steps, {scheme:?}");
@@ -174,7 +175,7 @@ fn members_with_difficult_steps_have_the_bits_of_single_runs() {
                 for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
                     assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}, record {i}");
                 }
-                assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+                assert_eq!(alone.energy_balance.closure().to_bits(), together.closure[member].to_bits());
             }
         }
     }

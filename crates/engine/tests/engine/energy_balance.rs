@@ -35,7 +35,8 @@ fn the_balance_of_metal_sheets_closes() {
             for scheme in SCHEMES {
                 for dt in [60.0, 600.0, 3600.0] {
                     let rows = forcing(&plan, scheme, 144, dt, weather);
-                    let closure = run(&plan, &rows, &options(scheme, dt, Vec::new())).ledger.closure();
+                    let closure =
+                        run(&plan, &rows, &options(scheme, dt, Vec::new())).energy_balance.closure();
                     let case = format!("{nodes} nodes of {thickness} m, {melts}, {scheme:?}, {dt} s");
                     assert!(closure < 1e-11, "{case}: {closure:e}");
                 }
@@ -56,7 +57,7 @@ fn the_balance_of_thousands_of_cells_closes() {
     let plan = b.plan();
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 48, 3600.0, weather);
-        let closure = run(&plan, &rows, &options(scheme, 3600.0, Vec::new())).ledger.closure();
+        let closure = run(&plan, &rows, &options(scheme, 3600.0, Vec::new())).energy_balance.closure();
         assert!(closure < 1e-11, "{scheme:?}: {closure:e}");
     }
 }
@@ -78,11 +79,11 @@ fn a_building_at_rest_has_no_residual() {
         options.initial = mascarin_engine::state::Initial::Everywhere(temperature);
         let run = run(&plan, &rows, &options);
         assert_eq!(
-            run.ledger.closure(),
+            run.energy_balance.closure(),
             0.0,
             "{} J of {} J",
-            run.ledger.imbalance,
-            run.ledger.total_exchanged
+            run.energy_balance.imbalance,
+            run.energy_balance.total_exchanged
         );
         assert!(run.records.iter().all(|air| (air - temperature).abs() < 1e-9));
     }

@@ -35,7 +35,7 @@ fn members_run_without_outputs() {
     let (result, plan, rows, options, done) = alike(11, Vec::new(), 0);
     assert_eq!((result.records.len(), result.closure.len(), done), (0, 11, 11));
     assert!(result.failures.is_empty());
-    let alone = run(&plan, &rows, &options).ledger.closure();
+    let alone = run(&plan, &rows, &options).energy_balance.closure();
     assert!(alone > 0.0 && alone < 1e-12);
     assert!(
         result.closure.iter().all(|closure| closure.to_bits() == alone.to_bits()),

@@ -5,8 +5,8 @@ use mascarin_engine::description::{
     Description, DirectedFlow, Door, Facing, PublishedLaw, SetPoint, ThermalBridge, UnitFlow,
     VentilationUnit, ZoneLongwave,
 };
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::ensemble::ensemble;
@@ -75,7 +75,7 @@ fn gain(b: &mut Builder, zone: usize, power: f64) {
 }
 
 /// Air temperatures of all zones after a long time in constant weather, the energy balance, and the flows in the last 100 steps.
-fn steady(description: Description) -> (Vec<f64>, mascarin_engine::ledger::Ledger<f64>) {
+fn steady(description: Description) -> (Vec<f64>, mascarin_engine::energy_balance::EnergyBalance<f64>) {
     let plan = Plan::new(description).unwrap();
     let rows = forcing(&plan, Scheme::Sdirk2, 4000, STEP, |_, row| {
         row[channel::AIR_TEMPERATURE] = OUTDOOR;
@@ -84,8 +84,8 @@ fn steady(description: Description) -> (Vec<f64>, mascarin_engine::ledger::Ledge
     let outputs: Vec<_> = (0..plan.zones.len()).map(|zone| Output::AirTemperature { zone }).collect();
     let count = outputs.len();
     let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, outputs));
-    assert!(result.ledger.closure() < 1e-12, "{}", result.ledger.closure());
-    (result.records[result.records.len() - count..].to_vec(), result.ledger)
+    assert!(result.energy_balance.closure() < 1e-12, "{}", result.energy_balance.closure());
+    (result.records[result.records.len() - count..].to_vec(), result.energy_balance)
 }
 
 /// Supplied air passes a row of zones; heat in the corridor warms it by `P/(c q)` from there on.
@@ -93,12 +93,12 @@ fn steady(description: Description) -> (Vec<f64>, mascarin_engine::ledger::Ledge
 fn supplied_air_passes_from_zone_to_zone() {
     let mut b = row_of_zones(Some(18.0), None);
     gain(&mut b, 1, 200.0);
-    let (air, ledger) = steady(b.description);
+    let (air, energy_balance) = steady(b.description);
     let rise = 200.0 / (HEAT * FLOW);
     for (found, expected) in air.iter().zip([18.0, 18.0 + rise, 18.0 + rise]) {
         assert!((found - expected).abs() < 1e-6, "{air:?}, rise {rise}");
     }
-    assert!(ledger.into[Flow::Interzone as usize].abs() < 1e-12 * ledger.total_exchanged);
+    assert!(energy_balance.into[Flow::Interzone as usize].abs() < 1e-12 * energy_balance.total_exchanged);
 }
 
 /// Heat recovery of effectiveness e: in a steady state `P = (1 - e) c q (T_bath - T_o)`, and the living room is at the supply
@@ -150,12 +150,12 @@ fn bridges_conduct_what_they_should() {
     bridge(&mut b, 0, 2.0, Facing::Zone { zone: 1 });
     bridge(&mut b, 1, 4.0, Facing::Outdoors);
     bridge(&mut b, 2, 1.0, Facing::Outdoors);
-    let (air, ledger) = steady(b.description);
+    let (air, energy_balance) = steady(b.description);
     // In series 2 and 4 W/K to outdoors: 4/3 W/K.
     let room = (100.0 + (5.0 + 4.0 / 3.0) * OUTDOOR + 3.0 * 11.0) / (5.0 + 4.0 / 3.0 + 3.0);
     assert!((air[0] - room).abs() < 1e-6, "{air:?} {room}");
     assert!((air[1] - (OUTDOOR + (room - OUTDOOR) / 3.0)).abs() < 1e-6, "{air:?}");
-    assert!(ledger.into[Flow::Bridges as usize] < 0.0);
+    assert!(energy_balance.into[Flow::Bridges as usize] < 0.0);
 }
 
 /// Between two zones a door carries `P = c C_d W H/3 sqrt(g H/T) d^1.5`; the colder zone loses it by a bridge.
@@ -245,7 +245,7 @@ fn residuals_are_rounding() {
         let result = run(&plan, &rows, &options);
         let largest = result.counters.largest_residual.unwrap();
         assert!(largest < 1e-6 && largest > 0.0, "{largest} W");
-        assert!(result.ledger.closure() < 1e-12);
+        assert!(result.energy_balance.closure() < 1e-12);
     }
 }
 

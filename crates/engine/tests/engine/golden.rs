@@ -21,8 +21,8 @@ use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::linear_model::state_space;
 use mascarin_engine::number::simd::Level;
 use mascarin_engine::number::{Dual, Lanes, Mask, Real};
@@ -273,10 +273,13 @@ fn hashed<S: Sloped>(name: &str, run: &Run<S>) -> Row {
     let (mut answers, mut rest) = (Hash::new(), Hash::new());
     answers.lanes(&run.records, failed);
     // Flows that the cases do not have were added later.
-    let (before, since) = run.ledger.into.split_at(Flow::Bridges as usize);
+    let (before, since) = run.energy_balance.into.split_at(Flow::Bridges as usize);
     answers.lanes(before, failed);
     assert!(since.iter().all(|flow| (0..S::LANES).all(|lane| flow.lane(lane) == 0.0)));
-    answers.lanes(&[run.ledger.stored, run.ledger.total_exchanged, run.ledger.imbalance], failed);
+    answers.lanes(
+        &[run.energy_balance.stored, run.energy_balance.total_exchanged, run.energy_balance.imbalance],
+        failed,
+    );
     answers.count(run.cycles);
     for numbers in
         [&run.state.cells[..], &run.state.enthalpy, &run.state.surfaces, &run.state.air, &run.state.load]

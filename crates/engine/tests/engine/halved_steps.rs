@@ -4,7 +4,7 @@ use crate::common::conditioned::ideal_load;
 use crate::common::melting::{ceiling_weather, fine_ceiling};
 use crate::common::{forcing, options, run};
 use mascarin_engine::Scheme;
-use mascarin_engine::ledger::Flow;
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::outputs::Output;
 
@@ -29,7 +29,8 @@ fn loads_are_means_over_halved_steps() {
         let (reported, all) = loads.fold((0.0, 0.0), |(net, all), load| {
             (net + (load[0] - load[1]) * STEP, all + (load[0] + load[1]) * STEP)
         });
-        let in_ledger = run.ledger.into[Flow::Heating as usize] + run.ledger.into[Flow::Cooling as usize];
+        let in_ledger =
+            run.energy_balance.into[Flow::Heating as usize] + run.energy_balance.into[Flow::Cooling as usize];
         assert!(all > 1e7, "{all} J");
         assert!(
             (reported - in_ledger).abs() < 1e-12 * all,

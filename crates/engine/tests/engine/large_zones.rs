@@ -87,7 +87,7 @@ fn walls_that_are_cut_into_parts_stay_as_they_are() {
                     "{a} is not {b}: number {i}, {scheme:?}, {heated}"
                 );
             }
-            assert!(cut.ledger.closure() < 1e-12, "{}", cut.ledger.closure());
+            assert!(cut.energy_balance.closure() < 1e-12, "{}", cut.energy_balance.closure());
             let residual = cut.counters.largest_residual;
             assert!(residual.is_none_or(|residual| residual < 1e-6), "{residual:?} W");
         }

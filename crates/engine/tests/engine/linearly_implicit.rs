@@ -70,7 +70,7 @@ fn jumps_take_more_solves() {
         let runs = both(ceiling(gamma), ceiling_weather, || vec![Output::AirTemperature { zone: 0 }]);
         let [rms, most] = apart(&runs, 0, 1);
         assert!(rms < 5e-3 && most < 0.05, "{rms} K, at most {most} K, gamma {gamma}");
-        assert!(runs[1].ledger.closure() < 1e-10, "{:?}", runs[1].ledger);
+        assert!(runs[1].energy_balance.closure() < 1e-10, "{:?}", runs[1].energy_balance);
         assert!(runs[1].counters.iterations < runs[0].counters.iterations);
     }
 }
@@ -89,6 +89,6 @@ fn ideal_loads_give_the_same_heat() {
             assert!((linear - whole).abs() <= 5e-3 * whole, "{linear} is not {whole}: {output:?}");
         }
     }
-    assert!(runs[1].ledger.closure() < 1e-10, "{:?}", runs[1].ledger);
+    assert!(runs[1].energy_balance.closure() < 1e-10, "{:?}", runs[1].energy_balance);
     assert!(solves(&runs[1]) < 0.85 * solves(&runs[0]));
 }

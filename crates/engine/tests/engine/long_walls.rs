@@ -37,7 +37,7 @@ fn walls_with_and_without_a_map_agree() {
         let plan = room(&[nodes]);
         let rows = forcing(&plan, scheme, 96, DT, weather);
         let result = run(&plan, &rows, &options(scheme, DT, vec![AIR]));
-        assert!(result.ledger.closure() < 1e-12);
+        assert!(result.energy_balance.closure() < 1e-12);
         result.records
     };
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
@@ -87,5 +87,5 @@ fn ten_thousand_cells_run() {
     let rows = forcing(&plan, Scheme::Sdirk2, 24, 3600.0, weather);
     let result = run(&plan, &rows, &options(Scheme::Sdirk2, 3600.0, vec![AIR]));
     assert!(result.records.iter().all(|air| (0.0..60.0).contains(air)));
-    assert!(result.ledger.closure() < 1e-10, "{:e}", result.ledger.closure());
+    assert!(result.energy_balance.closure() < 1e-10, "{:e}", result.energy_balance.closure());
 }

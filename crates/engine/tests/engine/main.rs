@@ -4,6 +4,7 @@
 
 mod common;
 
+mod augmented_lagrangian;
 mod closed_form;
 mod cold_starts;
 mod convergence;
@@ -16,7 +17,6 @@ mod first_step;
 mod golden;
 mod halved_steps;
 mod halving;
-mod held_airs;
 mod hysteresis;
 mod large_zones;
 mod levels;

@@ -26,10 +26,12 @@ fn energy_closes() {
         for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
             let rows = forcing(&plan, scheme, 480, dt, cell_weather);
             let result = run(&plan, &rows, &options(scheme, dt, cell_outputs()));
-            let closure = result.ledger.closure();
+            let closure = result.energy_balance.closure();
             assert!(closure < 1e-10, "closure {closure} with {scheme:?}, gamma {gamma}, steps of {dt} s");
-            let sum: f64 = result.ledger.into.iter().sum();
-            assert!((sum - result.ledger.stored).abs() < 1e-10 * result.ledger.total_exchanged);
+            let sum: f64 = result.energy_balance.into.iter().sum();
+            assert!(
+                (sum - result.energy_balance.stored).abs() < 1e-10 * result.energy_balance.total_exchanged
+            );
         }
     }
 }
@@ -42,7 +44,7 @@ fn apparent_capacity_loses_heat() {
         let plan = Plan::new(ceiling(gamma)).unwrap();
         let rows = forcing(&plan, Scheme::ApparentCapacity, 10 * 96, STEP, ceiling_weather);
         let result = run(&plan, &rows, &options(Scheme::ApparentCapacity, STEP, Vec::new()));
-        let closure = result.ledger.closure();
+        let closure = result.energy_balance.closure();
         assert!(
             closure > 1.5 * last + 0.01 && closure < 1.0,
             "closure {closure} at gamma {gamma} after {last}"
@@ -84,7 +86,7 @@ fn lanes_are_scalars() {
                     "{a} is not {b}: member {member}, reading {i}, {scheme:?}"
                 );
             }
-            assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+            assert_eq!(alone.energy_balance.closure().to_bits(), together.closure[member].to_bits());
             iterations.push(alone.counters.iterations);
             cycles.push(alone.cycles);
         }
@@ -251,7 +253,7 @@ fn linear_laws_are_eliminated_once() {
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "{a} is not {b} with {scheme:?}");
         }
         if scheme != Scheme::ApparentCapacity {
-            assert!(linear.ledger.closure() < 1e-10, "{:?}", linear.ledger);
+            assert!(linear.energy_balance.closure() < 1e-10, "{:?}", linear.energy_balance);
         }
     }
 }
@@ -275,7 +277,7 @@ fn lanes_of_linear_laws_have_the_bits_of_single_runs() {
         for (a, b) in alone.records.iter().zip(&together.records[member * row..]) {
             assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}");
         }
-        assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+        assert_eq!(alone.energy_balance.closure().to_bits(), together.closure[member].to_bits());
     }
 }
 

@@ -4,8 +4,8 @@ use crate::common::conditioned::{ideal_load, number};
 use crate::common::{ALL_SCHEMES, Builder, forcing, options, position, run, set, values};
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{AirPath, Description, Gain, Ventilation, ZoneLongwave};
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::ensemble::ensemble;
 use mascarin_engine::run::outputs::Output;
@@ -87,7 +87,7 @@ fn no_air_is_colder_than_what_cools_it() {
                 let run = opened(rooms(power), scheme, step);
                 let low = coldest(&run);
                 assert!(low > COLD - 0.5, "{low} degC with {scheme:?} in steps of {step} s at {power} W");
-                assert!(run.ledger.closure() < 1e-12, "{}", run.ledger.closure());
+                assert!(run.energy_balance.closure() < 1e-12, "{}", run.energy_balance.closure());
                 assert!(run.outlier.is_none(), "{:?}", run.outlier);
                 if step == STEP && scheme == Scheme::Sdirk2 {
                     assert!(run.counters.halvings > 0);
@@ -110,9 +110,9 @@ fn loads_over_steps_in_parts() {
     let run = opened(d, Scheme::Sdirk2, STEP);
     assert!(run.counters.halvings > 0 && coldest(&run) > COLD - 0.5, "{:?}", run.counters);
     let reported: f64 = run.records.chunks(4).skip(1).map(|row| (row[2] + row[3]) * STEP).sum();
-    let in_ledger = run.ledger.into[Flow::Heating as usize];
+    let in_ledger = run.energy_balance.into[Flow::Heating as usize];
     assert!((reported / in_ledger - 1.0).abs() < 1e-12, "{reported} J, in the ledger {in_ledger} J");
-    assert!(run.ledger.closure() < 1e-12);
+    assert!(run.energy_balance.closure() < 1e-12);
 }
 
 fn day(plan: &Plan) -> (Vec<f64>, Options) {

@@ -58,10 +58,10 @@ fn runs_are_finite_and_keep_their_energy_balance() {
         let run = try_run(&plan, &values(&plan), &case.rows(&plan), &case.options())
             .map_err(|error| error.to_string())?;
         check(run.records.iter().all(|record| record.is_finite()), || "a record is not finite".to_owned())?;
-        let closure = run.ledger.closure();
+        let closure = run.energy_balance.closure();
         check(closure < 1e-10, || format!("relative energy-balance residual {closure:e}"))?;
-        let sum: f64 = run.ledger.into.iter().sum();
-        let difference = (sum - run.ledger.stored).abs() / run.ledger.total_exchanged;
+        let sum: f64 = run.energy_balance.into.iter().sum();
+        let difference = (sum - run.energy_balance.stored).abs() / run.energy_balance.total_exchanged;
         check(difference < 1e-10, || format!("sum of all steps: relative residual {difference:e}"))
     });
 }
@@ -138,7 +138,7 @@ fn members_of_an_ensemble_have_the_bits_of_single_runs() {
                     format!("member {member} of {members}, record {i}: alone {a:e}, together {b:e}")
                 })?;
             }
-            let (a, b) = (alone.ledger.closure(), together.closure[member]);
+            let (a, b) = (alone.energy_balance.closure(), together.closure[member]);
             check(a.to_bits() == b.to_bits(), || format!("member {member}: residual {a:e} and {b:e}"))?;
         }
         Ok(())

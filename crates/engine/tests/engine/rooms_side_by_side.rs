@@ -7,8 +7,8 @@ use mascarin_engine::description::{
     Construction, Convection, Description, Facing, Gap, Gas, Glazing, Pane, PaneOptics, ParamId, Side,
     ZoneLongwave,
 };
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::ensemble::ensemble;
 use mascarin_engine::run::outputs::Output;
@@ -140,8 +140,8 @@ fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
                 .flat_map(|surface| [0, 1].map(|side| Output::FaceTemperature { surface, side }));
             let options = options(scheme, STEP, outputs.chain(surfaces).collect());
             let alone = run(&plan, &rows, &options);
-            assert!(alone.ledger.closure() < 1e-12, "{}", alone.ledger.closure());
-            let heat = [Flow::Heating, Flow::Cooling].map(|flow| alone.ledger.into[flow as usize]);
+            assert!(alone.energy_balance.closure() < 1e-12, "{}", alone.energy_balance.closure());
+            let heat = [Flow::Heating, Flow::Cooling].map(|flow| alone.energy_balance.into[flow as usize]);
             assert_eq!(heat.map(|heat| heat != 0.0), [loads; 2], "{heat:?} J");
             let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
             let members = values(&plan).repeat(8);
@@ -150,7 +150,7 @@ fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
             for (i, (a, b)) in alone.records.iter().zip(&pack.records).enumerate() {
                 assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: number {i}, {scheme:?}");
             }
-            assert_eq!(alone.ledger.closure().to_bits(), pack.closure[0].to_bits());
+            assert_eq!(alone.energy_balance.closure().to_bits(), pack.closure[0].to_bits());
         }
     }
 }

@@ -66,7 +66,7 @@ fn steps_are_those_of_a_run() {
             let found = records(&mut stepwise, &rows, stages, channels);
             assert_eq!(bits(&found), bits(&whole.records));
             assert_eq!(stepwise.steps(), STEPS);
-            assert!((stepwise.closure() - whole.ledger.worst_closure()).abs() < 1e-15);
+            assert!((stepwise.closure() - whole.energy_balance.worst_closure()).abs() < 1e-15);
 
             let half = STEPS / 2;
             let mut first = start();

@@ -44,7 +44,7 @@ fn blocks_are_the_records_of_a_run() {
             assert!(blocks[..expected - 1].iter().all(|block| block.len() == width));
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             assert_eq!(bits(&blocks.concat()), bits(&whole.records));
-            assert_eq!(streamed.ledger.closure().to_bits(), whole.ledger.closure().to_bits());
+            assert_eq!(streamed.energy_balance.closure().to_bits(), whole.energy_balance.closure().to_bits());
             assert_eq!(streamed.cycles, whole.cycles);
             assert!(streamed.records.is_empty());
         }

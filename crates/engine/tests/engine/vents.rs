@@ -298,8 +298,9 @@ fn of_day(plan: &Plan, scheme: Scheme, steps: usize) -> Run<f64> {
 fn a_day_of_control() {
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
         let result = of_day(&ventilated(), scheme, 144);
-        assert!(result.ledger.closure() < 1e-12, "{}", result.ledger.closure());
-        let ventilation = result.ledger.into[mascarin_engine::ledger::Flow::Ventilation as usize];
+        assert!(result.energy_balance.closure() < 1e-12, "{}", result.energy_balance.closure());
+        let ventilation =
+            result.energy_balance.into[mascarin_engine::energy_balance::Flow::Ventilation as usize];
         assert!(ventilation < -1e6, "{ventilation}");
         let open: Vec<f64> = result.records.iter().skip(4).step_by(5).copied().collect();
         let switched = open.windows(2).filter(|pair| pair[0] != pair[1]).count();

@@ -5,8 +5,8 @@ use crate::common::{facing, forcing, options, position, run, set, try_run, value
 use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::description::{Facing, Glazing, ZoneSun};
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::{Forcing, channel};
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::ensemble::ensemble;
@@ -23,16 +23,20 @@ fn energy_closes_with_windows() {
         for scheme in SCHEMES {
             let rows = forcing(&plan, scheme, 192, STEP, weather);
             let result = run(&plan, &rows, &options(scheme, STEP, glazed_outputs()));
-            assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
+            assert!(
+                result.energy_balance.closure() < 1e-12,
+                "closure {} with {scheme:?}",
+                result.energy_balance.closure()
+            );
             let sums: Vec<f64> = (0..10)
                 .map(|k| result.records.chunks(10).skip(1).map(|record| record[k]).sum::<f64>() * STEP)
                 .collect();
             assert!(sums[8] > 1e7 && (sums[6] + sums[7] - sums[8]).abs() < 1e-9 * sums[8]);
             assert!(sums[9] > 0.01 * sums[8] && sums[9] < 0.2 * sums[8], "{} of {}", sums[9], sums[8]);
             // What stays in the zone, and what the panes absorb of the sun that leaves it.
-            let kept = result.ledger.into[Flow::Transmitted as usize];
+            let kept = result.energy_balance.into[Flow::Transmitted as usize];
             assert!(kept > 0.7 * sums[8] && kept <= (sums[8] - sums[9]) * (1.0 + 1e-12));
-            assert!(result.ledger.into[Flow::Glass as usize] > 0.0);
+            assert!(result.energy_balance.into[Flow::Glass as usize] > 0.0);
         }
     }
 }

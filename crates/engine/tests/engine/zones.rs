@@ -6,8 +6,8 @@ use mascarin_engine::RunControl;
 use mascarin_engine::Scheme;
 use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
+use mascarin_engine::energy_balance::Flow;
 use mascarin_engine::forcing::Forcing;
-use mascarin_engine::ledger::Flow;
 use mascarin_engine::number::{Dual, Real};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::run::ensemble::ensemble;
@@ -24,9 +24,13 @@ fn energy_closes_with_plants() {
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 480, STEP, conditioned_weather);
         let result = run(&plan, &rows, &options(scheme, STEP, conditioned_outputs()));
-        assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
-        let into = |flow: Flow| result.ledger.into[flow as usize];
-        assert!(into(Flow::Interzone).abs() < 1e-12 * result.ledger.total_exchanged);
+        assert!(
+            result.energy_balance.closure() < 1e-12,
+            "closure {} with {scheme:?}",
+            result.energy_balance.closure()
+        );
+        let into = |flow: Flow| result.energy_balance.into[flow as usize];
+        assert!(into(Flow::Interzone).abs() < 1e-12 * result.energy_balance.total_exchanged);
         assert!(into(Flow::Heating) > 0.0 && into(Flow::Cooling) < 0.0 && into(Flow::Gains) > 0.0);
         let width = conditioned_outputs().len();
         let (mut held, mut full, mut off, mut cooled) = (0, 0, 0, 0);
@@ -93,7 +97,7 @@ fn lanes_are_scalars_with_plants() {
                     "{a} is not {b}: member {member}, reading {i}, {scheme:?}"
                 );
             }
-            assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+            assert_eq!(alone.energy_balance.closure().to_bits(), together.closure[member].to_bits());
         }
     }
 }

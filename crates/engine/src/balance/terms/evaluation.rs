@@ -1,7 +1,7 @@
 //! Terms evaluated at temperatures: heat flows [W].
 
-use crate::balance::ledger::Flow;
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::balance::energy_balance::Flow;
+use crate::building::ids::{BySide, SideId};
 use crate::linear::wall::{Link, Storage};
 use crate::number::line::Line;
 use crate::number::real::Real;
@@ -20,13 +20,13 @@ pub(crate) trait HeatSink<S: Real> {
 
     /// A surface is held at a temperature [degC].
     #[inline(always)]
-    fn impose(&mut self, _surface: SurfaceId, _area: S, _temperature: S) {}
+    fn impose(&mut self, _surface: SideId, _area: S, _temperature: S) {}
 }
 
 /// The temperatures that terms are evaluated at [degC], and where their heat goes.
 pub(crate) struct Evaluation<'a, S, H> {
     pub(crate) cells: &'a [S],
-    pub(crate) surfaces: &'a BySurface<S>,
+    pub(crate) surfaces: &'a BySide<S>,
     pub(crate) air: &'a [S],
     pub(crate) heat: H,
 }
@@ -121,13 +121,13 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
     }
 
     #[inline(always)]
-    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: S, [from, to]: [&Line<S>; 2]) {
+    fn radiate(&mut self, surfaces: [SideId; 2], area: S, [from, to]: [&Line<S>; 2]) {
         let [a, b] = surfaces.map(|surface| self.surfaces[surface]);
         self.between(surfaces.map(Node::Surface), area, area * (from.at(a) - to.at(b)));
     }
 
     #[inline(always)]
-    fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>) {
+    fn radiate_outdoors(&mut self, surface: SideId, area: S, radiation: &OutdoorRadiation<'_, S>) {
         let emitted = radiation.emissivity * radiation.emission.at(self.surfaces[surface]);
         let heat = area * (radiation.arriving - emitted);
         self.heat.add_to_node(Node::Surface(surface), area, heat);
@@ -150,7 +150,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
     }
 
     #[inline(always)]
-    fn impose(&mut self, surface: SurfaceId, area: S, temperature: S) {
+    fn impose(&mut self, surface: SideId, area: S, temperature: S) {
         self.heat.impose(surface, area, temperature);
     }
 

@@ -1,7 +1,7 @@
 //! Terms for the energy ledger: heat from the environment into the building, by flow.
 
-use crate::balance::ledger::{Flow, Power, Sum};
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::balance::energy_balance::{Flow, Power, Sum};
+use crate::building::ids::{BySide, SideId};
 use crate::number::real::Real;
 
 use super::Balances;
@@ -31,14 +31,14 @@ struct OtherFlows<'a, S, F> {
     flux: F,
 }
 
-impl<S: Real, F: Fn(SurfaceId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
+impl<S: Real, F: Fn(SideId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
     #[inline(always)]
     fn add_to_building(&mut self, flow: Flow, heat: S) {
         self.power.add_flow(flow, heat);
     }
 
     #[inline(always)]
-    fn impose(&mut self, surface: SurfaceId, area: S, _temperature: S) {
+    fn impose(&mut self, surface: SideId, area: S, _temperature: S) {
         // The environment supplies whatever the wall conducts away.
         self.power.add_flow(Flow::Boundary, area * (self.flux)(surface));
     }
@@ -48,12 +48,7 @@ impl<S: Real> Balances<'_, S> {
     /// Heat into the building at temperatures of surfaces and airs [degC]; `flux` is the conduction from a surface into its
     /// wall [W/m2].
     #[inline(always)]
-    pub(crate) fn power(
-        &self,
-        surfaces: &BySurface<S>,
-        air: &[S],
-        flux: impl Fn(SurfaceId) -> S,
-    ) -> Power<S> {
+    pub(crate) fn power(&self, surfaces: &BySide<S>, air: &[S], flux: impl Fn(SideId) -> S) -> Power<S> {
         let mut power = Power::none();
         let heat = ExteriorSums { solar: Sum::none(), convection: Sum::none(), longwave: Sum::none() };
         let mut exterior = Evaluation { cells: &[], surfaces, air, heat };

@@ -20,10 +20,10 @@ pub(crate) mod residual;
 #[cfg(test)]
 mod tests;
 
+use crate::balance::energy_balance::Flow;
 use crate::balance::flow_index::FlowIndex;
-use crate::balance::ledger::Flow;
 use crate::building::coefficients::{BridgeEnd, Matter};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::linear::laws::LinearisedLaws;
 use crate::linear::wall::{Link, Storage, WallSystem};
@@ -36,7 +36,7 @@ use crate::weather::conditions::Conditions;
 pub(crate) enum Node {
     /// A cell, counted through all walls.
     Cell(usize),
-    Surface(SurfaceId),
+    Surface(SideId),
     /// The air of a zone.
     Air(usize),
 }
@@ -76,7 +76,7 @@ pub(crate) enum Origin<S> {
 }
 
 /// Long-wave radiation between a surface and what it sees outdoors, `arriving - emissivity emission(T)` [W/m2];
-/// `arriving = of_sky E_sky + of_air E_air` with the black emissions of sky and outdoor air.
+/// `arriving = sky_factor E_sky + air_factor E_air` with the black emissions of sky and outdoor air.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OutdoorRadiation<'a, S> {
     pub(crate) emissivity: S,
@@ -84,8 +84,8 @@ pub(crate) struct OutdoorRadiation<'a, S> {
     pub(crate) emission: &'a Line<S>,
     pub(crate) arriving: S,
     /// Absorbed parts of the emission of the sky and of the outdoor air [-].
-    pub(crate) of_sky: S,
-    pub(crate) of_air: S,
+    pub(crate) sky_factor: S,
+    pub(crate) air_factor: S,
 }
 
 /// A quantity at the start of a stage: `start + ratio (first - start)`; `first` is its value at the end of the first stage.
@@ -178,16 +178,16 @@ pub(crate) trait Sink<S: Real> {
     fn exchange(&mut self, ends: [End<S>; 2], area: S, law: &Line<S>);
 
     /// `area (emission_from(T_from) - emission_to(T_to))` [W]; all surfaces of a zone follow one law.
-    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: S, emission: [&Line<S>; 2]);
+    fn radiate(&mut self, surfaces: [SideId; 2], area: S, emission: [&Line<S>; 2]);
 
     /// Long-wave radiation into a surface outdoors, times its area [W].
-    fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>);
+    fn radiate_outdoors(&mut self, surface: SideId, area: S, radiation: &OutdoorRadiation<'_, S>);
 
     /// `size heat` [W] released in a node: an area [m2] by a heat flow density [W/m2], or a share [-] by a power [W].
     fn release(&mut self, node: Node, size: S, heat: S, origin: Origin<S>);
 
     /// A surface is held at a temperature [degC]: this takes the place of its balance.
-    fn impose(&mut self, surface: SurfaceId, area: S, temperature: S);
+    fn impose(&mut self, surface: SideId, area: S, temperature: S);
 
     /// Heat that enters the building [W] and is released in several nodes: counted once, where it enters.
     #[inline(always)]
@@ -251,8 +251,8 @@ impl<S: Real> Balances<'_, S> {
                 }
             }
             let node = |link: usize| match link {
-                0 => Node::Surface(SurfaceId::outside(w)),
-                link if link == n + 1 => Node::Surface(SurfaceId::inside(w)),
+                0 => Node::Surface(SideId::outside(w)),
+                link if link == n + 1 => Node::Surface(SideId::inside(w)),
                 link => Node::Cell(first + link - 1),
             };
             let place = |link: usize| {
@@ -278,7 +278,7 @@ impl<S: Real> Balances<'_, S> {
     /// Sun that came through windows, or is absorbed by the outer panes of windows that do not face outdoors.
     #[inline(always)]
     fn sun_inside(&self, sink: &mut impl Sink<S>) {
-        for &(surface, area) in &self.index.indirectly_lit {
+        for &(surface, area) in &self.index.transmitted_sun {
             let solar = self.conditions.surfaces[surface].solar;
             sink.release(Node::Surface(surface), area, solar, Origin::Window);
         }
@@ -335,8 +335,8 @@ impl<S: Real> Balances<'_, S> {
                     emissivity: outside.emissivity,
                     emission: &laws.emission,
                     arriving: at.longwave,
-                    of_sky: outside.of_sky,
-                    of_air: outside.of_air,
+                    sky_factor: outside.sky_factor,
+                    air_factor: outside.air_factor,
                 };
                 sink.radiate_outdoors(surface, outside.area, &radiation);
             }

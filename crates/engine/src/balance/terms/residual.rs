@@ -1,7 +1,7 @@
 //! The residual of each balance: heat in less heat stored [W], which is zero at the solution.
 
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::model::Model;
 use crate::linear::building_system::is_held;
 use crate::number::real::Real;
@@ -14,7 +14,7 @@ use super::{Balances, Node, Stage};
 pub(crate) struct Residual<S> {
     pub(crate) cells: Vec<S>,
     /// Of surfaces held at a temperature: how far they are from it [K].
-    pub(crate) surfaces: BySurface<S>,
+    pub(crate) surfaces: BySide<S>,
     /// Over the area of the surfaces of the zone.
     pub(crate) air: Vec<S>,
     pub(crate) largest_flow: S,
@@ -63,9 +63,9 @@ impl<S: Real> Residual<S> {
 struct Imbalance<'a, S> {
     coefficients: &'a Coefficients<S>,
     wall_of_cell: Vec<usize>,
-    temperatures: &'a BySurface<S>,
+    temperatures: &'a BySide<S>,
     residual: Residual<S>,
-    held: Vec<(SurfaceId, S)>,
+    held: Vec<(SideId, S)>,
 }
 
 impl<S: Real> Imbalance<'_, S> {
@@ -92,7 +92,7 @@ impl<S: Real> HeatSink<S> for Imbalance<'_, S> {
         }
     }
 
-    fn impose(&mut self, surface: SurfaceId, _area: S, temperature: S) {
+    fn impose(&mut self, surface: SideId, _area: S, temperature: S) {
         self.held.push((surface, temperature - self.temperatures[surface]));
     }
 }
@@ -103,7 +103,7 @@ impl<S: Real> Balances<'_, S> {
         &self,
         stage: &Stage<'_, S>,
         cells: &[S],
-        surfaces: &BySurface<S>,
+        surfaces: &BySide<S>,
         air: &[S],
     ) -> Residual<S> {
         let plan = self.model.plan;

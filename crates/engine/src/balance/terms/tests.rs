@@ -1,7 +1,7 @@
 use super::*;
-use crate::balance::ledger::Flow;
+use crate::balance::energy_balance::Flow;
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::BySurface;
+use crate::building::ids::BySide;
 use crate::building::plan::Plan;
 use crate::common::{Builder, facing, values};
 use crate::input::description::{Facing, OutdoorLongwave};
@@ -33,8 +33,8 @@ fn at(plan: &Plan, surfaces: [f64; 2]) -> ([f64; 2], [f64; 2]) {
     let weather = WeatherIndex::new(plan, coefficients);
     let index = FlowIndex::new(plan, coefficients, &weather);
     let mut conditions = Conditions::new(plan, coefficients, &weather);
-    conditions.surfaces[SurfaceId::outside(0)].temperature = OUTDOOR;
-    conditions.surfaces[SurfaceId::inside(0)].temperature = IMPOSED;
+    conditions.surfaces[SideId::outside(0)].temperature = OUTDOOR;
+    conditions.surfaces[SideId::inside(0)].temperature = IMPOSED;
     let walls: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
     let balances = Balances {
         model: &model,
@@ -46,11 +46,10 @@ fn at(plan: &Plan, surfaces: [f64; 2]) -> ([f64; 2], [f64; 2]) {
     };
     let none = Contents { cells: &[], enthalpy: &[], air: &[] };
     let stage = Stage { length: 300.0, ratio: 0.0, start: none, first: none };
-    let temperatures = BySurface::from(surfaces.to_vec());
+    let temperatures = BySide::from(surfaces.to_vec());
     let residual = balances.residual(&stage, &[], &temperatures, &[]);
-    let into_wall = |surface: SurfaceId| {
-        walls[0].links[0].left * (temperatures[surface] - temperatures[surface.opposite()])
-    };
+    let into_wall =
+        |surface: SideId| walls[0].links[0].left * (temperatures[surface] - temperatures[surface.opposite()]);
     let power = balances.power(&temperatures, &[], into_wall);
     (residual.surfaces.pair(0), [power.into[Flow::Convection as usize], power.into[Flow::Boundary as usize]])
 }

@@ -3,8 +3,8 @@
 use super::air;
 use super::wall::WallCoefficients;
 use super::zone::ZoneCoefficients;
-use crate::building::ids::SurfaceId;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::ids::SideId;
+use crate::building::plan::{Plan, SideRole};
 use crate::input::description::{Drying, HumidityControl, HumiditySetPoint, ZoneHumidity};
 use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, channel, scheduled};
 use crate::input::values::Values;
@@ -90,7 +90,7 @@ enum SetHumidity<S> {
 /// A surface that takes up vapour.
 #[derive(Debug, Clone)]
 pub struct VapourSurface<S> {
-    pub(crate) surface: SurfaceId,
+    pub(crate) surface: SideId,
     pub(crate) zone: usize,
     pub(crate) area: S,
     pub(crate) layers: VapourLayers<S>,
@@ -114,8 +114,8 @@ impl<S: Real> HumidityCoefficients<S> {
             VapourZone::new(zone, values, numbers.air_capacity * mass)
         };
         let surfaces = humidity.buffers.iter().filter_map(|buffer| {
-            let surface = SurfaceId::new(buffer.surface, buffer.side);
-            let SurfaceRole::Zone { zone, .. } = plan.surfaces[surface].role else { return None };
+            let surface = SideId::new(buffer.surface, buffer.side);
+            let SideRole::Zone { zone, .. } = plan.surfaces[surface].role else { return None };
             let layers = VapourLayers::new(buffer, values, pressure);
             Some(VapourSurface { surface, zone, area: walls[buffer.surface].area, layers })
         });

@@ -19,7 +19,7 @@ pub use self::vents::Vents;
 pub use self::wall::WallCoefficients;
 pub use self::zone::ZoneCoefficients;
 pub use super::cell::{Cell, Matter};
-use super::ids::BySurface;
+use super::ids::BySide;
 use super::plan::Plan;
 use crate::input::description::DerivedOutput;
 use crate::input::values::Values;
@@ -36,7 +36,7 @@ pub struct Coefficients<S> {
     /// Walls.
     pub walls: Vec<WallCoefficients<S>>,
     /// The two surfaces of each wall.
-    pub surfaces: BySurface<SurfaceCoefficients<S>>,
+    pub surfaces: BySide<SurfaceCoefficients<S>>,
     /// Zones.
     pub zones: Vec<ZoneCoefficients<S>>,
     /// Sun that windows between zones let pass.
@@ -72,7 +72,7 @@ impl<S: Real> Coefficients<S> {
         let values = Values::new(numbers);
         let description = &plan.description;
         let walls: Vec<_> = (0..plan.walls.len()).map(|i| WallCoefficients::new(plan, i, &values)).collect();
-        let surfaces: BySurface<_> =
+        let surfaces: BySide<_> =
             plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
         let site = &description.site;
         let air = air::of_site(plan, &values);

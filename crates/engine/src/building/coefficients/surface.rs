@@ -7,7 +7,7 @@
 
 use super::air;
 use super::wall::net_area;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::input::description::{Exposure, Facing, OutdoorLongwave, ParamId, Side, Surface};
 use crate::input::forcing::{CLIMATE_CHANNELS, Schedule};
@@ -82,7 +82,7 @@ pub enum Imposed<S> {
 }
 
 impl<S: Real> SurfaceCoefficients<S> {
-    pub(crate) fn new(plan: &Plan, index: SurfaceId, values: &Values<'_, S>) -> Self {
+    pub(crate) fn new(plan: &Plan, index: SideId, values: &Values<'_, S>) -> Self {
         let wall = &plan.description.surfaces[index.wall()];
         let side = plan.side(index);
         let degrees = values.get(wall.tilt);
@@ -115,11 +115,11 @@ impl<S: Real> SurfaceCoefficients<S> {
 }
 
 /// 1 for an outside surface, whose normal has the tilt and azimuth of the description; -1 for an inside surface.
-fn outward<S: Real>(surface: SurfaceId) -> S {
+fn outward<S: Real>(surface: SideId) -> S {
     if surface.is_outside() { S::one() } else { -S::one() }
 }
 
-fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
+fn boundary<S: Real>(plan: &Plan, index: SideId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
     match side.facing {
         Facing::Zone { .. } => Boundary::Zone,
         Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
@@ -136,7 +136,7 @@ pub(super) fn imposed<S: Real>(facing: &Facing, values: &Values<'_, S>) -> Optio
     }
 }
 
-fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+fn outdoors<S: Real>(plan: &Plan, index: SideId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
     let wall = &plan.description.surfaces[index.wall()];
     let (mut plane, heading) = plane(wall, index, side, values);
     let free = plan.takes_from_measured(index).then(|| {
@@ -172,12 +172,7 @@ fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values
 }
 
 /// The plane of a surface outdoors, and the components (north, east) of its azimuth.
-fn plane<S: Real>(
-    wall: &Surface,
-    index: SurfaceId,
-    side: &Side,
-    values: &Values<'_, S>,
-) -> (Plane<S>, [S; 2]) {
+fn plane<S: Real>(wall: &Surface, index: SideId, side: &Side, values: &Values<'_, S>) -> (Plane<S>, [S; 2]) {
     let (tilt, azimuth) = (values.get(wall.tilt), values.get(wall.azimuth));
     let outward = outward::<S>(index);
     let (sin_tilt, cos_tilt) = (sin_of_degrees(tilt), cos_of_degrees(tilt) * outward);
@@ -206,7 +201,7 @@ mod tests {
     fn outdoors_of(wall: usize) -> Outdoors<f64> {
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
         let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
-        match &surfaces[SurfaceId::outside(wall)].boundary {
+        match &surfaces[SideId::outside(wall)].boundary {
             Boundary::Outdoors(outdoors) => (**outdoors).clone(),
             other => panic!("{other:?}"),
         }
@@ -236,9 +231,9 @@ mod tests {
     fn normals_of_inside_surfaces() {
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
         let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
-        let upward = |surface: SurfaceId| surfaces[surface].upward;
-        assert_eq!((upward(SurfaceId::outside(5)), upward(SurfaceId::inside(5))), (1.0, -1.0));
-        assert_eq!((upward(SurfaceId::outside(4)), upward(SurfaceId::inside(4))), (-1.0, 1.0));
+        let upward = |surface: SideId| surfaces[surface].upward;
+        assert_eq!((upward(SideId::outside(5)), upward(SideId::inside(5))), (1.0, -1.0));
+        assert_eq!((upward(SideId::outside(4)), upward(SideId::inside(4))), (-1.0, 1.0));
     }
 
     /// At 10 m over open country to 10 m in suburbs, by the power laws: 1.586 x 0.4516 = 0.716.

@@ -2,7 +2,7 @@
 
 use crate::building::cell::{Cell, Matter};
 use crate::building::glazing::{Glass, GlassWall, rated_resistance};
-use crate::building::layout::WallPlan;
+use crate::building::layout::SurfacePlan;
 use crate::building::plan::Plan;
 use crate::input::description::{Material, Surface};
 use crate::input::values::Values;
@@ -37,7 +37,7 @@ impl<S: Real> WallCoefficients<S> {
         let description = &plan.description;
         let described = &description.surfaces[index];
         let construction = &description.constructions[described.construction];
-        let wall: &WallPlan = &plan.walls[index];
+        let wall: &SurfacePlan = &plan.walls[index];
         let area = net_area(described, values);
         if let (Some(glazing), Some(glass)) = (&construction.glazing, &wall.glass) {
             let GlassWall { cells, extra, glass } =

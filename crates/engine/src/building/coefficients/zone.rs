@@ -1,6 +1,6 @@
 //! Coefficients of a zone: air, gains and flows, long-wave exchange and the distribution of the sun in it.
 
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::plan::Plan;
 use crate::building::solar_distribution::{SolarDistribution, SolarSurface};
 use crate::input::description::{Infiltration, Mixing, ParamId, Zone, ZoneLongwave};
@@ -69,7 +69,7 @@ impl<S: Real> ZoneCoefficients<S> {
         index: usize,
         values: &Values<'_, S>,
         walls: &[WallCoefficients<S>],
-        surfaces: &BySurface<SurfaceCoefficients<S>>,
+        surfaces: &BySide<SurfaceCoefficients<S>>,
         site: &SiteAir<S>,
     ) -> Self {
         let definition = &plan.description.zones[index];
@@ -168,11 +168,11 @@ fn plants<S: Real>(zone: &Zone, values: &Values<'_, S>) -> ([Option<Thermostat<S
 /// What the surfaces of a zone do with the sun.
 fn solar_surfaces<'a, S: Real>(
     plan: &Plan,
-    zone_surfaces: &[SurfaceId],
+    zone_surfaces: &[SideId],
     walls: &'a [WallCoefficients<S>],
-    surfaces: &BySurface<SurfaceCoefficients<S>>,
+    surfaces: &BySide<SurfaceCoefficients<S>>,
 ) -> Vec<SolarSurface<'a, S>> {
-    let of = |&surface: &SurfaceId| {
+    let of = |&surface: &SideId| {
         let wall = &walls[surface.wall()];
         SolarSurface {
             area: wall.area,
@@ -227,7 +227,7 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
 }
 
 /// The normal of a surface into its zone, at its nominal tilt and azimuth.
-fn normal(plan: &Plan, surface: SurfaceId) -> [f64; 3] {
+fn normal(plan: &Plan, surface: SideId) -> [f64; 3] {
     let wall = &plan.description.surfaces[surface.wall()];
     let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
     let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));

@@ -137,19 +137,21 @@ impl<S: Real> Curves<S> {
 fn monotone<S: Real>(knots: &[f64], heights: &[S]) -> Vec<[S; 4]> {
     let n = knots.len() - 1;
     let widths: Vec<f64> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let rises: Vec<S> = (0..n).map(|k| (heights[k + 1] - heights[k]).scale(1.0 / widths[k])).collect();
-    let mut slopes = vec![rises[0]; n + 1];
+    let load_sensitivities: Vec<S> =
+        (0..n).map(|k| (heights[k + 1] - heights[k]).scale(1.0 / widths[k])).collect();
+    let mut slopes = vec![load_sensitivities[0]; n + 1];
     for k in 1..n {
-        slopes[k] = inner_slope(widths[k - 1], widths[k], rises[k - 1], rises[k]);
+        slopes[k] = inner_slope(widths[k - 1], widths[k], load_sensitivities[k - 1], load_sensitivities[k]);
     }
     if n > 1 {
-        slopes[0] = end_slope(widths[0], widths[1], rises[0], rises[1]);
-        slopes[n] = end_slope(widths[n - 1], widths[n - 2], rises[n - 1], rises[n - 2]);
+        slopes[0] = end_slope(widths[0], widths[1], load_sensitivities[0], load_sensitivities[1]);
+        slopes[n] =
+            end_slope(widths[n - 1], widths[n - 2], load_sensitivities[n - 1], load_sensitivities[n - 2]);
     }
     (0..n)
         .map(|k| {
             let h = widths[k];
-            let (start, end, rise) = (slopes[k], slopes[k + 1], rises[k]);
+            let (start, end, rise) = (slopes[k], slopes[k + 1], load_sensitivities[k]);
             [
                 heights[k],
                 start,

@@ -24,8 +24,8 @@ impl LiquidFraction {
             return Err(EngineError::Input(text));
         }
         if let MeltingCurve::Fractions { temperatures, fractions, .. } = curve {
-            let rises = temperatures.windows(2).all(|pair| pair[0] < pair[1]);
-            if temperatures.len() < 2 || temperatures.len() != fractions.len() || !rises {
+            let load_sensitivities = temperatures.windows(2).all(|pair| pair[0] < pair[1]);
+            if temperatures.len() < 2 || temperatures.len() != fractions.len() || !load_sensitivities {
                 let text =
                     "a measured melting curve needs two or more rising temperatures, each with a fraction";
                 return Err(EngineError::Input(text.to_owned()));

@@ -25,7 +25,7 @@ struct Piece {
     start: f64,
     convex: [f64; 2],
     curve: [f64; 2],
-    rises: bool,
+    load_sensitivities: bool,
 }
 
 /// A monotone C1 curve from its first point to its last; constant before and after.
@@ -204,19 +204,24 @@ impl Segments {
     /// height, is convex as well.
     pub(super) fn convex<S: Real>(&self, x: S) -> (S, S) {
         let found = x.look_up(|x| {
-            let Piece { start, convex: [value, slope], curve: [height, steepness], rises } = self.piece(x);
-            [start, value, slope, height, steepness, if rises { 1.0 } else { 0.0 }]
+            let Piece { start, convex: [value, slope], curve: [height, steepness], load_sensitivities } =
+                self.piece(x);
+            [start, value, slope, height, steepness, if load_sensitivities { 1.0 } else { 0.0 }]
         });
-        let [start, value, slope, height, steepness, rises] = found;
+        let [start, value, slope, height, steepness, load_sensitivities] = found;
         let Reading { height: reached, slope: there, .. } = self.at(x);
         let distance = x - start;
         let bent = reached - height - steepness * distance;
-        (value + slope * distance + rises * bent, slope + rises * (there - steepness))
+        (
+            value + slope * distance + load_sensitivities * bent,
+            slope + load_sensitivities * (there - steepness),
+        )
     }
 
     /// The piece that a temperature is in.
     fn piece(&self, x: f64) -> Piece {
-        let mut piece = Piece { start: self.first(), convex: [0.0; 2], curve: [0.0; 2], rises: false };
+        let mut piece =
+            Piece { start: self.first(), convex: [0.0; 2], curve: [0.0; 2], load_sensitivities: false };
         if x < piece.start {
             return piece;
         }
@@ -229,13 +234,13 @@ impl Segments {
                 // Where two segments meet the slope may rise at once.
                 piece.convex[1] += (begin.curve[1] - piece.curve[1]).max(0.0);
                 piece = Piece { convex: piece.convex, ..begin };
-                piece.rises = end.curve[1] > begin.curve[1];
+                piece.load_sensitivities = end.curve[1] > begin.curve[1];
                 if x < end.start {
                     return piece;
                 }
                 let length = end.start - begin.start;
                 piece.convex[0] += piece.convex[1] * length;
-                if piece.rises {
+                if piece.load_sensitivities {
                     piece.convex[0] += end.curve[0] - begin.curve[0] - begin.curve[1] * length;
                     piece.convex[1] += end.curve[1] - begin.curve[1];
                 }
@@ -268,7 +273,12 @@ impl Segment {
     fn place(&self, u: f64) -> Piece {
         let height = self.below + u * (self.linear + u * (self.square + u * self.cube));
         let slope = (self.linear + u * (2.0 * self.square + u * 3.0 * self.cube)) / self.length;
-        Piece { start: self.start + u * self.length, convex: [0.0; 2], curve: [height, slope], rises: false }
+        Piece {
+            start: self.start + u * self.length,
+            convex: [0.0; 2],
+            curve: [height, slope],
+            load_sensitivities: false,
+        }
     }
 
     /// Integral of `offset + rise` from the start.

@@ -5,7 +5,7 @@ mod values;
 
 use serde::Deserialize;
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::Real;
@@ -111,7 +111,7 @@ outputs! {
     /// Temperature of the surface.
     FaceTemperature { surface, side } =
         Row::state(Of::Side, "SURFACE.SIDE_temperature, WINDOW.SIDE_temperature", "degC", "Surface temperature").usual(),
-        |at| at.state.surfaces[SurfaceId::new(surface, side)];
+        |at| at.state.surfaces[SideId::new(surface, side)];
 
     /// Temperature between two layers, counted from outside.
     InterfaceTemperature { surface, interface } =
@@ -159,7 +159,7 @@ outputs! {
             "W/m2",
             "Incident solar radiation",
         ),
-        |at| at.step.incident(SurfaceId::outside(surface));
+        |at| at.step.incident(SideId::outside(surface));
 
     /// Solar radiation that the window transmits; between two zones less what it transmits the other way.
     TransmittedSolar { surface } =
@@ -179,7 +179,7 @@ outputs! {
             "W/m2",
             "Absorbed solar radiation",
         ),
-        |at| at.step.weather.absorbed(SurfaceId::new(surface, side));
+        |at| at.step.weather.absorbed(SideId::new(surface, side));
 
     /// Long-wave radiation that the side gains from its surroundings.
     NetLongwave { surface, side } =
@@ -189,7 +189,7 @@ outputs! {
             "W/m2",
             "Net long-wave radiation",
         ),
-        |at| at.step.net_longwave(at.state, SurfaceId::new(surface, side));
+        |at| at.step.net_longwave(at.state, SideId::new(surface, side));
 
     /// Convective heat transfer coefficient.
     Convection { surface, side } =
@@ -200,7 +200,7 @@ outputs! {
             "Heat transfer coefficient",
         )
         .not_negative(),
-        |at| at.step.convection(at.state, SurfaceId::new(surface, side));
+        |at| at.step.convection(at.state, SideId::new(surface, side));
 
     /// Relative humidity of the air of the zone at the temperature of the surface.
     SurfaceHumidity { surface, side } =
@@ -211,7 +211,7 @@ outputs! {
             "Relative humidity at the surface",
         )
         .not_negative(),
-        |at| at.step.surface_humidity(at.state, SurfaceId::new(surface, side));
+        |at| at.step.surface_humidity(at.state, SideId::new(surface, side));
 
     /// 1 where dew, or below 0.01 degC frost, forms on the surface, else 0.
     Condensation { surface, side } =
@@ -221,7 +221,7 @@ outputs! {
             "-",
             "Condensation",
         ),
-        |at| S::select(at.step.condenses(at.state, SurfaceId::new(surface, side)), S::one(), S::zero());
+        |at| S::select(at.step.condenses(at.state, SideId::new(surface, side)), S::one(), S::zero());
 
     /// Air that flows into the zone of the vent, or from the second zone to the first, at the density of the site.
     VentInflow { vent } =

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::building::ids::SurfaceId;
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::ids::SideId;
+use crate::building::plan::{Plan, SideRole};
 use crate::error::EngineError;
 pub(super) use crate::input::description::OutputPlace as Place;
 use crate::number::real::Real;
@@ -206,11 +206,11 @@ impl Of {
                 is_surface && at.side < 2
             }
             Self::HumidSide => {
-                let side = SurfaceId::new(at.surface, at.side);
+                let side = SideId::new(at.surface, at.side);
                 plan.humidity.is_some()
                     && is_surface
                     && at.side < 2
-                    && matches!(plan.surfaces[side].role, SurfaceRole::Zone { .. })
+                    && matches!(plan.surfaces[side].role, SideRole::Zone { .. })
             }
             Self::OutdoorSurface => is_surface,
             Self::Window | Self::OutdoorWindow => plan.windows.contains(&at.surface),
@@ -243,7 +243,7 @@ impl Of {
             | Self::DriedZone
             | Self::HumidifiedZone => format!("zone {}", description.zones[at.zone].name),
             Self::Side | Self::SunlitSide | Self::RadiatingSide | Self::ConvectiveSide | Self::HumidSide => {
-                plan.surface_name(SurfaceId::new(at.surface, at.side))
+                plan.surface_name(SideId::new(at.surface, at.side))
             }
             Self::OutdoorSurface | Self::Window | Self::OutdoorWindow => {
                 format!("surface {}", description.surfaces[at.surface].name)

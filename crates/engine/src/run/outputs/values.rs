@@ -2,7 +2,7 @@
 
 use super::row::At;
 use crate::building::coefficients::{Matter, WallCoefficients};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::number::real::Real;
 use crate::step::state::State;
@@ -16,7 +16,7 @@ pub(super) fn transmitted<S: Real>(at: &At<'_, S>, surface: usize) -> S {
 /// Transmitted over incident solar radiation of a window, zero in the dark [-].
 pub(super) fn solar_transmittance<S: Real>(at: &At<'_, S>, surface: usize) -> S {
     let area = at.step.model.coefficients.walls[surface].area;
-    let incident = area * at.step.incident(SurfaceId::outside(surface));
+    let incident = area * at.step.incident(SideId::outside(surface));
     let dark = incident.lt(S::constant(1e-9));
     let fraction = transmitted(at, surface) / S::select(dark, S::one(), incident);
     S::select(dark, S::zero(), fraction)
@@ -77,7 +77,7 @@ pub(super) fn interface_temperature<S: Real>(at: &At<'_, S>, surface: usize, int
     let link = wall.layer_cells[interface - 1].1;
     let flux = step.link_flux(state, surface, link);
     let (mut temperature, mut resistance) = if link == 0 {
-        (state.surfaces[SurfaceId::outside(surface)], S::zero())
+        (state.surfaces[SideId::outside(surface)], S::zero())
     } else {
         let half = half_resistance(numbers, state, wall.first_cell, link - 1);
         (state.cells[wall.first_cell + link - 1], half)
@@ -99,9 +99,9 @@ pub(super) fn sensor_temperature<S: Real>(at: &At<'_, S>, sensor: usize) -> S {
 fn profile<S: Real>(place: &At<'_, S>, surface: usize) -> Vec<(S, S)> {
     let At { plan, step, state } = *place;
     let (wall, numbers) = (&plan.walls[surface], &step.model.coefficients.walls[surface]);
-    let at = |surface: SurfaceId| state.surfaces[surface];
+    let at = |surface: SideId| state.surfaces[surface];
     let mut depth = S::zero();
-    let mut points = vec![(depth, at(SurfaceId::outside(surface)))];
+    let mut points = vec![(depth, at(SideId::outside(surface)))];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
             points.push((depth, interface_temperature(place, surface, layer)));
@@ -112,7 +112,7 @@ fn profile<S: Real>(place: &At<'_, S>, surface: usize) -> Vec<(S, S)> {
             depth += numbers.cells[i].thickness;
         }
     }
-    points.push((depth, at(SurfaceId::inside(surface))));
+    points.push((depth, at(SideId::inside(surface))));
     points
 }
 

@@ -7,7 +7,7 @@ use crate::step::ideal_loads::search::find_loads;
 
 /// The ideal loads of a building along a known solution.
 #[derive(Debug, Clone)]
-pub(crate) struct KnownLoads<S> {
+pub(crate) struct StoredLoads<S> {
     /// Zone of each load.
     zones: Vec<usize>,
     limits: Vec<Limits<S>>,
@@ -18,7 +18,7 @@ pub(crate) struct KnownLoads<S> {
     right: Vec<S>,
 }
 
-impl<S: Real> KnownLoads<S> {
+impl<S: Real> StoredLoads<S> {
     /// Of the zones that have one.
     pub(crate) fn new(zones: &[usize]) -> Self {
         let (count, zero) = (zones.len(), S::zero());

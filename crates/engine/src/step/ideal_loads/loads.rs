@@ -8,10 +8,10 @@ use crate::linear::building_system::BuildingSystem;
 use crate::linear::unknowns::{Temperatures, Unknowns};
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::held_airs::HeldAirs;
+use crate::step::ideal_loads::augmented_lagrangian::ZoneLoadSolver;
 use crate::step::ideal_loads::limits::Limits;
+use crate::step::ideal_loads::load_sensitivities::{Change, LoadSensitivity};
 use crate::step::ideal_loads::responses::Response;
-use crate::step::ideal_loads::rises::{Change, Rises};
 use crate::step::scheme::Tableau;
 use crate::step::state::blend;
 
@@ -22,7 +22,7 @@ pub(crate) struct LoadHistory<S> {
     outdoor: [S; 2],
     earlier: Vec<S>,
     slopes: Vec<S>,
-    rises: Vec<S>,
+    load_sensitivities: Vec<S>,
 }
 
 impl<S: Real> LoadHistory<S> {
@@ -34,7 +34,7 @@ impl<S: Real> LoadHistory<S> {
         blend(mask, &mut self.outdoor, &other.outdoor);
         blend(mask, &mut self.earlier, &other.earlier);
         blend(mask, &mut self.slopes, &other.slopes);
-        blend(mask, &mut self.rises, &other.rises);
+        blend(mask, &mut self.load_sensitivities, &other.load_sensitivities);
     }
 }
 
@@ -44,7 +44,7 @@ impl LoadHistory<f64> {
         if let Some(first) = &self.first {
             first.write(numbers);
         }
-        for values in [&self.outdoor[..], &self.earlier, &self.slopes, &self.rises] {
+        for values in [&self.outdoor[..], &self.earlier, &self.slopes, &self.load_sensitivities] {
             numbers.extend_from_slice(values);
         }
     }
@@ -54,7 +54,9 @@ impl LoadHistory<f64> {
         if let Some(first) = &mut self.first {
             numbers = first.read(numbers)?;
         }
-        for values in [&mut self.outdoor[..], &mut self.earlier, &mut self.slopes, &mut self.rises] {
+        for values in
+            [&mut self.outdoor[..], &mut self.earlier, &mut self.slopes, &mut self.load_sensitivities]
+        {
             let (own, rest) = numbers.split_at_checked(values.len())?;
             values.copy_from_slice(own);
             numbers = rest;
@@ -74,9 +76,9 @@ pub(crate) struct IdealLoads<S: Real> {
     /// Response of the building to each load, where there are few.
     pub(super) responses: Vec<Response<S>>,
     /// The airs that the last stage holds, where there are many.
-    pub(super) held: Option<HeldAirs<S>>,
+    pub(super) held: Option<ZoneLoadSolver<S>>,
     /// There: how surfaces follow the loads, and the changes of the loads after the last sweep.
-    rises: Option<Rises<S>>,
+    load_sensitivities: Option<LoadSensitivity<S>>,
     changes: Vec<Change<S>>,
     /// Iterate about which each stage was last linearised, and its solution.
     iterates: Vec<Unknowns<S>>,
@@ -114,8 +116,8 @@ impl<S: Real> IdealLoads<S> {
             close,
             limits: vec![nothing; count],
             responses: vec![Response::new(unknowns, rows, stages); few],
-            held: (!direct).then(|| HeldAirs::new(count, rows, close)),
-            rises: (!direct && count > 0).then(|| Rises::new(model, zones, stages)),
+            held: (!direct).then(|| ZoneLoadSolver::new(count, rows, close)),
+            load_sensitivities: (!direct && count > 0).then(|| LoadSensitivity::new(model, zones, stages)),
             changes: vec![Change::none(); if direct { 0 } else { count }],
             iterates: vec![unknowns.clone(); kept],
             solved: vec![unknowns.clone(); kept],
@@ -159,8 +161,12 @@ impl<S: Real> IdealLoads<S> {
             first: self.solved.first().cloned(),
             outdoor: self.outdoor,
             earlier: self.earlier.clone(),
-            slopes: self.held.as_ref().map(HeldAirs::slopes).unwrap_or_default(),
-            rises: self.rises.as_ref().map(Rises::numbers).unwrap_or_default(),
+            slopes: self.held.as_ref().map(ZoneLoadSolver::slopes).unwrap_or_default(),
+            load_sensitivities: self
+                .load_sensitivities
+                .as_ref()
+                .map(LoadSensitivity::numbers)
+                .unwrap_or_default(),
         }
     }
 
@@ -174,8 +180,8 @@ impl<S: Real> IdealLoads<S> {
         if let Some(held) = &mut self.held {
             held.set_slopes(&history.slopes);
         }
-        if let Some(rises) = &mut self.rises {
-            rises.set_numbers(&history.rises);
+        if let Some(load_sensitivities) = &mut self.load_sensitivities {
+            load_sensitivities.set_numbers(&history.load_sensitivities);
         }
     }
 
@@ -263,8 +269,8 @@ impl<S: Real> IdealLoads<S> {
     /// Learns from the second solution of a stage how surfaces follow the loads.
     #[inline(always)]
     pub(super) fn learn(&mut self, stage: usize, solved: &Unknowns<S>) {
-        if let Some(rises) = &mut self.rises {
-            rises.learn(stage, &self.changes, [&self.solved[stage], solved]);
+        if let Some(load_sensitivities) = &mut self.load_sensitivities {
+            load_sensitivities.learn(stage, &self.changes, [&self.solved[stage], solved]);
         }
     }
 
@@ -284,20 +290,20 @@ impl<S: Real> IdealLoads<S> {
                 solved.air[zone] += held.first_rise(p);
             }
         }
-        if let Some(rises) = &self.rises {
-            rises.shift(stage, &self.changes, solved);
+        if let Some(load_sensitivities) = &self.load_sensitivities {
+            load_sensitivities.shift(stage, &self.changes, solved);
         }
         for (response, &change) in self.responses.iter().zip(&self.correction) {
-            let rises = &response.stages[stage];
-            let shift = |values: &mut [S], rises: &[S]| {
-                for (value, &rise) in values.iter_mut().zip(rises) {
+            let load_sensitivities = &response.stages[stage];
+            let shift = |values: &mut [S], load_sensitivities: &[S]| {
+                for (value, &rise) in values.iter_mut().zip(load_sensitivities) {
                     *value += rise * change;
                 }
             };
-            shift(&mut solved.surfaces, &rises.surfaces);
-            shift(&mut solved.air, &rises.air);
+            shift(&mut solved.surfaces, &load_sensitivities.surfaces);
+            shift(&mut solved.air, &load_sensitivities.air);
             for cells in cells {
-                shift(&mut solved.cells[cells.clone()], &rises.cells[cells.clone()]);
+                shift(&mut solved.cells[cells.clone()], &load_sensitivities.cells[cells.clone()]);
             }
         }
     }
@@ -373,7 +379,7 @@ impl<S: Real> IdealLoads<S> {
 
     /// Heat that holds the airs at temperatures in the last stage, by zone: what their loads lack there [W].
     pub(super) fn holding_heat<'h>(&'h self, air: &'h [S]) -> impl Iterator<Item = (usize, S)> + 'h {
-        let of_load = move |held: &'h HeldAirs<S>| {
+        let of_load = move |held: &'h ZoneLoadSolver<S>| {
             self.zones.iter().enumerate().map(move |(p, &zone)| (zone, held.missing(p, air[zone])))
         };
         self.held.iter().flat_map(of_load)

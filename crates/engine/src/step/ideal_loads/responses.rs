@@ -1,8 +1,8 @@
 //! How a building responds to one watt of an ideal load in a step, from the factors of its stages.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::linear::building_system::{BuildingSystem, is_held};
 use crate::linear::surface_balance::ExteriorSurfaces;
 use crate::linear::unknowns::Unknowns;
@@ -94,7 +94,7 @@ impl<S: Real> Response<S> {
             let storage = model.coefficients.zones[zone].capacity.scale(ratio / length);
             right[plan.air_row] += storage * first.air[zone];
         }
-        for (w, carried) in system.step_maps.carried() {
+        for (w, carried) in system.transition_matrices.carried() {
             let [outside, inside] = first.surfaces.pair(w);
             sources[w] = carried.map(|[a, b]| a * outside + b * inside);
         }
@@ -107,12 +107,12 @@ impl<S: Real> Response<S> {
             let source = sources[w];
             let area = model.coefficients.walls[w].area;
             for e in 0..2 {
-                let SurfaceRole::Zone { row, .. } = model.plan.surfaces[SurfaceId::new(w, e)].role else {
+                let SideRole::Zone { row, .. } = model.plan.surfaces[SideId::new(w, e)].role else {
                     continue;
                 };
                 let mut heat = source[e];
                 if let ExteriorSurfaces::One { side, .. } = system.exterior[w] {
-                    let rise = exterior_rise(model, system, SurfaceId::new(w, side), source[side]);
+                    let rise = exterior_rise(model, system, SideId::new(w, side), source[side]);
                     heat += system.responses[w].other(e) * rise;
                 }
                 right[row] += area * heat;
@@ -137,14 +137,14 @@ impl<S: Real> Response<S> {
         for (w, wall) in model.plan.walls.iter().enumerate() {
             let mut surfaces = [S::zero(); 2];
             for (e, surface) in surfaces.iter_mut().enumerate() {
-                if let SurfaceRole::Zone { row, .. } = model.plan.surfaces[SurfaceId::new(w, e)].role {
+                if let SideRole::Zone { row, .. } = model.plan.surfaces[SideId::new(w, e)].role {
                     *surface = right[row];
                 }
             }
             if let ExteriorSurfaces::One { side, line } = system.exterior[w] {
                 let source = if stage > 0 { sources[w][side] } else { S::zero() };
                 surfaces[side] = line.slope * surfaces[1 - side]
-                    + exterior_rise(model, system, SurfaceId::new(w, side), source);
+                    + exterior_rise(model, system, SideId::new(w, side), source);
             }
             rise.surfaces.set_pair(w, surfaces);
             if !wall.nonlinear {
@@ -167,7 +167,7 @@ impl<S: Real> Response<S> {
 fn exterior_rise<S: Real>(
     model: &Model<'_, S>,
     system: &BuildingSystem<'_, S>,
-    surface: SurfaceId,
+    surface: SideId,
     source: S,
 ) -> S {
     if is_held(model, surface) { S::zero() } else { source * system.inverses[surface.wall()] }

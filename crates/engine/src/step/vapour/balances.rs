@@ -139,7 +139,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         humidity: &HumidityCoefficients<S>,
         state: &mut State<S>,
         (tableau, length): (&Tableau, f64),
-        ledger: &mut VapourLedger<S>,
+        energy_balance: &mut VapourLedger<S>,
     ) {
         self.saturation.update();
         let (last, first_length) = (tableau.weights.len() - 1, tableau.diagonal * length);
@@ -167,7 +167,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         self.elapsed += length;
         let content = self.content(humidity, &state.vapour, &mut step);
         state.vapour.copy_from_slice(&self.reached);
-        ledger.add_step(&step, content);
+        energy_balance.add_step(&step, content);
     }
 
     /// What the first stage tells about the bounds of the step; its length [s].

@@ -107,11 +107,11 @@ impl<S: Real> StageFlows<S> {
             let (temperature, air) = (at.surfaces[surface.surface], at.air[surface.zone]);
             let heat =
                 film(model, conditions, surface.surface, temperature, air).max(S::constant(LEAST_FILM));
-            let of_air =
+            let air_factor =
                 (air + S::constant(KELVIN)).scale(VAPOUR_GAS_CONSTANT) * humidity.heat_over_vapour / heat;
             let permeability = VapourLayers::relative_permeability(temperature);
             let layers = &surface.layers;
-            place.to_layer = S::one() / (of_air + layers.to_surface / permeability);
+            place.to_layer = S::one() / (air_factor + layers.to_surface / permeability);
             place.between = if layers.two { permeability / layers.between } else { S::zero() };
             *at_surface = temperature;
         }

@@ -1,6 +1,6 @@
 //! The vapour balances beside the heat balances of a step.
 
-use crate::balance::ledger::Ledger;
+use crate::balance::energy_balance::EnergyBalance;
 use crate::building::model::Model;
 use crate::number::real::Real;
 use crate::step::scheme::Tableau;
@@ -43,9 +43,14 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Solves the vapour balances of a step of a length [s], or of a part of one, that has been accepted.
     #[inline(always)]
-    pub(crate) fn advance_vapour(&mut self, state: &mut State<S>, length: f64, ledger: &mut Ledger<S>) {
+    pub(crate) fn advance_vapour(
+        &mut self,
+        state: &mut State<S>,
+        length: f64,
+        energy_balance: &mut EnergyBalance<S>,
+    ) {
         if let Some(vapour) = &mut self.vapour {
-            advance_vapour(vapour, &self.model, state, (self.scheme.tableau(), length), ledger);
+            advance_vapour(vapour, &self.model, state, (self.scheme.tableau(), length), energy_balance);
         }
     }
 }
@@ -58,12 +63,12 @@ pub(in crate::step) fn advance_vapour<S: Real>(
     model: &Model<'_, S>,
     state: &mut State<S>,
     (tableau, length): (&Tableau, f64),
-    ledger: &mut Ledger<S>,
+    energy_balance: &mut EnergyBalance<S>,
 ) {
     if let Some(humidity) = &model.coefficients.humidity {
         S::vectorised(
             #[inline(always)]
-            || vapour.advance(humidity, state, (tableau, length), &mut ledger.vapour),
+            || vapour.advance(humidity, state, (tableau, length), &mut energy_balance.vapour),
         );
     }
 }

@@ -385,11 +385,11 @@ impl Maker<'_> {
             [-4.0, -1.0, -0.5, 0.0, 0.6, 1.0, 4.0].iter().map(|x| middle + x * width).collect();
         let points = if self.random.chance(0.5) {
             let mut enthalpy = 0.0;
-            let rises: Vec<f64> = temperatures
+            let load_sensitivities: Vec<f64> = temperatures
                 .windows(2)
                 .map(|pair| (pair[1] - pair[0]) * self.random.between(2e3, 4e4))
                 .collect();
-            let rising = rises.into_iter().map(|rise| {
+            let rising = load_sensitivities.into_iter().map(|rise| {
                 enthalpy += rise;
                 enthalpy
             });

@@ -51,7 +51,7 @@ enum Kinetics<S> {
 impl<S: Real> Kinetics<S> {
     /// What is left of the distance from equilibrium after a duration [s] of an implicit stage, and its slope [1/K].
     #[inline(always)]
-    fn remainder(&self, temperature: S, duration: S) -> (S, S) {
+    fn linearization_error(&self, temperature: S, duration: S) -> (S, S) {
         match self {
             Self::TimeConstant(constant) => {
                 let sum = (*constant + duration).max(S::constant(f64::MIN_POSITIVE));
@@ -60,9 +60,12 @@ impl<S: Real> Kinetics<S> {
             Self::Rate(rate, end) => {
                 let product = duration * *rate;
                 let undercooling = (*end - temperature).max(S::zero());
-                let remainder = S::one() / (S::one() + product * undercooling);
+                let linearization_error = S::one() / (S::one() + product * undercooling);
                 let cold = temperature.lt(*end);
-                (remainder, S::select(cold, remainder * remainder * product, S::zero()))
+                (
+                    linearization_error,
+                    S::select(cold, linearization_error * linearization_error * product, S::zero()),
+                )
             }
         }
     }
@@ -103,11 +106,13 @@ impl<S: Real> HistoryLaw<S> for Supercooling<S> {
     #[inline(always)]
     fn at(&self, temperature: S, history: &PcmHistory<S>) -> (S, S) {
         let (melting, slope) = self.curve.compact(temperature);
-        let (remainder, remainder_slope) =
-            self.kinetics.remainder(temperature, history.model_state[DURATION]);
+        let (linearization_error, remainder_slope) =
+            self.kinetics.linearization_error(temperature, history.model_state[DURATION]);
         let excess = history.liquid_fraction - melting;
-        let freezing =
-            (melting + excess * remainder, slope * (S::one() - remainder) + excess * remainder_slope);
+        let freezing = (
+            melting + excess * linearization_error,
+            slope * (S::one() - linearization_error) + excess * remainder_slope,
+        );
         let with_crystals = either(S::zero().lt(excess), freezing, (melting, slope));
         either(Self::crystals(history), with_crystals, (S::one(), S::zero()))
     }
@@ -159,16 +164,17 @@ impl<S: Real> HistoryLaw<S> for Supercooling<S> {
     fn rising(&self, temperature: S, history: &PcmHistory<S>) -> (S, S) {
         let far = S::constant(FAR);
         let [_, meets] = self.curve.temperatures_of(history.liquid_fraction);
-        let (remainder, remainder_slope) =
-            self.kinetics.remainder(temperature, history.model_state[DURATION]);
+        let (linearization_error, remainder_slope) =
+            self.kinetics.linearization_error(temperature, history.model_state[DURATION]);
         let (all, all_slope) = self.curve.convex(temperature, [-far, far]);
         let (molten, molten_slope) = self.curve.convex(temperature, [meets, far]);
         // As `at` has it, so that both have their corner at the same number.
         let melts = !S::zero().lt(history.liquid_fraction - self.curve.compact(temperature).0);
         let begun = self.curve.compact(meets).0;
         let (more, more_slope) = either(melts, (molten - begun, molten_slope), (S::zero(), S::zero()));
-        let value = all + remainder * (more - all);
-        let slope = all_slope + remainder * (more_slope - all_slope) + remainder_slope * (more - all);
+        let value = all + linearization_error * (more - all);
+        let slope =
+            all_slope + linearization_error * (more_slope - all_slope) + remainder_slope * (more - all);
         either(Self::crystals(history), (value, slope), (S::one(), S::zero()))
     }
 }

@@ -7,9 +7,9 @@
 //! all else is small.
 
 use crate::building::coefficients::Boundary;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::linear::building_system::BuildingSystem;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::StorageRule;
@@ -33,13 +33,13 @@ const SIDES: f64 = 2.0;
 #[derive(Debug, Clone)]
 pub(crate) struct NonlinearLaws<S> {
     /// Surfaces with natural convection outdoors, and those in zones with their zone.
-    exterior: Vec<SurfaceId>,
-    interior: Vec<(SurfaceId, usize)>,
+    exterior: Vec<SideId>,
+    interior: Vec<(SideId, usize)>,
     /// Walls whose melting curves are estimated, and those whose curves have to be evaluated.
     estimated: Vec<usize>,
     evaluated: Vec<usize>,
     /// Surfaces outdoors, which the sun falls on.
-    outdoors: Vec<SurfaceId>,
+    outdoors: Vec<SideId>,
     /// How much more convection bends than [`CONVECTION`] says; one at least.
     bend: S,
     /// What is accepted in this stage.
@@ -50,7 +50,7 @@ pub(crate) struct NonlinearLaws<S> {
 #[derive(Debug, Clone, Copy)]
 struct Limit<S> {
     /// Largest remainder [W/m2].
-    remainder: S,
+    linearization_error: S,
     /// Third power of the largest remainder over [`CONVECTION`] [K4].
     cube: S,
     /// Largest change of a temperature difference that changes its sign [K].
@@ -59,9 +59,12 @@ struct Limit<S> {
 
 impl<S: Real> Limit<S> {
     #[inline(always)]
-    fn new(remainder: S, bend: S) -> Self {
-        let (root, across) = (remainder.scale(1.0 / CONVECTION) / bend, remainder.scale(1.0 / SIDES) / bend);
-        Self { remainder, cube: root * root * root, across }
+    fn new(linearization_error: S, bend: S) -> Self {
+        let (root, across) = (
+            linearization_error.scale(1.0 / CONVECTION) / bend,
+            linearization_error.scale(1.0 / SIDES) / bend,
+        );
+        Self { linearization_error, cube: root * root * root, across }
     }
 
     /// Where the remainder of natural convection is accepted; temperature difference from surface to air at the iterate
@@ -83,8 +86,8 @@ impl<S: Real> NonlinearLaws<S> {
         let (mut exterior, mut interior) = (Vec::new(), Vec::new());
         for &surface in &parts.surfaces.nonlinear {
             match plan.surfaces[surface].role {
-                SurfaceRole::Zone { zone, .. } => interior.push((surface, zone)),
-                SurfaceRole::Exterior => exterior.push(surface),
+                SideRole::Zone { zone, .. } => interior.push((surface, zone)),
+                SideRole::Exterior => exterior.push(surface),
             }
         }
         let laws = parts.surfaces.nonlinear.iter().filter_map(|&surface| model.convection(surface));
@@ -92,7 +95,7 @@ impl<S: Real> NonlinearLaws<S> {
         let estimated = |&w: &usize| coefficients.walls[w].pcm.iter().all(|law| law.curvature().is_some());
         let (estimated, evaluated) = parts.nonlinear_walls.iter().copied().partition(estimated);
         let outdoors =
-            |&surface: &SurfaceId| matches!(coefficients.surfaces[surface].boundary, Boundary::Outdoors(_));
+            |&surface: &SideId| matches!(coefficients.surfaces[surface].boundary, Boundary::Outdoors(_));
         Self {
             exterior,
             interior,
@@ -112,7 +115,7 @@ impl<S: Real> NonlinearLaws<S> {
             sun = sun.max(stage.conditions.surfaces[surface].solar);
         }
         let flow = sun + S::constant(LEAST_FLOW);
-        self.limit = Limit::new(flow.scale(stage.tableau.tolerance.remainder.of::<S>()), self.bend);
+        self.limit = Limit::new(flow.scale(stage.tableau.tolerance.linearization_error.of::<S>()), self.bend);
     }
 
     /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].
@@ -124,7 +127,7 @@ impl<S: Real> NonlinearLaws<S> {
         system: &BuildingSystem<'_, S>,
         [old, new]: [&Unknowns<S>; 2],
     ) -> S::Mask {
-        let mut small = (change * change).scale(EMISSION).lt(self.limit.remainder);
+        let mut small = (change * change).scale(EMISSION).lt(self.limit.linearization_error);
         // In most of the iterations that do not end here, this is enough to know.
         if !small.any() {
             return small;
@@ -145,7 +148,7 @@ impl<S: Real> NonlinearLaws<S> {
             let left = doors::heat(whole, after) - doors::tangent(whole, before).at(after);
             let areas = &stage.model.coefficients.zones[zone].areas;
             let area = areas.iter().fold(S::zero(), |sum, &area| sum + area);
-            small = small & left.abs().lt(self.limit.remainder * area);
+            small = small & left.abs().lt(self.limit.linearization_error * area);
         }
         if stage.tableau.storage == StorageRule::ApparentCapacity || !small.any() {
             return small;
@@ -154,7 +157,7 @@ impl<S: Real> NonlinearLaws<S> {
         for &w in &self.estimated {
             largest = largest.max(system.walls[w].estimated_remainder());
         }
-        small = small & largest.lt(self.limit.remainder);
+        small = small & largest.lt(self.limit.linearization_error);
         if !self.evaluated.is_empty() && small.any() {
             small = small & self.accepts_evaluated(stage, &self.evaluated, system, new);
         }
@@ -176,9 +179,9 @@ impl<S: Real> NonlinearLaws<S> {
             let (numbers, cells) = (&stage.model.coefficients.walls[w], stage.model.cells(w));
             let surfaces = solution.surfaces.pair(w);
             let memory = &stage.histories[cells];
-            largest = largest.max(system.walls[w].remainder(numbers, memory, surfaces));
+            largest = largest.max(system.walls[w].linearization_error(numbers, memory, surfaces));
         }
-        largest.lt(self.limit.remainder)
+        largest.lt(self.limit.linearization_error)
     }
 
     /// As [`Self::accepts`], with all melting curves evaluated.

@@ -5,7 +5,7 @@ use crate::number::real::Real;
 use super::laws::Laws;
 use super::layout::Layout;
 
-/// The coefficients of a front. Unknowns are emissions, see [`zone_front`](super).
+/// The coefficients of a front. Unknowns are emissions, see [`zone_elimination`](super).
 #[derive(Debug, Clone)]
 pub(super) struct Equations<S> {
     /// Exchange areas: what a surface loses by its own emission and gains by that of others [m2]; symmetric.

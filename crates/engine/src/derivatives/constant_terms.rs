@@ -6,14 +6,14 @@
 //! derivatives multiply them with the weights on the equations, without a place on the tape.
 
 use crate::balance::terms::{Contents, End, Held, Node, Origin, OutdoorRadiation, Sink, Stage};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::{Link, Storage};
 use crate::number::line::Line;
-use crate::number::real::{Real, SteadyTerm};
+use crate::number::real::{ConstantTerm, Real};
 
-use crate::step::follower::Follower;
+use crate::step::linearized_stepper::TangentStepper;
 
 use super::equation_slopes::Scale;
 
@@ -66,23 +66,23 @@ impl KnownValues {
 
 /// The steady terms of a building, and what they need.
 #[derive(Debug, Clone)]
-pub(super) struct SteadyTerms<S> {
-    pub(super) terms: Vec<SteadyTerm<S>>,
+pub(super) struct ConstantTerms<S> {
+    pub(super) terms: Vec<ConstantTerm<S>>,
     /// Walls of constant properties whose cells they need.
     pub(super) walls: Vec<usize>,
     /// Surfaces whose emission they need.
-    pub(super) surfaces: Vec<SurfaceId>,
+    pub(super) surfaces: Vec<SideId>,
 }
 
-impl<S: Real> SteadyTerms<S> {
+impl<S: Real> ConstantTerms<S> {
     /// The steady terms of a building, by places in [`KnownValues`].
-    pub(super) fn find(follower: &Follower<'_, S>, places: &KnownValues) -> Self {
-        let zeros = Unknowns::zero(places.cooling, 0, follower.model.plan.zones.len());
+    pub(super) fn find(linearized_stepper: &TangentStepper<'_, S>, places: &KnownValues) -> Self {
+        let zeros = Unknowns::zero(places.cooling, 0, linearized_stepper.model.plan.zones.len());
         let contents = Contents { cells: &zeros.cells, enthalpy: &zeros.cells, air: &zeros.air };
         let stage = Stage { length: 1.0, ratio: 0.0, start: contents, first: contents };
         let found = Self { terms: Vec::new(), walls: Vec::new(), surfaces: Vec::new() };
-        let mut finding = FindSteadyTerms { model: &follower.model, places, found, wall: 0 };
-        follower.balances().visit(&stage, &mut finding);
+        let mut finding = FindSteadyTerms { model: &linearized_stepper.model, places, found, wall: 0 };
+        linearized_stepper.balances().visit(&stage, &mut finding);
         let mut found = finding.found;
         found.surfaces.sort_unstable_by_key(|surface| surface.index());
         found.surfaces.dedup();
@@ -94,7 +94,7 @@ impl<S: Real> SteadyTerms<S> {
 struct FindSteadyTerms<'a, S> {
     model: &'a Model<'a, S>,
     places: &'a KnownValues,
-    found: SteadyTerms<S>,
+    found: ConstantTerms<S>,
     wall: usize,
 }
 
@@ -103,7 +103,7 @@ impl<S: Real> FindSteadyTerms<'_, S> {
     fn keep(&mut self, number: S, between: [usize; 2], equations: [usize; 2], factors: [f64; 2]) -> bool {
         let keeps = number.carries() && factors != [0.0; 2];
         if keeps {
-            self.found.terms.push(SteadyTerm { number, between, equations, factors });
+            self.found.terms.push(ConstantTerm { number, between, equations, factors });
         }
         keeps
     }
@@ -182,7 +182,7 @@ impl<S: Real> Sink<S> for FindSteadyTerms<'_, S> {
 
     fn exchange(&mut self, _ends: [End<S>; 2], _area: S, _law: &Line<S>) {}
 
-    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: S, [law, _]: [&Line<S>; 2]) {
+    fn radiate(&mut self, surfaces: [SideId; 2], area: S, [law, _]: [&Line<S>; 2]) {
         let rows = surfaces.map(|surface| self.row(Node::Surface(surface)));
         let emissions = surfaces.map(|surface| self.places.emission + surface.index());
         if self.keep(area, emissions, rows, [-1.0, 1.0]) {
@@ -193,9 +193,9 @@ impl<S: Real> Sink<S> for FindSteadyTerms<'_, S> {
         self.keep(law.slope, rows, rows, [-area.lane(0), area.lane(0)]);
     }
 
-    fn radiate_outdoors(&mut self, _surface: SurfaceId, _area: S, _radiation: &OutdoorRadiation<'_, S>) {}
+    fn radiate_outdoors(&mut self, _surface: SideId, _area: S, _radiation: &OutdoorRadiation<'_, S>) {}
 
     fn release(&mut self, _node: Node, _size: S, _heat: S, _origin: Origin<S>) {}
 
-    fn impose(&mut self, _surface: SurfaceId, _area: S, _temperature: S) {}
+    fn impose(&mut self, _surface: SideId, _area: S, _temperature: S) {}
 }

@@ -1,7 +1,7 @@
 //! The front of one zone, or of several side by side: all that its equations are made of.
 
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::building::plan::Plan;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::real::Real;
@@ -68,8 +68,8 @@ impl<S> Columns<S> {
 /// The laws of the surfaces of a front in its zones.
 fn interior_laws<S: Real>(
     numbers: &Coefficients<S>,
-    laws: &BySurface<SurfaceLaws<S>>,
-    surfaces: &[SurfaceId],
+    laws: &BySide<SurfaceLaws<S>>,
+    surfaces: &[SideId],
     (stride, shape): (usize, &Shape),
 ) -> Laws<S> {
     let mut interior = Laws::new(surfaces, stride, laws);
@@ -102,7 +102,7 @@ impl<S: Real> ZoneFront<S> {
     pub(super) fn new(
         plan: &Plan,
         numbers: &Coefficients<S>,
-        laws: &BySurface<SurfaceLaws<S>>,
+        laws: &BySide<SurfaceLaws<S>>,
         (zones, members): (&[usize], usize),
         [iterated, windows_together]: [bool; 2],
     ) -> Self {
@@ -111,7 +111,7 @@ impl<S: Real> ZoneFront<S> {
         // Surfaces of the same number are neighbours.
         let places = || (0..shape.order.len() * step).map(|place| (place, place % step, place / step));
         let of_plan = |lane: usize| &plan.zones[zones[lane]];
-        let surfaces: Vec<SurfaceId> =
+        let surfaces: Vec<SideId> =
             places().map(|(_, lane, i)| of_plan(lane).surfaces[shapes[lane].order[i]]).collect();
         let layout = Layout::new(plan, &shapes, (zones, members), &surfaces, S::CHUNK);
         let exterior = Exterior::new(numbers, laws, &layout);

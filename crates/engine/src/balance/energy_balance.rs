@@ -135,7 +135,7 @@ impl<S: Real> Power<S> {
 
 /// Heat of a run [J].
 #[derive(Debug, Clone, Copy)]
-pub struct Ledger<S> {
+pub struct EnergyBalance<S> {
     /// Net heat into the building by flow.
     pub into: [S; Flow::ALL.len()],
     /// Rise of the heat stored in walls and air.
@@ -154,7 +154,7 @@ pub struct Ledger<S> {
 /// rounded to 1e-16; some thousand roundings add up in a step.
 const NOTHING: ByPrecision = ByPrecision { double: 1e-12, single: 1e-6 };
 
-impl<S: Real> Ledger<S> {
+impl<S: Real> EnergyBalance<S> {
     /// No heat yet.
     #[must_use]
     pub fn new() -> Self {
@@ -197,7 +197,7 @@ impl<S: Real> Ledger<S> {
     }
 }
 
-impl<S: Real> Ledger<S> {
+impl<S: Real> EnergyBalance<S> {
     /// The larger of the relative residuals of the balances of heat and of vapour [-].
     #[must_use]
     pub fn worst_closure(&self) -> S {
@@ -205,7 +205,7 @@ impl<S: Real> Ledger<S> {
     }
 }
 
-impl<S: Real> Default for Ledger<S> {
+impl<S: Real> Default for EnergyBalance<S> {
     fn default() -> Self {
         Self::new()
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::StepMaps;
+use super::TransitionMatrices;
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
 use crate::linear::wall::WallSystem;
@@ -138,7 +138,7 @@ fn compare(walls: &[Wall], random: &mut Random, diagonal: f64, dt: f64) {
     for (chain, wall) in chains.iter_mut().zip(&coefficients.walls) {
         chain.factor(wall, diagonal * dt);
     }
-    let mut maps = StepMaps::new(&plan, &coefficients, &chains, diagonal);
+    let mut maps = TransitionMatrices::new(&plan, &coefficients, &chains, diagonal);
     maps.factor(&chains);
     let mut cells = random.many(plan.n_cells, -10.0, 40.0);
     let mut sources = vec![[0.0; 2]; walls.len()];
@@ -233,7 +233,7 @@ fn a_steady_state_stays() {
         let mut chain = WallSystem::new(&coefficients.walls[0]);
         chain.factor(&coefficients.walls[0], diagonal * 600.0);
         let chains = [chain];
-        let mut maps = StepMaps::new(&plan, &coefficients, &chains, diagonal);
+        let mut maps = TransitionMatrices::new(&plan, &coefficients, &chains, diagonal);
         maps.factor(&chains);
         maps.begin();
         maps.first_sources(&chains, &cells, &mut [[0.0; 2]]);

@@ -1,12 +1,12 @@
 //! A step with ideal loads: its stages, repeated until their temperatures and the loads are right.
 
-use crate::balance::ledger::Power;
+use crate::balance::energy_balance::Power;
 use crate::building::coefficients::Boundary;
 use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
-use crate::step::newton::{PATIENCE, Search};
+use crate::step::newton::{DAMPING_START, Search};
 use crate::step::stage::Stage;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -30,7 +30,7 @@ struct Sweep<S: Real> {
 }
 
 /// The result of a sweep.
-struct Swept<S: Real> {
+struct LoadIteration<S: Real> {
     /// Heat of all but the last stage.
     energy: Power<S>,
     /// Largest change of a temperature in any stage [K].
@@ -71,11 +71,11 @@ impl<S: Real> Stepper<'_, S> {
         for number in 0..self.most_sweeps() {
             self.solver.check_stop()?;
             // Sweeps are bounded anyway; lanes together may take more iterations than one alone.
-            if S::LANES == 1 && self.exhausted() {
+            if S::LANES == 1 && self.limit_reached() {
                 break;
             }
             let whole = number >= SINGLE_SWEEPS;
-            let Swept { mut energy, change, accepted } =
+            let LoadIteration { mut energy, change, accepted } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
             let still = accepted | S::Mask::splat(whole);
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
@@ -104,7 +104,7 @@ impl<S: Real> Stepper<'_, S> {
         if S::LANES == 1 || !others.any() {
             return false;
         }
-        self.give_up(lanes);
+        self.mark_failed(lanes);
         true
     }
 
@@ -164,7 +164,7 @@ impl<S: Real> Stepper<'_, S> {
         state: &State<S>,
         weather: &Weather<'_>,
         Sweep { part, length, number, active }: Sweep<S>,
-    ) -> Result<Swept<S>, EngineError> {
+    ) -> Result<LoadIteration<S>, EngineError> {
         let tableau = self.scheme.tableau();
         let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
         let (again, responds) = (number > 0, self.ideal_loads.finds_responses(number, active));
@@ -204,7 +204,7 @@ impl<S: Real> Stepper<'_, S> {
                 place: (part.step, index + 1),
             };
             if again {
-                solver.advance(&stage, active, number.min(PATIENCE - 1));
+                solver.advance(&stage, active, number.min(DAMPING_START - 1));
             }
             ideal_loads.hold(index + 1 == weights.len(), &mut solver.start.holding);
             let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
@@ -219,7 +219,7 @@ impl<S: Real> Stepper<'_, S> {
             let moved = S::select(sound, solver.change(model), S::constant(f64::INFINITY));
             change = change.max(moved);
             if accepted.any() {
-                accepted = accepted & solver.small_remainder(&stage, moved);
+                accepted = accepted & solver.small_linearization_error(&stage, moved);
             }
             if responds {
                 let loads = (index, &solver.start.load[..]);
@@ -237,7 +237,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.add_heat(weight * length, &mut energy);
             }
         }
-        Ok(Swept { energy, change, accepted })
+        Ok(LoadIteration { energy, change, accepted })
     }
 
     /// Records the residual of a stage. The heat that holds the airs in the last one counts as part of their loads.

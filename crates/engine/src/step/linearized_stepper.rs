@@ -3,11 +3,11 @@
 //! Nothing is searched for. The laws are linearised at the solution; its slopes follow from those of the equations
 //! (`derivatives`). Numbers with derivatives therefore have no linear system of their own, and no iteration.
 
+use crate::balance::energy_balance::EnergyBalance;
 use crate::balance::flow_index::FlowIndex;
-use crate::balance::ledger::Ledger;
 use crate::balance::terms::{Balances, Contents, Stage as StageContents};
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::input::forcing::Forcing;
@@ -19,7 +19,7 @@ use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::step::accept::{Reached, accept_nonlinear};
 use crate::step::halving::Part;
-use crate::step::ideal_loads::known::KnownLoads;
+use crate::step::ideal_loads::known::StoredLoads;
 use crate::step::linearisation::Linearisation;
 use crate::step::readings::Readings;
 use crate::step::scheme::{Scheme, Tableau};
@@ -53,7 +53,7 @@ impl StagePlace {
 
 /// Takes steps along known solutions.
 #[derive(Debug, Clone)]
-pub(crate) struct Follower<'a, S: Real> {
+pub(crate) struct TangentStepper<'a, S: Real> {
     pub(crate) model: Model<'a, S>,
     scheme: Scheme,
     weather: StageWeather<S>,
@@ -65,7 +65,7 @@ pub(crate) struct Follower<'a, S: Real> {
     iterate: Unknowns<S>,
     /// The solution, with its derivatives.
     solution: Unknowns<S>,
-    loads: KnownLoads<S>,
+    loads: StoredLoads<S>,
     /// Ideal load of each zone, summed over the parts of the step so far, each by its share [W].
     mean_load: Vec<S>,
     vapour: Option<Box<VapourBalances<'a, S>>>,
@@ -73,7 +73,7 @@ pub(crate) struct Follower<'a, S: Real> {
     histories: StageHistories<S>,
 }
 
-impl<'a, S: Real> Follower<'a, S> {
+impl<'a, S: Real> TangentStepper<'a, S> {
     /// Prepares a plan with a parameter vector.
     pub(crate) fn new(plan: &'a Plan, parameters: &'a [S], scheme: Scheme) -> Self {
         let (model, tableau) = (Model::new(plan, Coefficients::new(plan, parameters)), scheme.tableau());
@@ -89,7 +89,7 @@ impl<'a, S: Real> Follower<'a, S> {
             start: StageStart::new(&model),
             iterate: unknowns.clone(),
             solution: unknowns,
-            loads: KnownLoads::new(&plan.ideal_loads),
+            loads: StoredLoads::new(&plan.ideal_loads),
             mean_load: vec![S::zero(); plan.zones.len()],
             vapour: VapourBalances::new(&model, stages).map(Box::new),
             vents: plan.vents.as_ref().map(|network| Box::new(VentNetwork::new(network))),
@@ -298,7 +298,7 @@ impl<'a, S: Real> Follower<'a, S> {
 
     /// Black emission of some surfaces at a solution [W/m2].
     #[inline(always)]
-    pub(crate) fn write_emission(&self, surfaces: &[SurfaceId], known: &Unknowns<f64>, emission: &mut [f64]) {
+    pub(crate) fn write_emission(&self, surfaces: &[SideId], known: &Unknowns<f64>, emission: &mut [f64]) {
         let laws = &self.linearisation.laws.surfaces;
         for &surface in surfaces {
             emission[surface.index()] = Line::of(&laws[surface].emission).at(known.surfaces[surface]);
@@ -358,7 +358,7 @@ impl<'a, S: Real> Follower<'a, S> {
         state.air.copy_from_slice(&solution.air);
         state.load.copy_from_slice(&start.load);
         if let Some(vapour) = vapour {
-            advance_vapour(vapour, model, state, (scheme.tableau(), length), &mut Ledger::new());
+            advance_vapour(vapour, model, state, (scheme.tableau(), length), &mut EnergyBalance::new());
         }
         if part.halvings > 0 {
             for (sum, &load) in mean_load.iter_mut().zip(&state.load) {

@@ -43,11 +43,11 @@ struct StepMap<S> {
     cells: Range<usize>,
     /// Whether it has more than [`LONGEST`] cells: there is no map from the cells.
     long: bool,
-    /// An earlier wall with the same maps, counted in [`StepMaps::walls`].
+    /// An earlier wall with the same maps, counted in [`TransitionMatrices::walls`].
     same_as: Option<usize>,
     /// Numbers of [`Rows`] in the map from the cells and in the map from the surfaces.
     blocks: [usize; 2],
-    /// Where they begin in [`StepMaps::from_cells`] and [`StepMaps::from_surfaces`].
+    /// Where they begin in [`TransitionMatrices::from_cells`] and [`TransitionMatrices::from_surfaces`].
     places: [usize; 2],
     /// Conductance between each surface and the cell behind it [W/(m2 K)].
     end_conductances: [S; 2],
@@ -59,7 +59,7 @@ struct StepMap<S> {
 
 /// The maps of all walls of constant properties, wall after wall.
 #[derive(Debug, Clone)]
-pub(crate) struct StepMaps<S> {
+pub(crate) struct TransitionMatrices<S> {
     walls: Vec<StepMap<S>>,
     /// `A`, and in two more rows the heat into the surfaces in the first stage [W/m2]; columns are cells.
     from_cells: Vec<Rows<S>>,
@@ -194,7 +194,7 @@ fn with_wide_instructions<S: Real, R>(work: impl FnOnce() -> R) -> R {
     if S::LANES == 1 { widened(work) } else { work() }
 }
 
-impl<S: Real> StepMaps<S> {
+impl<S: Real> TransitionMatrices<S> {
     /// Walls of a plan, for a scheme's diagonal coefficient.
     pub(crate) fn new(
         plan: &Plan,
@@ -202,7 +202,7 @@ impl<S: Real> StepMaps<S> {
         chains: &[WallSystem<S>],
         diagonal: f64,
     ) -> Self {
-        let mut step_maps = Self {
+        let mut transition_matrices = Self {
             walls: Vec::new(),
             from_cells: Vec::new(),
             from_surfaces: Vec::new(),
@@ -217,25 +217,27 @@ impl<S: Real> StepMaps<S> {
         for (wall, of_plan) in constant {
             let cells = of_plan.first_cell..of_plan.first_cell + of_plan.len();
             let of_cells = numbers.walls[wall].cells.iter().zip(&chains[wall].storage);
-            for (capacity, (cell, storage)) in step_maps.capacity[cells.clone()].iter_mut().zip(of_cells) {
+            for (capacity, (cell, storage)) in
+                transition_matrices.capacity[cells.clone()].iter_mut().zip(of_cells)
+            {
                 *capacity = numbers.walls[wall].area * cell.thickness * storage.capacity;
             }
             let blocks = [2, 0].map(|more| (of_plan.len() + more).div_ceil(ROWS));
             let long = of_plan.len() > LONGEST;
-            let index = step_maps.walls.len();
+            let index = transition_matrices.walls.len();
             let first = *kinds.entry(kind(&numbers.walls[wall], &chains[wall], wall)).or_insert(index);
             let places = if first < index {
-                step_maps.walls[first].places
+                transition_matrices.walls[first].places
             } else {
-                let places = [step_maps.from_cells.len(), step_maps.from_surfaces.len()];
+                let places = [transition_matrices.from_cells.len(), transition_matrices.from_surfaces.len()];
                 let columns = if long { 0 } else { of_plan.len() };
-                step_maps.from_cells.resize(places[0] + blocks[0] * columns, zero);
-                step_maps.from_surfaces.resize(places[1] + blocks[1], [zero; 4]);
+                transition_matrices.from_cells.resize(places[0] + blocks[0] * columns, zero);
+                transition_matrices.from_surfaces.resize(places[1] + blocks[1], [zero; 4]);
                 places
             };
-            step_maps.by_start.resize(step_maps.by_start.len() + blocks[0], zero);
+            transition_matrices.by_start.resize(transition_matrices.by_start.len() + blocks[0], zero);
             let nothing = [S::zero(); 2];
-            step_maps.walls.push(StepMap {
+            transition_matrices.walls.push(StepMap {
                 wall,
                 cells,
                 long,
@@ -247,7 +249,7 @@ impl<S: Real> StepMaps<S> {
                 first_surfaces: nothing,
             });
         }
-        step_maps
+        transition_matrices
     }
 
     /// Computes all maps from the walls, factored for a stage length.

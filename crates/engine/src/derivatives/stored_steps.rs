@@ -12,25 +12,25 @@ use crate::number::real::{Equations, Real};
 use crate::number::tape::{Taped, add_steady_weights};
 use crate::run::Action;
 use crate::step::Scheme;
-use crate::step::follower::{Follower, StagePlace};
+use crate::step::linearized_stepper::{StagePlace, TangentStepper};
 use crate::step::stage_solutions::{KnownPart, StageSolutions};
 use crate::step::state::State;
 use crate::weather::conditions::{Instant, Weather};
 
+use super::constant_terms::{ConstantTerms, KnownValues, Parts};
 use super::equation_slopes::{Carries, EquationSlopes};
-use super::steady_terms::{KnownValues, Parts, SteadyTerms};
 
 /// A follower whose numbers have derivatives, and the plain matrices at the known solutions.
 #[derive(Debug, Clone)]
 pub(super) struct DerivativeStepper<'a, S: Real> {
-    pub(super) follower: Follower<'a, S>,
+    pub(super) linearized_stepper: TangentStepper<'a, S>,
     /// What is known of each stage of a part; where the equations are solved once more after the step, of each stage of all its parts.
     stages: Vec<KnownStage<'a>>,
     /// Stages of a part.
     count: usize,
     equations: S::Equations,
     carries: Carries,
-    steady: SteadyTerms<S>,
+    steady: ConstantTerms<S>,
     /// Responses of all unknowns to each ideal load [K/W].
     responses: Vec<Vec<f64>>,
     scratch: Vec<f64>,
@@ -45,21 +45,21 @@ struct KnownStage<'a> {
 
 impl<'a, S: Real> DerivativeStepper<'a, S> {
     pub(super) fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
-        let follower = Follower::new(plan, numbers, scheme);
+        let linearized_stepper = TangentStepper::new(plan, numbers, scheme);
         let plain: Vec<f64> = numbers.iter().map(|number| number.lane(0)).collect();
         let matrix = StageMatrix::new(plan, &plain, scheme.tableau().diagonal);
         let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
-        let values = KnownValues::new(&follower.model);
+        let values = KnownValues::new(&linearized_stepper.model);
         let count = scheme.weights().len();
         Self {
             equations: S::Equations::default(),
-            carries: Carries::new(&follower.model),
-            steady: SteadyTerms::find(&follower, &values),
+            carries: Carries::new(&linearized_stepper.model),
+            steady: ConstantTerms::find(&linearized_stepper, &values),
             stages: vec![KnownStage { matrix, values }; count],
             count,
             responses: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
             scratch: Vec::new(),
-            follower,
+            linearized_stepper,
         }
     }
 
@@ -82,7 +82,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                 return self.balance_surfaces(state, &weather.at(0, 0), known);
             }
         };
-        self.follower.begin_step(state, weather.row(step, 0), dt);
+        self.linearized_stepper.begin_step(state, weather.row(step, 0), dt);
         for (k, part) in known.parts().enumerate() {
             let first = if const { S::Equations::SOLVED_LATER } { k * self.count } else { 0 };
             while self.stages.len() < first + self.count {
@@ -111,10 +111,10 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                self.follower.begin_part(state);
-                let plan = self.follower.model.plan;
+                self.linearized_stepper.begin_part(state);
+                let plan = self.linearized_stepper.model.plan;
                 let controlled =
-                    !plan.ideal_loads.is_empty() && self.follower.set_ideal_loads(weather, known);
+                    !plan.ideal_loads.is_empty() && self.linearized_stepper.set_ideal_loads(weather, known);
                 // Responses do not contain the effect of a load on the convection extrapolated in gaps: with windows a second
                 // round adds its slope.
                 let rounds = match (controlled, plan.windows.is_empty()) {
@@ -123,24 +123,24 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                     (true, false) => 2,
                 };
                 for round in 0..=rounds {
-                    for (place, solved) in self.follower.stage_places(length).zip(known.stages) {
+                    for (place, solved) in self.linearized_stepper.stage_places(length).zip(known.stages) {
                         if place.stage > 0 {
-                            self.follower.store_first_stage(state);
+                            self.linearized_stepper.store_first_stage(state);
                         } else {
-                            self.follower.begin_first_stage(state, length);
+                            self.linearized_stepper.begin_first_stage(state, length);
                         }
-                        self.follower.conditions_of_stage(state, weather, known.part, place.stage);
+                        self.linearized_stepper.conditions_of_stage(state, weather, known.part, place.stage);
                         self.stage(state, place, (solved, first + place.stage));
                         if round == rounds {
-                            self.follower.note_vapour(place.stage);
+                            self.linearized_stepper.note_vapour(place.stage);
                         }
                     }
                     if round < rounds {
                         self.respond(length, first);
-                        self.follower.correct_ideal_loads();
+                        self.linearized_stepper.correct_ideal_loads();
                     }
                 }
-                self.follower.end_part(state, known.part, length);
+                self.linearized_stepper.end_part(state, known.part, length);
             },
         );
     }
@@ -149,11 +149,11 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
     fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>, known: &StageSolutions<f64>) {
-        self.follower.begin_balance(state, now);
+        self.linearized_stepper.begin_balance(state, now);
         for solved in known.parts().flat_map(|part| part.stages) {
             self.stage(state, StagePlace::instant(), (solved, 0));
         }
-        self.follower.end_balance(state);
+        self.linearized_stepper.end_balance(state);
     }
 
     /// One stage: the slopes of its equations at the solution, and from them the slopes of the solution.
@@ -173,23 +173,28 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         place: StagePlace,
         (solved, number): (&Unknowns<f64>, usize),
     ) {
-        let Self { follower, stages, equations, carries, steady, .. } = self;
+        let Self { linearized_stepper, stages, equations, carries, steady, .. } = self;
         let KnownStage { matrix, values } = &mut stages[number];
         let new = matrix.factor_linear_walls(place.length);
-        follower.linearise_known_stage(state, place, solved);
+        linearized_stepper.linearise_known_stage(state, place, solved);
         let Parts { solution, cooling, emission } = values.parts();
-        follower.write_known_solution(solved, solution);
-        follower.write_known_cells(&steady.walls, (state, place, solved), matrix, [solution, cooling]);
-        follower.write_emission(&steady.surfaces, solved, emission);
-        let Balances { walls, laws, conditions, .. } = follower.balances();
+        linearized_stepper.write_known_solution(solved, solution);
+        linearized_stepper.write_known_cells(
+            &steady.walls,
+            (state, place, solved),
+            matrix,
+            [solution, cooling],
+        );
+        linearized_stepper.write_emission(&steady.surfaces, solved, emission);
+        let Balances { walls, laws, conditions, .. } = linearized_stepper.balances();
         matrix.factor((laws, walls, conditions), place.length, new);
-        let contents = follower.stage_of(state, place);
+        let contents = linearized_stepper.stage_of(state, place);
         let at = values.solution();
-        let mut slopes = EquationSlopes::new(&follower.model, carries, equations, at);
-        follower.balances().visit(&contents, &mut slopes);
+        let mut slopes = EquationSlopes::new(&linearized_stepper.model, carries, equations, at);
+        linearized_stepper.balances().visit(&contents, &mut slopes);
         slopes.hold_heat(&contents, matrix);
         equations.add_steady(&steady.terms, values.all());
-        follower.store_solution(
+        linearized_stepper.store_solution(
             #[inline(always)]
             |solution| equations.solve(number, matrix, at, solution),
         );
@@ -198,27 +203,28 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
     /// Responses of the airs at the end of the step to each ideal load, by the matrices of the stages.
     #[inline(always)]
     fn respond(&mut self, length: f64, first: usize) {
-        let Self { follower, stages, count, responses, scratch, .. } = self;
+        let Self { linearized_stepper, stages, count, responses, scratch, .. } = self;
         let stages = &stages[first..first + *count];
-        let plan = follower.model.plan;
+        let plan = linearized_stepper.model.plan;
         let first_air = plan.n_cells + plan.surfaces.len();
         for (p, (&zone, rows)) in plan.ideal_loads.iter().zip(responses).enumerate() {
             rows.fill(0.0);
-            for (place, KnownStage { matrix, .. }) in follower.stage_places(length).zip(stages) {
+            for (place, KnownStage { matrix, .. }) in linearized_stepper.stage_places(length).zip(stages) {
                 if let Some(before) = place.stage.checked_sub(1) {
                     // Heat capacities at the solution of the first stage, not of this one.
                     stages[before].matrix.stored_for_next_stage(rows, place.ratio);
                 }
-                let numbers = &follower.model.coefficients.zones[zone];
-                let radiated =
-                    numbers.radiated_part(follower.ideal_load(zone)).map_or(0.0, |part| part.lane(0));
+                let numbers = &linearized_stepper.model.coefficients.zones[zone];
+                let radiated = numbers
+                    .radiated_part(linearized_stepper.ideal_load(zone))
+                    .map_or(0.0, |part| part.lane(0));
                 rows[first_air + zone] += 1.0 - radiated;
                 for (&surface, &share) in plan.zones[zone].surfaces.iter().zip(&numbers.radiant_shares) {
                     rows[plan.n_cells + surface.index()] += radiated * share.lane(0);
                 }
                 matrix.solve_values(rows, scratch);
             }
-            follower.set_response(p, &rows[first_air..]);
+            linearized_stepper.set_response(p, &rows[first_air..]);
         }
     }
 }

@@ -9,7 +9,7 @@ use super::front::ZoneFront;
 use super::fronts::{Eliminate, Solve};
 use super::laws::Laws;
 use super::layout::{Elimination, Layout, air_places, places};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::pattern::Pattern;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::SurfaceLaws;
@@ -28,7 +28,7 @@ const WARMTH: f64 = 30.0;
 /// A random front of some surfaces, the first of them eliminated; their emission is nonlinear or not.
 fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFront<S> {
     let mut numbers = Numbers::new(7 + 31 * surfaces as u64 + eliminated as u64);
-    let ids: Vec<_> = (0..surfaces).map(SurfaceId::inside).collect();
+    let ids: Vec<_> = (0..surfaces).map(SideId::inside).collect();
     let retained_rows: Vec<usize> = (eliminated..=surfaces).collect();
     let places = places(&pattern(retained_rows.len()), eliminated, &retained_rows);
     let layout = Layout {

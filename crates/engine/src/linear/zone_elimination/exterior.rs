@@ -4,7 +4,7 @@
 //! [`surface_balance`](crate::linear::surface_balance) for many walls at once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::linear::wall::Response;
 use crate::number::line::Line;
@@ -43,10 +43,10 @@ pub(super) struct Exterior<S> {
 
 impl<S: Real> Exterior<S> {
     /// The exterior surfaces of a front, with their constant laws.
-    pub(super) fn new(numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>, layout: &Layout) -> Self {
+    pub(super) fn new(numbers: &Coefficients<S>, laws: &BySide<SurfaceLaws<S>>, layout: &Layout) -> Self {
         let opposite = layout.walls.iter().map(|surface| surface.opposite());
-        let surfaces: Vec<SurfaceId> = opposite.take(layout.exterior).collect();
-        let of = |surface: SurfaceId| &numbers.surfaces[surface];
+        let surfaces: Vec<SideId> = opposite.take(layout.exterior).collect();
+        let of = |surface: SideId| &numbers.surfaces[surface];
         let mut laws = Laws::new(&surfaces, layout.stride, laws);
         laws.sort(
             numbers,

@@ -4,13 +4,13 @@
 //! laws leave out, so that one more sweep would be needed. How far each of them moves with the load of its own zone is learned
 //! from the second sweep of a step and used in the next step. It is a guess: the solution does not depend on it.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::model::Model;
-use crate::building::plan::SurfaceRole;
+use crate::building::plan::SideRole;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 
-/// Largest rise of a surface, over that of an air by its [`conductance`](super::held_airs) alone [-]: what was learned where an
+/// Largest rise of a surface, over that of an air by its [`conductance`](super::augmented_lagrangian) alone [-]: what was learned where an
 /// iteration had not yet converged may be anything.
 const MOST: f64 = 2.0;
 
@@ -20,7 +20,7 @@ pub(super) struct Change<S: Real> {
     /// [W].
     pub(super) load: S,
     /// Lanes in which it is large enough to learn from.
-    pub(super) tells: S::Mask,
+    pub(super) is_informative: S::Mask,
     /// Conductance of the air of its zone, by its magnitude [W/K].
     pub(super) conductance: S,
 }
@@ -28,29 +28,29 @@ pub(super) struct Change<S: Real> {
 impl<S: Real> Change<S> {
     /// No change.
     pub(super) fn none() -> Self {
-        Self { load: S::zero(), tells: S::Mask::splat(false), conductance: S::one() }
+        Self { load: S::zero(), is_informative: S::Mask::splat(false), conductance: S::one() }
     }
 
     /// A rise that was learned, after something has moved by this change [K].
     #[inline(always)]
     fn learned(&self, rise: S, moved: S) -> S {
-        let found = moved / S::select(self.tells, self.load, S::one());
-        let sound = self.tells & found.abs().lt(S::constant(f64::MAX));
+        let found = moved / S::select(self.is_informative, self.load, S::one());
+        let sound = self.is_informative & found.abs().lt(S::constant(f64::MAX));
         S::select(sound, found.max(S::zero()).min(S::constant(MOST) / self.conductance), rise)
     }
 }
 
 /// Rises of surfaces and panes with the load of their zone.
 #[derive(Debug, Clone)]
-pub(super) struct Rises<S> {
+pub(super) struct LoadSensitivity<S> {
     /// Surfaces whose laws are nonlinear and cells of panes, each with the number of its load.
-    surfaces: Vec<(SurfaceId, usize)>,
+    surfaces: Vec<(SideId, usize)>,
     cells: Vec<(usize, usize)>,
     /// By stage: rises of these surfaces, then of these cells [K/W].
     stages: Vec<Vec<S>>,
 }
 
-impl<S: Real> Rises<S> {
+impl<S: Real> LoadSensitivity<S> {
     /// For the zones of all loads.
     pub(super) fn new(model: &Model<'_, S>, zones: &[usize], stages: usize) -> Self {
         let plan = model.plan;
@@ -58,14 +58,14 @@ impl<S: Real> Rises<S> {
         for (load, &zone) in zones.iter().enumerate() {
             load_of[zone] = Some(load);
         }
-        let of_surface = |surface: SurfaceId| match plan.surfaces[surface].role {
-            SurfaceRole::Zone { zone, .. } => load_of[zone],
-            SurfaceRole::Exterior => None,
+        let of_surface = |surface: SideId| match plan.surfaces[surface].role {
+            SideRole::Zone { zone, .. } => load_of[zone],
+            SideRole::Exterior => None,
         };
-        let near = |surface: SurfaceId| of_surface(surface).or_else(|| of_surface(surface.opposite()));
+        let near = |surface: SideId| of_surface(surface).or_else(|| of_surface(surface.opposite()));
         let linearised = model.parts.linearised.iter();
         let surfaces: Vec<_> = linearised.filter_map(|&surface| Some((surface, near(surface)?))).collect();
-        let of_window = |&w: &usize| Some((model.cells(w), near(SurfaceId::inside(w))?));
+        let of_window = |&w: &usize| Some((model.cells(w), near(SideId::inside(w))?));
         let cells: Vec<_> = plan
             .windows
             .iter()

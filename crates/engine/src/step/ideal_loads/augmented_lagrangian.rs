@@ -24,7 +24,7 @@ use crate::linear::building_system::BuildingSystem;
 use crate::number::line::Line;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::step::ideal_loads::limits::{Limits, TOLERANCE};
-use crate::step::ideal_loads::rises::Change;
+use crate::step::ideal_loads::load_sensitivities::Change;
 
 /// Conductance that holds an air, over the largest of those that act on it [-]. The rounding of the air times this is heat that is not
 /// known.
@@ -55,7 +55,7 @@ struct Mode<S: Real> {
 
 /// One zone and its load.
 #[derive(Debug, Clone, Copy)]
-struct HeldAir<S: Real> {
+struct ZoneLoad<S: Real> {
     mode: Mode<S>,
     /// Set points of heating and cooling [degC].
     set_points: [S; 2],
@@ -91,8 +91,8 @@ struct Supply<S> {
 
 /// Airs that the last stage of a step holds at their set points.
 #[derive(Debug, Clone)]
-pub(crate) struct HeldAirs<S: Real> {
-    airs: Vec<HeldAir<S>>,
+pub(crate) struct ZoneLoadSolver<S: Real> {
+    airs: Vec<ZoneLoad<S>>,
     /// Loads are found when what they lack moves no air by more than this [K].
     close: f64,
     /// Heat that air carries into each zone, per degree [W/K].
@@ -103,11 +103,11 @@ pub(crate) struct HeldAirs<S: Real> {
     comparable: S::Mask,
 }
 
-impl<S: Real> HeldAirs<S> {
+impl<S: Real> ZoneLoadSolver<S> {
     /// For a number of loads in a building with a number of rows; loads that are missing move an air by less than `close` [K].
     pub(super) fn new(loads: usize, rows: usize, close: f64) -> Self {
         let zero = S::zero();
-        let nothing = HeldAir {
+        let nothing = ZoneLoad {
             mode: Mode { heats: S::Mask::splat(false), cools: S::Mask::splat(false) },
             set_points: [zero; 2],
             conductance: S::one(),
@@ -226,8 +226,8 @@ impl<S: Real> HeldAirs<S> {
     #[inline(always)]
     pub(super) fn write_changes(&self, active: S::Mask, changes: &mut [Change<S>]) {
         for (air, change) in self.airs.iter().zip(changes) {
-            let tells = air.conductance.scale(TELLING.of::<S>()).lt(air.change.abs()) & active;
-            *change = Change { load: air.change, tells, conductance: air.conductance };
+            let is_informative = air.conductance.scale(TELLING.of::<S>()).lt(air.change.abs()) & active;
+            *change = Change { load: air.change, is_informative, conductance: air.conductance };
         }
     }
 
@@ -253,12 +253,12 @@ impl<S: Real> HeldAirs<S> {
         for ((held, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
             let (mode, load) = held.next(limits, loads[zone], air[zone]);
             let goes_on = moving & held.mode.is(mode);
-            let lacks = S::select(goes_on, held.missing, S::zero());
+            let load_residual = S::select(goes_on, held.missing, S::zero());
             loads[zone] = S::select(moving, load, loads[zone]);
             held.change = S::zero();
-            held.missing = lacks;
+            held.missing = load_residual;
             if number < DIAGONAL_SWEEPS {
-                held.change = lacks / held.slope;
+                held.change = load_residual / held.slope;
                 loads[zone] += held.change;
             }
             held.mode = Mode {
@@ -389,7 +389,7 @@ impl<S: Real> Mode<S> {
     }
 }
 
-impl<S: Real> HeldAir<S> {
+impl<S: Real> ZoneLoad<S> {
     #[inline(always)]
     fn set_point(&self) -> S {
         S::select(self.mode.heats, self.set_points[0], self.set_points[1])
@@ -414,11 +414,11 @@ impl<S: Real> HeldAir<S> {
     /// change, in active lanes.
     #[inline(always)]
     fn learn(&mut self, missing: S, active: S::Mask) {
-        let tells =
+        let is_informative =
             self.conductance.scale(TELLING.of::<S>()).lt(self.change.abs()) & self.mode.holds() & active;
-        let change = S::select(tells, self.change, S::one());
+        let change = S::select(is_informative, self.change, S::one());
         let slope = ((self.missing - missing) / change).max(S::one()).min(S::constant(self.most_slope));
-        self.slope = S::select(tells, slope, self.slope);
+        self.slope = S::select(is_informative, slope, self.slope);
         self.missing = missing;
     }
 

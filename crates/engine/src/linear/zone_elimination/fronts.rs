@@ -1,7 +1,7 @@
 //! The fronts of all zones: their part in the linear system of a stage.
 
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::BySurface;
+use crate::building::ids::BySide;
 use crate::building::plan::Plan;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::laws::StageInputs;
@@ -162,7 +162,7 @@ impl<S: Real> ZoneFronts<S> {
     pub(crate) fn new(
         plan: &Plan,
         numbers: &Coefficients<S>,
-        laws: &BySurface<SurfaceLaws<S>>,
+        laws: &BySide<SurfaceLaws<S>>,
         [together, windows_together]: [bool; 2],
     ) -> Self {
         let iterated = together && !S::DERIVATIVES;
@@ -261,8 +261,8 @@ impl<S: Real> ZoneFronts<S> {
                 if self.side_by_side {
                     S::in_chunks(SchurComplements { zone_fronts: &mut self.all });
                 }
-                for zone_front in &self.all {
-                    zone_front.add_schur_complement(elimination, constant, coupled);
+                for zone_elimination in &self.all {
+                    zone_elimination.add_schur_complement(elimination, constant, coupled);
                 }
             },
         );
@@ -317,7 +317,7 @@ impl<S: Real> ZoneFronts<S> {
     }
 
     /// Copies laws that were linearised elsewhere.
-    pub(crate) fn copy_laws(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
+    pub(crate) fn copy_laws(&mut self, laws: &BySide<SurfaceLaws<S>>) {
         for front in &mut self.all {
             front.laws.copy_from(laws);
             front.exterior.laws.copy_from(laws);
@@ -326,13 +326,13 @@ impl<S: Real> ZoneFronts<S> {
 
     /// Writes the laws of the exterior surfaces, which the energy balance needs.
     #[inline(never)]
-    pub(crate) fn write_exterior_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+    pub(crate) fn write_exterior_laws(&self, laws: &mut BySide<SurfaceLaws<S>>) {
         self.all.iter().for_each(|front| front.exterior.laws.copy_to(laws));
     }
 
     /// Writes the laws of the surfaces in the zones.
     #[cfg(test)]
-    pub(crate) fn laws_in_zones(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+    pub(crate) fn laws_in_zones(&self, laws: &mut BySide<SurfaceLaws<S>>) {
         self.all.iter().for_each(|front| front.laws.copy_to(laws));
     }
 

@@ -3,7 +3,7 @@
 //! A front of several zones ([`side_by_side`](super::side_by_side)) has the unknowns of all of them: those of the same
 //! number in their zones are neighbours.
 
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::pattern::Pattern;
 use crate::building::plan::Plan;
 
@@ -34,7 +34,7 @@ pub(super) struct Layout {
     /// surfaces. What belongs to no entry goes nowhere, and so does a zone that stands here again.
     pub(super) register_places: Vec<usize>,
     /// The eliminated surfaces: those of windows after those of other walls, those of thick walls last.
-    pub(super) walls: Vec<SurfaceId>,
+    pub(super) walls: Vec<SideId>,
     /// Number of eliminated surfaces whose wall is not thick: its other surface is exterior. And how many of them, the last ones,
     /// are those of windows.
     pub(super) exterior: usize,
@@ -47,7 +47,7 @@ impl Layout {
         plan: &Plan,
         shapes: &[ZoneShape],
         (zones, members): (&[usize], usize),
-        surfaces: &[SurfaceId],
+        surfaces: &[SideId],
         chunk: usize,
     ) -> Self {
         let (step, key) = (zones.len(), shapes[0].key);

@@ -91,7 +91,7 @@ impl<S: Real> ZoneFront<S> {
         let (count, retained) = (surfaces - eliminated + 1, surfaces - eliminated);
         let (entries, rest) = schur.split_at_mut(count * count * S::CHUNK);
         let (diagonals, right_sides) = rest.split_at_mut(retained * S::CHUNK);
-        let mut of_air = V::zero();
+        let mut air_factor = V::zero();
         for i in eliminated..=surfaces {
             let row = &factors.rows[i * layout.stride..(i + 1) * layout.stride];
             let entries = &mut entries[(i - eliminated) * count * S::CHUNK..][..count * S::CHUNK];
@@ -114,12 +114,12 @@ impl<S: Real> ZoneFront<S> {
             let mut of_column: V = register!(row, surfaces);
             if i < surfaces {
                 let to_air: V = register!(equations.to_air, i);
-                of_air += to_air;
+                air_factor += to_air;
                 of_column += -to_air;
                 to_air.store(&mut diagonals[(i - eliminated) * S::CHUNK..]);
                 right += register!(equations.right, i);
             } else {
-                of_column = of_air + of_column;
+                of_column = air_factor + of_column;
             }
             of_column.store(&mut entries[retained * S::CHUNK..]);
             right.store(&mut right_sides[(i - eliminated) * S::CHUNK..]);

@@ -5,7 +5,7 @@
 //! of them, and a flag selects those that it belongs to.
 
 use crate::building::coefficients::Coefficients;
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::ids::{BySide, SideId};
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
 use crate::number::real::{Chunk, Real};
@@ -51,7 +51,7 @@ pub(super) struct Laws<S> {
 
 impl<S: Real> Laws<S> {
     /// The constant laws of some surfaces.
-    pub(super) fn new(surfaces: &[SurfaceId], stride: usize, laws: &BySurface<SurfaceLaws<S>>) -> Self {
+    pub(super) fn new(surfaces: &[SideId], stride: usize, laws: &BySide<SurfaceLaws<S>>) -> Self {
         let zeros = || vec![S::zero(); stride];
         let count = surfaces.len();
         let mut all = Self {
@@ -78,16 +78,16 @@ impl<S: Real> Laws<S> {
 
     /// The surface at a place.
     #[inline(always)]
-    pub(super) fn surface(&self, place: usize) -> SurfaceId {
-        SurfaceId::from_index(self.places[place])
+    pub(super) fn surface(&self, place: usize) -> SideId {
+        SideId::from_index(self.places[place])
     }
 
     /// The surfaces, without those that only fill the last register.
     #[inline(always)]
-    pub(super) fn surfaces(&self) -> impl Iterator<Item = SurfaceId> + '_ {
+    pub(super) fn surfaces(&self) -> impl Iterator<Item = SideId> + '_ {
         self.places[..self.count].iter().map(
             #[inline(always)]
-            |&place| SurfaceId::from_index(place),
+            |&place| SideId::from_index(place),
         )
     }
 
@@ -108,11 +108,11 @@ impl<S: Real> Laws<S> {
     pub(super) fn sort(
         &mut self,
         numbers: &Coefficients<S>,
-        acts: impl Fn(SurfaceId) -> bool,
-        radiates: impl Fn(SurfaceId) -> bool,
+        acts: impl Fn(SideId) -> bool,
+        radiates: impl Fn(SideId) -> bool,
     ) {
         let convection =
-            |surface: SurfaceId| numbers.surfaces[surface].convection.as_ref().filter(|_| acts(surface));
+            |surface: SideId| numbers.surfaces[surface].convection.as_ref().filter(|_| acts(surface));
         for i in 0..self.count {
             let surface = self.surface(i);
             if convection(surface)
@@ -127,8 +127,8 @@ impl<S: Real> Laws<S> {
         if self.surfaces().any(|surface| convection(surface).is_some_and(SurfaceConvection::is_text)) {
             self.forced_of_text = Some(self.forced.clone());
         }
-        let nonlinear = |surface: SurfaceId| convection(surface).filter(|convection| !convection.straight());
-        let padded: Vec<_> = self.places.iter().map(|&place| SurfaceId::from_index(place)).collect();
+        let nonlinear = |surface: SideId| convection(surface).filter(|convection| !convection.straight());
+        let padded: Vec<_> = self.places.iter().map(|&place| SideId::from_index(place)).collect();
         let (mut groups, mut fourth_power) = (Vec::new(), Vec::new());
         for (chunk, surfaces) in padded.chunks(S::CHUNK).enumerate() {
             let start = chunk * S::CHUNK;
@@ -145,8 +145,8 @@ impl<S: Real> Laws<S> {
         &self,
         numbers: &'n Coefficients<S>,
         start: usize,
-        surfaces: &[SurfaceId],
-        nonlinear: &impl Fn(SurfaceId) -> Option<&'n SurfaceConvection<S>>,
+        surfaces: &[SideId],
+        nonlinear: &impl Fn(SideId) -> Option<&'n SurfaceConvection<S>>,
     ) -> Vec<Group<S>> {
         let mut kinds: Vec<&SurfaceConvection<S>> = Vec::new();
         for convection in surfaces.iter().filter_map(|&surface| nonlinear(surface)) {
@@ -155,7 +155,7 @@ impl<S: Real> Laws<S> {
             }
         }
         let group = |kind: &&SurfaceConvection<S>| {
-            let same = |surface: SurfaceId| nonlinear(surface).filter(|convection| kind.alike(convection));
+            let same = |surface: SideId| nonlinear(surface).filter(|convection| kind.alike(convection));
             // Surfaces of other correlations are computed with numbers of this one, and the result is not used.
             let convections: Vec<_> = surfaces.iter().map(|&surface| same(surface).unwrap_or(kind)).collect();
             Group {
@@ -169,8 +169,8 @@ impl<S: Real> Laws<S> {
     }
 
     /// One for the surfaces of a register that are members, zero for the others and for those that only fill it.
-    fn flags(&self, start: usize, surfaces: &[SurfaceId], member: impl Fn(SurfaceId) -> bool) -> Box<[S]> {
-        let flag = |(i, &surface): (usize, &SurfaceId)| {
+    fn flags(&self, start: usize, surfaces: &[SideId], member: impl Fn(SideId) -> bool) -> Box<[S]> {
+        let flag = |(i, &surface): (usize, &SideId)| {
             if start + i < self.count && member(surface) { S::one() } else { S::zero() }
         };
         surfaces.iter().enumerate().map(flag).collect()
@@ -185,11 +185,11 @@ impl<S: Real> Laws<S> {
         let places = &self.places[..self.count];
         let [first, second] = &mut self.forced;
         for (&place, (first, second)) in places.iter().zip(first.iter_mut().zip(second)) {
-            [*first, *second, ..] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+            [*first, *second, ..] = conditions.surfaces[SideId::from_index(place)].forced;
         }
         if let Some([third, fourth]) = &mut self.forced_of_text {
             for (&place, (third, fourth)) in places.iter().zip(third.iter_mut().zip(fourth)) {
-                [.., *third, *fourth] = conditions.surfaces[SurfaceId::from_index(place)].forced;
+                [.., *third, *fourth] = conditions.surfaces[SideId::from_index(place)].forced;
             }
         }
         for &(i, factor) in &self.by_wind {
@@ -231,7 +231,7 @@ impl<S: Real> Laws<S> {
     }
 
     /// Copies laws that were linearised elsewhere.
-    pub(super) fn copy_from(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
+    pub(super) fn copy_from(&mut self, laws: &BySide<SurfaceLaws<S>>) {
         for i in 0..self.count {
             let surface = self.surface(i);
             (self.convection[0][i], self.convection[1][i]) =
@@ -244,7 +244,7 @@ impl<S: Real> Laws<S> {
     }
 
     /// Writes the laws to a table of all surfaces.
-    pub(super) fn copy_to(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+    pub(super) fn copy_to(&self, laws: &mut BySide<SurfaceLaws<S>>) {
         let convections = self.convection[0].iter().zip(&self.convection[1]);
         let emissions = self.emission[0].iter().zip(&self.emission[1]);
         for ((surface, convection), emission) in self.surfaces().zip(convections).zip(emissions) {

@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::glazing::{Glass, GlassPlan};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::SideId;
 use crate::building::plan::Plan;
 use crate::linear::wall::{Link, WallSystem};
 use crate::number::real::{Chunk, Real};
@@ -191,7 +191,7 @@ fn register<S: Real>(
     layout: &Layout,
     start: usize,
 ) -> Option<Register<S>> {
-    let surfaces: &[SurfaceId] = &layout.walls[start..start + S::CHUNK];
+    let surfaces: &[SideId] = &layout.walls[start..start + S::CHUNK];
     let walls: Vec<usize> = surfaces.iter().map(|surface| surface.wall()).collect();
     let cells = plan.walls[walls[0]].len();
     let glass: Option<Vec<_>> = walls.iter().map(|&wall| numbers.walls[wall].glass.as_ref()).collect();
@@ -202,7 +202,7 @@ fn register<S: Real>(
         let of_plan = &plan.walls[wall];
         of_plan.len() == cells && of_plan.glass.as_ref().is_some_and(GlassPlan::stores_nothing)
     };
-    let held = |surface: SurfaceId| {
+    let held = |surface: SideId| {
         let opposite = &numbers.surfaces[surface.opposite()];
         opposite.convection.is_none() && matches!(opposite.boundary, Boundary::Imposed(_))
     };
