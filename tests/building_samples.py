@@ -530,4 +530,6 @@ def everything() -> list[Building]:
         "humidity.materials.wax": {"capacity": 3000, "vapour_resistance": 8},
     }
     freedom = building.replace(FREEDOM)
-    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), freedom, *melting]
+    soil = {"kind": "soil", "mean": 12, "amplitude": 8, "depth": 1.5, "coldest_day": 40}
+    on_soil = building.replace({"surfaces.floor.outside": {"imposed": soil}})
+    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), freedom, on_soil, *melting]

@@ -356,6 +356,7 @@ COMMANDS: Final[dict[str, Driver]] = {
 #: Commands that take no building of the user, with the reason.
 WITHOUT_BUILDING: Final[dict[str, str]] = {
     "init": "copies an example",
+    "new": "describes a building from words: test_templates",
     "schema": "prints the keys of all buildings",
     "convert": "reads a model of EnergyPlus: test_crossing_convert",
     "materials": "lists the catalogue",

@@ -13,7 +13,7 @@ import pytest
 
 from building_samples import EVERYTHING, everything, room
 from mascarin.building import json_schema
-from mascarin.building.base.law_table import CONVECTION
+from mascarin.building.base.law_table import CONVECTION, IMPOSED, LEAKAGE, SKY
 from mascarin.building.base.leaves import steps
 from mascarin.building.base.number import Number
 from mascarin.building.base.part import Part
@@ -119,7 +119,8 @@ def test_keys_are_those_of_the_engine(repository: Path) -> None:
     fields = set(re.findall(r"(?:pub |\b)(\w+): (?:Option<|Vec<)*\[?ParamId", source))
     fields.add("cloud")  # its factor is a list of ids without names
     # Numbers of published laws have the names of the table.
-    fields |= {number.name for row in CONVECTION.values() for number in row.numbers}
+    tables = (CONVECTION, IMPOSED, LEAKAGE, SKY)
+    fields |= {number.name for table in tables for row in table.values() for number in row.numbers}
     assert {key for building in everything() for key, _ in ids(described(building))} == fields
 
 
@@ -158,7 +159,7 @@ def test_kinds_are_those_of_the_engine() -> None:
     ]
     assert [zone["longwave"]["kind"] for zone in building["zones"]] == ["radiosity", "linearised", "none"]
     facings = {side["facing"]["kind"] for s in building["surfaces"] for side in (s["outside"], s["inside"])}
-    assert facings == {"outdoors", "zone", "ground", "measured", "adiabatic"}
+    assert facings == {"outdoors", "zone", "imposed", "measured", "adiabatic"}
 
 
 def test_references_are_positions() -> None:

@@ -87,12 +87,6 @@ FAULTS = {
         "surfaces.south.construction",
         ["Did you mean 'wall'?"],
     ),
-    "zone without surfaces": (
-        "  room: {volume: 30, infiltration: 0.5}",
-        "  room: {volume: 30, infiltration: 0.5}\n  attic: {volume: 9} # here",
-        "zones.attic",
-        ["no surface faces", "at least one side with 'zone: attic'"],
-    ),
     "no surfaces": (
         ROOM[ROOM.index("zones:") :],
         "surfaces: {} # here\n",
@@ -118,7 +112,7 @@ FAULTS = {
         "surfaces.rest.outside",
         [
             "zone and adiabatic",
-            "exactly one of outdoors, zone, ground, imposed, measured, scheduled, adiabatic",
+            "exactly one of outdoors, zone, ground, imposed, measured, scheduled, heat_flux, adiabatic",
         ],
     ),
     "no facing": (

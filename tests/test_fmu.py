@@ -192,7 +192,7 @@ def test_what_cannot_be_used_is_refused_with_a_reason(unit_file: Path) -> None:
         for value in (400.0, float("nan")):
             text = refused(unit, DISCARD, "setFloat64", [warm, outdoor], [19.0, value])
             assert "'weather.air_temperature': found" in text
-            assert "expected a value from -90 to 65 degC" in text
+            assert "expected a value from -90 to 80 degC" in text
         # One of two that is refused: none is set.
         assert unit.get("weather.air_temperature", "schedules.warm") == [*before, 17.0]
         text = refused(unit, ERROR, "setFloat64", [volume], [30.0])

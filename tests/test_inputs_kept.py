@@ -64,6 +64,13 @@ VALIDATE = ("study/study.yaml",)
 #: Every command; a later one fails `test_every_command_is_tried` until it is listed.
 CASES: dict[str, Case] = {
     "init": Case(),
+    "new": Case(
+        (
+            *("wall", "brick 20cm", "--inside", "room", "--outside", "air", "--sensor", "core=50mm"),
+            *("--data", "study/logger.csv", "--timezone", "UTC"),
+        ),
+        folder={"--out": ("building.yaml", "study.yaml", "logger.csv")},
+    ),
     "schema": Case(files={"--out": ".json"}),
     "check": Case(("house.yaml",)),
     "parameters": Case(("house.yaml",)),
@@ -243,7 +250,15 @@ def test_every_command_is_tried() -> None:
         assert written == {*CASES[name].files, *CASES[name].folder}, name
         # An option with a path is an output, or one of these inputs.
         read = {names[0] for names in options(name)} - written
-        assert read <= {"--weather", "--measurements", "--samples", "--morph", "--ranges", "--project"}, name
+        assert read <= {
+            "--weather",
+            "--measurements",
+            "--samples",
+            "--morph",
+            "--ranges",
+            "--project",
+            "--data",
+        }, name
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.files])

@@ -518,7 +518,7 @@ CASES = {
         STUDY,
         BUILDING,
         "name: Test wall",
-        ("found: a building", "expected: a study", "your-own-wall.md"),
+        ("found: a building", "expected: a study", "mascarin run FILE"),
     ),
     "too short to identify on": Refused(
         IDENTIFIED,
@@ -653,7 +653,6 @@ TABLES: dict[str, tuple[Callable[[pd.DataFrame, str], None], str, tuple[str, ...
         ("study.yaml:4: climate.measured", "line 302", "'error'", "missing: ['error']"),
     ),
     "words in a sensor": (words, "core", ("study.yaml:14: sensors.core.column", "line 302", "'error'")),
-    "a code in a sensor": (code, "core", ("study.yaml:14: sensors.core.column", "-9999", "missing: [-9999]")),
     "a stamp twice": (twice, "time", ("2023-03-03 01:50",)),
     "a dead sensor that is masked": (
         dead,
@@ -789,3 +788,11 @@ def test_a_bare_number_is_seconds(bench: Bench) -> None:
 
     bench.edit("step: 30min", "step: 1800")
     assert Study(bench.study).context.models.nominal.step_seconds == 1800.0
+
+
+def test_a_code_in_a_sensor_is_counted_as_missing(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    table = pd.read_csv(bench.table)
+    code(table, "core")
+    table.to_csv(bench.table, index=False)
+    assert cli.main(["study", str(bench.study), "-o", str(bench.folder / "out"), "--no-figures"]) == 0
+    assert "3 missing (3 '-9999')" in capsys.readouterr().err

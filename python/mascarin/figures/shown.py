@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 from matplotlib.figure import Figure
 
 
@@ -13,14 +15,16 @@ class ShownFigure(Figure):
     """
 
     def _ipython_display_(self) -> None:
-        from IPython.display import display
         from matplotlib import pyplot
+
+        # The notebook that calls this has it.
+        display = sys.modules["IPython.display"].display
 
         pyplot.close(self)
         # Without this method IPython draws it as any other figure.
         vars(self)["_ipython_display_"] = None
         try:
-            display(self)  # type: ignore[no-untyped-call]
+            display(self)
         finally:
             del vars(self)["_ipython_display_"]
 

@@ -60,17 +60,10 @@ def example_of(row: LawRow, name: str, common: Mapping[str, float] | None = None
     stated |= {choice.name: str(choice.default) for choice in row.choices}
     stated |= {key: f"{value:g}" for key, value in (common or {}).items()}
     call = f"{name}({', '.join(f'{key}={value}' for key, value in stated.items())})"
-    if row.choices or common:
-        number = row.numbers[0]
-        return f"Examples\n--------\n>>> float({call}.{number.name})\n{float(number.example)}"
-    values = {number.name: number.example for number in row.numbers if number.required}
-    values |= {number.name: float(number.default) for number in row.numbers if number.default is not None}
-    shown = ", ".join(
-        f"{number.name}={Number(values[number.name], quantity=number.quantity).with_unit()}"
-        for number in row.numbers
-        if number.name in values
-    )
-    return f"Examples\n--------\n>>> {call}\n{name}({shown})"
+    required = next((number for number in row.numbers if number.required), None)
+    if required is None:
+        return f"Examples\n--------\n>>> {call}.kind\n'{row.kind}'"
+    return f"Examples\n--------\n>>> float({call}.{required.name})\n{float(required.example)}"
 
 
 def classes_of(

@@ -92,7 +92,14 @@ def wind_factor(wind: Wind, height: float) -> float:
 
 
 class SkyLaw(PublishedLaw):
-    """A published model of the emission of the sky: a class for each row of the engine's table."""
+    """A published model of the emission of the sky: a class for each row of the engine's table.
+
+    Examples
+    --------
+    >>> from mascarin.building import BruntSky, SkyLaw
+    >>> isinstance(BruntSky(), SkyLaw)
+    True
+    """
 
     if TYPE_CHECKING:
 

@@ -82,7 +82,7 @@ def _time_names(frame: pd.DataFrame) -> list[Hashable]:
             len(part) > 0 and bool(part.str.fullmatch(form).all())
             for part, form in zip(pair, _PAIR, strict=True)
         ]
-        if all(whole) or (_are_dates(frame[names[first]]) and _is_hours(frame, names[first + 1])):
+        if all(whole) or (_are_days(frame[names[first]]) and _is_hours(frame, names[first + 1])):
             return list(names[first : first + 2])
     return [names[first]]
 
@@ -90,6 +90,8 @@ def _time_names(frame: pd.DataFrame) -> list[Hashable]:
 #: Dates of which a column of texts, or one of digits, consists.
 _A_DATE: Final = r"(?:\d{4}[./-]\d{1,2}[./-]\d{1,2}|\d{1,2}[./-]\d{1,2}[./-]\d{2,4})(?:[T ,].*)?"
 _DIGITS_OF_DATE: Final = r"(?:19|20)\d{2}(?:0[1-9]|1[0-2])(?:[0-2]\d|3[01])(?:[0-2]\d(?:[0-5]\d){0,2})?"
+#: A time of day that says nothing: the hour is in another column.
+_MIDNIGHT: Final = r"[T ,]+00:00(?::00(?:\.0+)?)?(?:Z|[+-]\d{2}:?\d{2})?$"
 _HOUR_NAME: Final = re.compile(r"h|hh|hr|hour|hours|hod|stunde|heure|hora|uur", re.IGNORECASE)
 
 
@@ -112,6 +114,18 @@ def _are_dates(series: pd.Series[Any]) -> bool:
     sample = _sample(series)
     return len(sample) > 0 and any(
         bool(sample.str.fullmatch(form).all()) for form in (_A_DATE, _DIGITS_OF_DATE)
+    )
+
+
+def _are_days(series: pd.Series[Any]) -> bool:
+    """Whether all entries of a column are dates without a time of day, or with midnight."""
+    days = _sample(series).str.replace(_MIDNIGHT, "", regex=True)
+    return len(days) > 0 and any(
+        bool(days.str.fullmatch(form).all())
+        for form in (
+            _A_DATE.removesuffix("(?:[T ,].*)?"),
+            r"(?:19|20)\d{2}(?:0[1-9]|1[0-2])(?:[0-2]\d|3[01])",
+        )
     )
 
 

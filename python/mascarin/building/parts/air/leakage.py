@@ -12,7 +12,14 @@ from mascarin.building.base.part import Shorthand
 
 
 class LeakageLaw(PublishedLaw):
-    """A published law of infiltration by a pressure test."""
+    """A published law of infiltration by a pressure test.
+
+    Examples
+    --------
+    >>> from mascarin.building import LeakageFactor, LeakageLaw
+    >>> isinstance(LeakageFactor(n50=2.2), LeakageLaw)
+    True
+    """
 
     if TYPE_CHECKING:
 

@@ -17,7 +17,14 @@ GROUND: Final = IMPOSED["ground"]
 
 
 class ImposedLaw(PublishedLaw):
-    """A law of the temperature of what a side is in contact with."""
+    """A law of the temperature of what a side is in contact with.
+
+    Examples
+    --------
+    >>> from mascarin.building import ImposedLaw, ImposedSoil
+    >>> isinstance(ImposedSoil(mean=12, amplitude=10, depth=1.5, coldest_day=40), ImposedLaw)
+    True
+    """
 
     if TYPE_CHECKING:
 

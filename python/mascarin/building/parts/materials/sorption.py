@@ -89,7 +89,14 @@ class Published(Part):
 
 
 class SorptionLaw(PublishedLaw):
-    """A published law of the moisture content: a class for each row of the engine's table."""
+    """A published law of the moisture content: a class for each row of the engine's table.
+
+    Examples
+    --------
+    >>> from mascarin.building import LinearSorption, SorptionLaw
+    >>> issubclass(LinearSorption, SorptionLaw)
+    True
+    """
 
     if TYPE_CHECKING:
 
