@@ -194,7 +194,7 @@ def chosen(building: Description, names: Iterable[str]) -> list[Output]:
     Returns
     -------
     list of Output
-        Each once, in the order of the names.
+        In the order of the names; what a pattern stands for, once.
 
     Raises
     ------
@@ -208,7 +208,7 @@ def chosen(building: Description, names: Iterable[str]) -> list[Output]:
     ['room.air_temperature', 'facade.inside_temperature']
     """
     all_outputs = outputs(building)
-    asked: dict[str, Output] = {}
+    asked: list[Output] = []
     for name in names:
         if any(sign in str(name) for sign in "*?["):
             fitting = [output for output in all_outputs if fnmatchcase(output.name, name)]
@@ -219,12 +219,13 @@ def chosen(building: Description, names: Iterable[str]) -> list[Output]:
                     f"{len(all_outputs)} of this building, which 'mascarin outputs' lists. "
                     f"{did_you_mean(name, names_of_all)}".rstrip()
                 )
-            asked |= {output.name: output for output in fitting}
+            present = {output.name for output in asked}
+            asked += [output for output in fitting if output.name not in present]
         else:
             output = named(building, [name])[0]
             aliases = tuple({output.name, *output.aliases} - {name})
-            asked[name] = output if output.name == name else replace(output, name=name, aliases=aliases)
-    return list(asked.values())
+            asked.append(output if output.name == name else replace(output, name=name, aliases=aliases))
+    return asked
 
 
 def _humid_names() -> set[str]:

@@ -121,7 +121,7 @@ class StudyModels:
             step=step or self._plan.step,
             start=start,
             end=end,
-            outputs=[*(sensor.output for sensor in self._plan.sensors.values()), *outputs],
+            outputs=[*(building.output(s.output).name for s in self._plan.sensors.values()), *outputs],
             scheme=self._plan.scheme,
             initial=self.initial,
             measurements=self._inputs.driving,
