@@ -111,9 +111,9 @@ def calibrated(study: Study) -> tuple[Any, Any, dict[str, str]]:
         tempfile.TemporaryDirectory() as folder,
         Workspace(Path(folder), study.context.identity()) as workspace,
     ):
-        found = ModelRuns(study.context, workspace, False).combination()
-    best = {part: form for part, form in found.forms[0].choice if form}
-    return estimates_of(study.context, found), combined_intervals(study.context, found), best
+        combination = ModelRuns(study.context, workspace, False).combination()
+    best = {part: form for part, form in combination.forms[0].choice if form}
+    return estimates_of(study.context, combination), combined_intervals(study.context, combination), best
 
 
 def judged(folder: Path, program: Path, seed: int, days: int) -> dict[str, Any]:

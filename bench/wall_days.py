@@ -43,9 +43,9 @@ def left_out(path: Path, day: pd.Timestamp) -> tuple[list[float], list[float], l
         building.write_text((path.parent / "building.yaml").read_text())
         study = Study.from_yaml(study_path)
         with Workspace(Path(folder) / "work", study.context.identity()) as workspace:
-            found = ModelRuns(study.context, workspace, False).combination()
-        bands, observation = combined_intervals(study.context, found), study.context.observation
-    run = found.forms[0].run
+            combination = ModelRuns(study.context, workspace, False).combination()
+        bands, observation = combined_intervals(study.context, combination), study.context.observation
+    run = combination.forms[0].run
     expected = observation.simulated(run.results.index, run.results.records) + bands.center
     misses = expected - observation.measured
     local = observation.times.tz_localize(None).normalize()

@@ -27,7 +27,7 @@ AIR, SURFACE = "room.air_temperature", "facade.outside_temperature"
 
 def main(folder: Path) -> None:
     unheated = vars(mc.building)["ImposedUnheated"]
-    assert ">>> ImposedUnheated(indoor=20, factor=0.5)" in (unheated.__doc__ or "")
+    assert "ImposedUnheated(indoor=20, factor=0.5)" in (unheated.__doc__ or "")
     part = next(part for part in keys.parts() if part.__name__ == "ImposedUnheated")
     assert Snippets(assemble.DOCS).of(part, "factor") == "factor: 0.5"
     vars(laws)["PHYSICS"] = Path(mc.__file__).parents[2] / "crates" / "engine" / "src" / "physics"

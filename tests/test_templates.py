@@ -18,6 +18,7 @@ from mascarin.errors import InputError
 from mascarin.materials.library import products
 from mascarin.templates import Room, building_of
 from mascarin.templates.short_texts import common_materials, layers_of
+from mascarin.weather.reading.shipped import SHIPPED, content
 
 ISSUE = (
     "new room 4x3x2.8 --roof steel --gap ventilated --ceiling 'plasterboard 12.5mm + SP24E 15mm' "
@@ -211,6 +212,28 @@ def test_a_cell_gets_a_study_of_its_logger(tmp_path: Path, monkeypatch: pytest.M
     assert [*study.plan.sensors] == ["T_room"]
     assert cli.main(shlex.split(words.replace("=T ", "=Tx ") + " -o other")) == 2
     assert cli.main(shlex.split(words.replace("room.air", "rooms.air") + " -o other")) == 2
+
+
+def test_awkward_names_of_columns_and_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names that mean something in YAML, and a file whose name ends the comment that it stands in."""
+    monkeypatch.chdir(tmp_path)
+    logger(tmp_path / "plain.csv")
+    frame = pd.read_csv("plain.csv")
+    names = {"T_in": "air: inside", "T_out": "#2 {out}", "T_face": "face, [wall]: -"}
+    file = "a: log #1.csv"
+    frame.rename(columns=names).to_csv(file, index=False)
+    words = [
+        "new", "wall", "concrete 20cm + polystyrene 6cm",
+        "--inside", names["T_in"], "--outside", names["T_out"],
+        "--sensor", f"{names['T_face']}=inside", "--data", file, "--timezone", "UTC", "--place", "tampa",
+    ]  # fmt: skip
+    assert cli.main(words) == 0
+    study = mc.Study.from_yaml(tmp_path / "wall" / "study.yaml")
+    assert [sensor.columns for sensor in study.plan.sensors.values()] == [(names["T_face"],)]
+    climate = tmp_path / "x\nzones: {y: {volume: 1}}.epw"
+    climate.write_bytes(content(SHIPPED["tampa"].path))
+    assert cli.main(["new", "room", "4x3x2.8", "--place", climate.name, "-o", "r"]) == 0
+    assert [*mc.load("r/building.yaml").zones] == ["room"]
 
 
 HEAD = """

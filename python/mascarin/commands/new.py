@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
@@ -205,7 +206,7 @@ def _words(stated: Mapping[str, object]) -> list[str]:
     for name, value in stated.items():
         for text in value if isinstance(value, list) else [value]:
             quoted = f"'{text}'" if " " in str(text) else str(text)
-            words.append(f"--{name} {quoted}".replace("\n", " "))
+            words.append(re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]", " ", f"--{name} {quoted}"))
     return words
 
 

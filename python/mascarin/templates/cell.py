@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError
 from mascarin.templates.new_buildings import building_of
+from mascarin.templates.short_texts import quoted
 
 if TYPE_CHECKING:
     from mascarin.templates.room import Room
@@ -65,11 +66,11 @@ def cell_study(room: Room, record: Record, weather: Mapping[str, str], sensors: 
 def _climate(record: Record, weather: Mapping[str, str]) -> Iterator[str]:
     yield "climate:"
     yield "  measured:"
-    yield f"    table: {record.path.name}"
-    yield f"    timezone: {record.timezone}"
+    yield f"    table: {quoted(record.path.name)}"
+    yield f"    timezone: {quoted(record.timezone)}"
     yield "    columns:"
     for channel, column in weather.items():
-        yield f"      {channel}: {column}"
+        yield f"      {channel}: {quoted(column)}"
     humid = {"dew_point", "relative_humidity"} & {*weather}
     absent = [
         channel for channel in _ABSENT if channel not in weather and not (channel == "dew_point" and humid)

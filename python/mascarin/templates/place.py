@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -38,7 +39,7 @@ def _weather(name: str) -> tuple[str, str]:
     if name in SHIPPED:
         return f"shipped:{name}", name
     if Path(name).is_file():
-        return name, Path(name).stem
+        return name, re.sub(r"[^\w .-]", " ", Path(name).stem)
     raise InputError(
         f"--place: found '{name}'; expected one of {', '.join(SHIPPED)}, or the path of an EPW file. "
         f"{did_you_mean(name, SHIPPED)}".rstrip()

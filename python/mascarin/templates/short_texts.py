@@ -5,6 +5,7 @@ A size is ``4x3x2.8`` [m], layers ``plasterboard 12.5mm + SP24E 15mm``, a window
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from mascarin.errors import InputError, did_you_mean
 WALLS: Final = {"south": 180.0, "east": 90.0, "north": 0.0, "west": 270.0}
 """Walls of a room by the direction that they face, with their azimuth [deg]."""
 
+#: Texts that need no quotes in YAML.
+_PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
 _NUMBER: Final = r"(\d+(?:\.\d+)?)"
 _UNITS: Final = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LAYER: Final = re.compile(rf"^(?P<name>.+?)(?:\s+{_NUMBER}\s*(?P<unit>[a-zA-Z]+)?)?$")
@@ -52,6 +55,29 @@ class WindowText:
     wall: str
     width: float
     height: float
+
+
+def quoted(text: str) -> str:
+    """A text as YAML reads it back, whatever characters it has.
+
+    Examples
+    --------
+    >>> quoted("T_room"), quoted("T room [degC]: 1")
+    ('T_room', '"T room [degC]: 1"')
+    """
+    return text if _PLAIN.fullmatch(text) else json.dumps(text, ensure_ascii=False)
+
+
+def name_of(column: str) -> str:
+    """A name of a part from that of a column.
+
+    Examples
+    --------
+    >>> name_of("T room [degC]"), name_of("2 m")
+    ('T_room_degC', 'column_2_m')
+    """
+    name = re.sub(r"[^A-Za-z0-9_]+", "_", column).strip("_")
+    return name if name[:1].isalpha() else f"column_{name}".rstrip("_")
 
 
 def size_of(text: str, option: str = "size") -> tuple[float, float, float]:

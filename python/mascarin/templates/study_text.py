@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.templates.short_texts import name_of, quoted
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -133,12 +134,14 @@ def study_lines(
     yield "building: building.yaml"
     yield from climate
     yield "measurements:"
-    yield f"  table: {record.path.name}"
-    yield f"  timezone: {record.timezone}"
+    yield f"  table: {quoted(record.path.name)}"
+    yield f"  timezone: {quoted(record.timezone)}"
     yield "# The uncertainty of a data sheet is mostly an offset that all readings of a sensor share."
     yield "sensors:"
     for column, output in sensors.items():
-        yield f"  {column}: {{column: {column}, output: {output}, expanded_uncertainty: 0.5}}"
+        yield (
+            f"  {name_of(column)}: {{column: {quoted(column)}, output: {output}, expanded_uncertainty: 0.5}}"
+        )
     yield "periods:"
     yield "  # The run starts before it is compared: the state of the walls is not known."
     yield f'  warm_up: ["{start}", "{first}"]'

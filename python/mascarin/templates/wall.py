@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError
 from mascarin.templates.room_text import flow
-from mascarin.templates.short_texts import LayerText, layers_of
+from mascarin.templates.short_texts import LayerText, layers_of, name_of, quoted
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -86,7 +86,7 @@ class Wall:
                 outputs[column] = f"wall.{place}_temperature"
             else:
                 self._depth(column, place)
-                outputs[column] = f"{_name(column)}.temperature"
+                outputs[column] = f"{name_of(column)}.temperature"
         return outputs
 
     def _depth(self, column: str, place: str) -> float:
@@ -116,7 +116,7 @@ class Wall:
         yield "name: wall"
         yield (
             f"site: {{latitude: {self.latitude:g}, longitude: {self.longitude:g}, "
-            f"altitude: {self.altitude:g}, timezone: {self.timezone}, sky: offset}}"
+            f"altitude: {self.altitude:g}, timezone: {quoted(self.timezone)}, sky: offset}}"
         )
         yield "materials:"
         for name, material in {layer.name: layer.material for layer in self._parts}.items():
@@ -134,9 +134,9 @@ class Wall:
         yield "    construction: wall"
         yield "    area: 1"
         yield "    tilt: 90"
-        yield (_SUNLIT.replace("IRRADIANCE", self.irradiance) if self.irradiance else _OUTDOORS)
+        yield (_SUNLIT.replace("IRRADIANCE", quoted(self.irradiance)) if self.irradiance else _OUTDOORS)
         yield "    inside:"
-        yield f"      measured: {self.inside}"
+        yield f"      measured: {quoted(self.inside)}"
         yield "      # Convection and radiation together."
         yield '      convection: {value: 7.7, range: [4, 12], source: "ISO 6946: 0.13 m2 K/W", assumed: true}'
         inner = {
@@ -147,7 +147,7 @@ class Wall:
         if inner:
             yield "sensors:"
             for column, depth in inner.items():
-                yield f"  {_name(column)}: {{surface: wall, depth: {depth:g}}}"
+                yield f"  {name_of(column)}: {{surface: wall, depth: {depth:g}}}"
 
     def study(self, record: Record) -> str:
         """The study of a logger file, as text.
@@ -180,9 +180,9 @@ class Wall:
             (
                 "climate:",
                 "  measured:",
-                f"    table: {record.path.name}",
-                f"    timezone: {record.timezone}",
-                f"    columns: {{air_temperature: {self.outside}}}",
+                f"    table: {quoted(record.path.name)}",
+                f"    timezone: {quoted(record.timezone)}",
+                f"    columns: {{air_temperature: {quoted(self.outside)}}}",
                 "    absent: [wind_speed, wind_direction, dew_point, radiation]",
             )
         )
@@ -197,8 +197,3 @@ class Wall:
         yield "surfaces.wall.outside.convection.coefficient"
         if self.irradiance:
             yield "surfaces.wall.outside.absorptance"
-
-
-def _name(column: str) -> str:
-    """A name of the description from that of a column."""
-    return re.sub(r"[^A-Za-z0-9_]+", "_", column).strip("_") or "sensor"

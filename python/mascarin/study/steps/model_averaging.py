@@ -174,9 +174,9 @@ def _not_estimated(
     for k, number in enumerate(form.unknown.numbers):
         every[:, :, k] = effects[number.path]
     further = every @ form.unknown.directions
-    left = np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
+    remaining = np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
     sky = sky_effect(study, form.run.simulation, base, form.fit.problem.paths)
     if sky is not None:
         # The estimates contain the error of the days of the identification.
-        left += sky**2 * (1.0 - near**2)[:, None]
-    return further, left
+        remaining += sky**2 * (1.0 - near**2)[:, None]
+    return further, remaining
