@@ -13,6 +13,7 @@ import pytest
 import mascarin as mc
 from mascarin._io import arrow_files
 from mascarin.ensemble import sweep_into
+from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 
 
@@ -59,3 +60,12 @@ def test_a_name_that_is_no_text_is_opened_as_well(tmp_path: Path) -> None:
     path.write_bytes(b"abc")
     with arrow_files.opened(path) as file:
         assert file.read() == b"abc"
+
+
+def test_a_finished_sweep_whose_table_is_gone_says_so(tmp_path: Path) -> None:
+    store = sweep_into(
+        tmp_path / "sweep", box(), box_climate(), {"zones.room.volume": [25.0, 30.0]}, step="1h"
+    )
+    (tmp_path / "sweep" / "members.parquet").unlink()
+    with pytest.raises(InputError, match=r"members\.parquet: found no such file.*Run it again"):
+        store.to_dataframe()

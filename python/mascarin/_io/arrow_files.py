@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from mascarin.errors import InputError
+
 
 @contextlib.contextmanager
 def opened(path: Path) -> Iterator[Any]:
@@ -24,6 +26,8 @@ def opened(path: Path) -> Iterator[Any]:
 
     Raises
     ------
+    InputError
+        It is gone: a finished sweep whose table was removed.
     OSError
         It cannot be opened.
 
@@ -38,6 +42,11 @@ def opened(path: Path) -> Iterator[Any]:
     """
     import pyarrow as pa
 
+    if not path.exists():
+        raise InputError(
+            f"{path}: found no such file; expected what an earlier run wrote there. Run it again into the "
+            "same folder"
+        )
     try:
         name = str(path)
         name.encode()
