@@ -100,8 +100,8 @@ def test_the_intervals_hold_the_blind_values_about_the_expected_reading(
     series = pd.read_csv(folder / "out" / "tables" / "series.csv")
     for name in ("joint", "core"):
         assert content["band"][name]["held"]["blind"] > 0.9
-        # A tenth of it is the published error of a modelled sky.
-        assert content["band"][name]["half_width"] < 0.35
+        # 0.300 by errors of sensors and model, 0.318 with the published error of a modelled sky.
+        assert content["band"][name]["half_width"] < 0.32
     # The expected reading has the offset; the fitted series has not.
     away = series["core.expected"] - series["core.fitted"]
     assert away.mean() == pytest.approx(OFFSET, abs=0.12)

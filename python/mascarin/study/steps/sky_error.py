@@ -37,7 +37,7 @@ PUBLISHED: Final = 15.5
 CALIBRATED: Final = 9.4
 """The same where a number of the sky is calibrated. [W/m2]"""
 #: Parameters that move the infrared radiation of all days alike.
-_SKY: Final = ("site.sky.a", "site.sky.depression", "site.sky.scale")
+_SKY: Final = ("site.sky.a", "site.sky.depression")
 #: Part of it by which the sky is moved for the derivative.
 _STEP: Final = 0.2
 
