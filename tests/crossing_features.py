@@ -255,6 +255,17 @@ def _posterior(tree: Json) -> None:
     tree["posterior"] = section.model_dump(mode="json")
 
 
+def _boundaries_and_densities(tree: Json) -> None:
+    """A heat flux, the soil below a floor, air of another density, and keys that sides share."""
+    tree["surfaces"]["heated"] = {"construction": "wall", "area": 4, "tilt": 90, "azimuth": 0,
+                                  "outside": {"heat_flux": {"flux": 5}}, "inside": _side("room")}  # fmt: skip
+    soil = {"kind": "soil", "mean": 22, "amplitude": 4, "depth": 1, "coldest_day": 15}
+    tree["surfaces"]["floor"] = {"construction": "wall", "area": 12, "tilt": 180,
+                                 "outside": {"imposed": soil}, "inside": {"zone": "room"}}  # fmt: skip
+    tree["defaults"] = {"indoors": {"convection": 3, "emissivity": 0.9, "absorptance": 0.5}}
+    tree["zones"]["room"]["infiltration"] = {"constant": 0.5, "density": "outdoors"}
+
+
 def _plain(tree: Json) -> None:
     """A room without anything."""
 
@@ -262,6 +273,7 @@ def _plain(tree: Json) -> None:
 #: Every feature: what it changes in a room.
 FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "nothing": _plain,
+    "boundaries and densities": _boundaries_and_densities,
     "products": _products,
     "own curves": _curves,
     "hysteresis": _hysteresis,

@@ -30,6 +30,10 @@ from mascarin.cli import GROUPS
 
 #: Pairs that physics forbids: by feature and entrance, words of the reason that is said.
 FORBIDDEN: Final[dict[tuple[str, str], str]] = {
+    (
+        "boundaries and densities",
+        "linear model",
+    ): "heat flux at surface heated (outside) is not linear and constant",
     ("products", "linear model"): "phase change",
     ("own curves", "linear model"): "phase change",
     ("hysteresis", "linear model"): "phase change",

@@ -72,6 +72,7 @@ OBJECTS: Final[dict[str, Objects]] = {
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {
+    "boundaries and densities": "keys that the conversion does not write yet",
     "products": "the catalogue belongs to Mascarin",
     "humidity": "the vapour of people and materials is part of other objects, whose findings name it",
     "thermal bridges": "EnergyPlus has no object for them",
