@@ -10,6 +10,7 @@ import pytest
 
 import dsc_samples as samples
 from mascarin import cli
+from mascarin.errors import InputError
 from mascarin.materials import from_dsc, from_dsc_files
 from mascarin.materials.dsc_several import spread_of
 
@@ -115,6 +116,34 @@ def test_exports_with_the_temperature_of_the_furnace(maker: str, tmp_path: Path)
     )
     assert made.main.latent_heat == pytest.approx(true.main.latent_heat, rel=1e-4)
     assert made.main.peak == pytest.approx(true.main.peak, abs=0.02)
+
+
+def test_perkin_elmer_with_names_in_two_lines(tmp_path: Path) -> None:
+    t = samples.temperatures()
+    flow = samples.heat(t) * 1.0 / 60.0 * 12.5 * 1e-3  # mW at 1 K/min
+    rows = [
+        f"{k})\t{(a - t[0]):.4f}\t{b:.6f}\t0.0\t{a + 0.4:.4f}\t{a:.4f}"
+        for k, (a, b) in enumerate(zip(t, flow, strict=True))
+    ]
+    head = (
+        "Sample ID: wax\nSample Weight: 12.5 mg\n\tTime\tUnsubtracted\tBaseline\tProgram\tSample\n"
+        "\t\tHeat Flow\tHeat Flow\tTemperature\tTemperature\n\tmin\tmW\tmW\t°C\t°C\n"
+    )
+    path = tmp_path / "pyris.txt"
+    path.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
+    read = from_dsc(path)
+    true = from_dsc(
+        samples.write(tmp_path / "cp.csv", {"temperature [degC]": t, "cp [J/(kg K)]": samples.heat(t)})
+    )
+    assert read.main.latent_heat == pytest.approx(true.main.latent_heat, rel=1e-4)
+    assert read.main.peak == pytest.approx(true.main.peak, abs=0.02)
+
+
+def test_the_voltage_of_a_sensor_is_no_heat_flow(tmp_path: Path) -> None:
+    t = samples.temperatures()
+    path = samples.write(tmp_path / "raw.csv", {"Temp./°C": t, "DSC/(µV/mg)": samples.heat(t)})
+    with pytest.raises(InputError, match=r"voltage of the sensor.*export mW/mg"):
+        from_dsc(path)
 
 
 def test_several_files_on_the_command_line_and_what_was_done_in_the_figure(

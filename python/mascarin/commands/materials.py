@@ -221,6 +221,7 @@ def dsc(
     melting: Annotated[str | None, Parameter(help="Range of melting, as LOW..HIGH in degC.")] = None,
     conductivity: str | None = None,
     density: str | None = None,
+    supercooling: Annotated[bool, Parameter(negative="")] = False,
     plot: Path | None = None,
     as_json: AsJson = False,
 ) -> None:
@@ -257,6 +258,9 @@ def dsc(
         VALUE or SOLID,LIQUID; DSC does not measure it. [W/(m K)]
     density : str
         VALUE or SOLID,LIQUID; DSC does not measure it. [kg/m3]
+    supercooling : bool
+        Let the material freeze as the cooling run shows: below its melting temperature, with a speed of its
+        own. Needs heating, and cooling over time, in one file.
     plot : Path
         File for a figure of enthalpy and apparent specific heat: SVG, PNG or PDF.
     """
@@ -277,6 +281,7 @@ def dsc(
         law,
         conductivity=_values(conductivity, "--conductivity"),
         density=_values(density, "--density"),
+        supercooling=supercooling,
     )
     with writing(out, plot):
         if out is not None:

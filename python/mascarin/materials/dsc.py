@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.materials.dsc_course import crystallisation_time
 from mascarin.materials.dsc_file import Settings, read
 from mascarin.materials.dsc_melting import Melting, melting_of
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mascarin.figures.melting import Analysis, Curve
+    from mascarin.materials.laws import LawFit
 
     Array = npt.NDArray[np.float64]
 
@@ -61,6 +63,7 @@ class DscMaterial:
         *,
         conductivity: float | tuple[float, float] | None = None,
         density: float | tuple[float, float] | None = None,
+        supercooling: bool = False,
     ) -> dict[str, Any]:
         """The material as in a building file.
 
@@ -71,15 +74,20 @@ class DscMaterial:
         conductivity, density : float or pair, optional
             A calorimeter does not measure them; without them the description is not complete.
             [W/(m K), kg/m3]
+        supercooling : bool
+            Whether it freezes as the cooling run shows: late, and with a speed of its own. The law is then
+            the best of the fitted ones where ``law`` is ``table``.
 
         Raises
         ------
         InputError
-            There is no such law.
+            There is no such law, or the runs do not show how the sample freezes.
         """
         from mascarin.errors import did_you_mean
 
         run = self.main
+        if supercooling and law == "table":
+            law = run.fits[0].law.name  # a law with a state needs a formula
         stated = {"conductivity": conductivity, "density": density}
         plain: dict[str, Any] = {"kind": "pcm"}
         plain |= {key: _listed(value) for key, value in stated.items() if value is not None}
@@ -101,8 +109,38 @@ class DscMaterial:
             plain["latent_heat"] = round(run.latent_heat)
             plain["melting_temperature"] = round(fits_by_law[law].melting_temperature, 3)
             plain["law"] = fits_by_law[law].description()
+            if supercooling:
+                plain["hysteresis"] = self._supercooling(fits_by_law[law])
         plain["source"] = f"DSC, {run.direction}" + (f" at {run.rate:g} K/min" if run.rate else "")
         return plain
+
+    def _supercooling(self, law_fit: LawFit) -> dict[str, Any]:
+        """The law of freezing by the cooling run, beside the melting curve of the heating run."""
+        cooling = next((run for run in self.runs if run.direction == "cooling"), None)
+        if self.main.direction != "heating" or cooling is None or cooling.course is None:
+            raise InputError(
+                f"supercooling: found {' and '.join(run.direction for run in self.runs)}"
+                f"{'' if cooling is None else ', cooling without a heat flow over time'}; expected a heating "
+                "run, and a cooling run with columns of heat flow and time, in one file. Export both with "
+                "their times"
+            )
+        if cooling.freezing is None:
+            raise InputError(
+                "supercooling: found a cooling run in which the temperature does not rise; expected a sample "
+                "that supercools. Leave the option out"
+            )
+        course, nucleation = cooling.course, cooling.freezing[0]
+        melting = law_fit.melting_temperature
+        # The heating run is nearer to equilibrium: its heats say what is liquid.
+        fraction = course.liquid_fraction(self.main.specific_heat, self.main.latent_heat, self.main.half)
+        seconds = crystallisation_time(
+            course, fraction, nucleation, lambda t: law_fit.law.fraction(t, melting, law_fit.widths)
+        )
+        return {
+            "model": "supercooling",
+            "degree": round(melting - nucleation, 3),
+            "time_constant": float(f"{seconds:.3g}"),
+        }
 
     def report(self) -> str:
         """Results and residuals of each law, as text."""

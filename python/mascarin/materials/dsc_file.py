@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
+from mascarin.materials.dsc_course import Course, course_of
 from mascarin.materials.dsc_formats import Export, export_of
 from mascarin.materials.dsc_segments import recalescence, segments_of, supercooling
 from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
@@ -53,6 +54,8 @@ class Scan:
         File, and line of the names of its columns.
     freezing : (float, float) or None
         Temperature at which a supercooled sample begins to freeze [degC], and rise from there [K].
+    course : Course or None
+        Temperature and enthalpy over time, where the file has a heat flow and a time.
     """
 
     direction: str
@@ -64,6 +67,7 @@ class Scan:
     remarks: tuple[str, ...]
     location: str
     freezing: tuple[float, float] | None = None
+    course: Course | None = None
 
 
 @dataclass(frozen=True)
@@ -245,24 +249,39 @@ def _scan(
         )
     factor, remark = _factor(signal, raw, t, settings, rate, location)
     remarks += [remark] if remark else []
-    if signal.quantity == "enthalpy":
+    course = None
+    if signal.quantity == "heat flow" and time is not None and rate is not None:
+        # The factor is that to an apparent specific heat at the rate of the run; a flow has it per kelvin.
+        flow = values[:, 1] * (factor * rate / 60.0)
+        course = course_of(_seconds(values, time), values[:, 0], flow)
+        t, heat = course.specific_heat()
+    elif signal.quantity == "enthalpy":
         heat = np.gradient(raw * factor, t)
         if heat.mean() < 0.0:
             raise InputError(
                 f"{location}: column '{signal.name}': found an enthalpy that falls with temperature; "
                 "expected it to rise. Change its sign"
             )
+    elif signal.quantity == "heat flow":
+        # Per kelvin: while it cools, the temperature falls.
+        heat = raw * factor * (1.0 if direction == "heating" else -1.0)
     else:
         heat = raw * factor
     if signal.quantity == "heat flow" and _upside_down(heat):
         heat = -heat
+        course = None if course is None else course.reversed()
         if exothermal_up is None:
-            remarks.append(f"{direction}: the peak points down: sign changed, heat taken up is positive")
-        elif exothermal_up != (direction == "heating"):
+            remarks.append(f"{direction}: heat given off points up: sign changed, heat taken up is positive")
+        elif not exothermal_up:
             remarks.append(
-                f"{direction}: the file says that heat given off points {'up' if exothermal_up else 'down'}, "
-                "but the peak points the other way: the peak was followed"
+                f"{direction}: the file says that heat given off points down, but the peak points the other "
+                "way: the peak was followed"
             )
+    elif signal.quantity == "heat flow" and exothermal_up:
+        remarks.append(
+            f"{direction}: the file says that heat given off points up, but the peak points the other way: "
+            "the peak was followed"
+        )
     return Scan(
         direction,
         t,
@@ -273,6 +292,7 @@ def _scan(
         tuple(remarks),
         location,
         recalescence(values[:, 0], direction),
+        course,
     )
 
 
@@ -288,10 +308,14 @@ def _merged(t: Array, raw: Array) -> tuple[Array, Array]:
     return unique, np.bincount(where, weights=raw) / count
 
 
+def _seconds(values: Array, time: Column) -> Array:
+    return np.asarray(values[:, 2] * UNITS["time"][time.unit or "s"])
+
+
 def _rate(values: Array, time: Column | None) -> float | None:
     if time is None:
         return None
-    seconds = values[:, 2] * UNITS["time"][time.unit or "s"]
+    seconds = _seconds(values, time)
     slopes = np.abs(np.diff(values[:, 0])) / np.maximum(np.abs(np.diff(seconds)), 1e-12)
     return float(np.median(slopes) * 60.0)
 

@@ -20,6 +20,8 @@ from mascarin.errors import InputError
 from mascarin.materials.units import SIGN, UNITS, plain_unit
 
 _NUMBER: Final = re.compile(r'^\s*"?[-+]?[\d.,]*\d')
+#: Columns from which on a line of as many words is no fact of the file.
+_LEAST_COLUMNS: Final = 3
 _MASS: Final = tuple(
     re.compile(pattern, re.IGNORECASE)
     for pattern in (
@@ -95,7 +97,8 @@ def export_of(text: str, where: str) -> Export:
     if head > 0 and _are_units(names):
         above = [name.lstrip("#").strip() for name in _split(lines[head - 1 : head], separator, where)[0]]
         if len(above) == len(names):
-            names = [_with_unit(name, unit) for name, unit in zip(above, names, strict=True)]
+            words = _in_two_lines(above, lines[: head - 1], separator, where)
+            names = [_with_unit(name, unit) for name, unit in zip(words, names, strict=True)]
             unit_row = head - 1
     body = lines[head + 1 :]
     if any(line.strip().startswith(("Curve Values", "[step]")) for line in lines[: head + 1]):
@@ -103,6 +106,20 @@ def export_of(text: str, where: str) -> Export:
         count = next((k for k, line in enumerate(body) if not _NUMBER.match(line)), len(body))
         body = body[:count]
     return Export(names, _split(body, separator, where), numbered[unit_row][0], *facts)
+
+
+def _in_two_lines(names: list[str], above: Sequence[str], separator: str, where: str) -> list[str]:
+    """Names whose first words are in the line above, as PerkinElmer writes them."""
+    if not above or separator == " ":
+        return names
+    first = [name.lstrip("#").strip() for name in _split(above[-1:], separator, where)[0]]
+    if (
+        len(first) != len(names)
+        or len(first) < _LEAST_COLUMNS
+        or any(re.search(r"\d", name) for name in first)
+    ):
+        return names
+    return [f"{before} {name}".strip() for before, name in zip(first, names, strict=True)]
 
 
 def _universal_analysis(lines: list[str], numbered: list[tuple[int, str]], where: str) -> Export:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.materials.dsc_course import Course
 from mascarin.materials.dsc_file import Scan
 from mascarin.materials.laws import LAWS, LawFit, fit
 from mascarin.materials.units import check_heat
@@ -57,6 +58,8 @@ class Melting:
         Fitted laws, the best first.
     freezing : (float, float) or None
         Temperature at which a supercooled sample begins to freeze [degC], and rise from there [K].
+    course : Course or None
+        Temperature and enthalpy over time, where the file has a heat flow and a time.
     """
 
     direction: str
@@ -71,6 +74,7 @@ class Melting:
     rate: float | None
     fits: tuple[LawFit, ...]
     freezing: tuple[float, float] | None = None
+    course: Course | None = None
 
     @property
     def half(self) -> float:
@@ -152,6 +156,7 @@ def melting_of(
         scan.rate,
         fits,
         scan.freezing,
+        scan.course,
     )
     return melting, remarks
 

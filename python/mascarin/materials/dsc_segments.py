@@ -178,7 +178,10 @@ def _turning_point(temperature: Array, location: str) -> int:
         if turn == 0
         else abs(temperature[turn] - temperature[0]) + abs(temperature[-1] - temperature[turn])
     )
-    if way > 1.2 * expected:
+    # A supercooled sample warms itself once while it cools.
+    falling = temperature[: turn + 1] if turn == bottom else temperature[turn:]
+    warmed = float(np.max(falling - np.minimum.accumulate(falling)))
+    if way - 2.0 * warmed > 1.2 * expected:
         jump = int(np.argmax(np.abs(np.diff(temperature))))
         raise InputError(
             f"{location}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
@@ -237,7 +240,6 @@ def supercooling(temperature: Array, direction: str) -> list[str]:
         return []
     return [
         f"cooling: the temperature rises by {freezing[1]:.1f} K from {freezing[0]:.2f} degC on: the "
-        f"sample was "
-        "supercooled, and the curve over temperature does not show how it freezes; use the heating run, or "
-        "give the law its supercooling"
+        "sample was supercooled, and the curve over temperature does not show how it freezes; use the "
+        "heating run, and --supercooling (in Python supercooling=True) for the law of its freezing"
     ]

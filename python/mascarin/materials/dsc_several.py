@@ -153,7 +153,7 @@ def _mean(runs: Sequence[Melting]) -> Melting:
     fits = tuple(sorted((fit(law, even, fraction) for law in LAWS), key=lambda law_fit: law_fit.residual))
     return replace(
         runs[0], temperature=even, fraction=fraction, heat=heat, specific_heat=(solid, liquid),
-        latent_heat=latent, onset=onset, peak=peak, end=end, fits=fits,
+        latent_heat=latent, onset=onset, peak=peak, end=end, fits=fits, course=None,
     )  # fmt: skip
 
 

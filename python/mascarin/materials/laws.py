@@ -88,6 +88,10 @@ class LawFit:
         return self.law.kind | widths
 
 
+#: Decades by which a width may leave its first guess.
+_DECADES: Final = 3.0
+
+
 def fit(law: Law, temperature: Array, fraction: Array) -> LawFit:
     """Least squares on the liquid fraction, with equal weight for every kelvin.
 
@@ -111,7 +115,12 @@ def fit(law: Law, temperature: Array, fraction: Array) -> LawFit:
     def error(p: Array) -> Array:
         return np.asarray(law.fraction(t, float(p[0]), [math.exp(q) for q in p[1:]]) - measured)
 
-    solution = least_squares(error, [middle, *np.log(widths)], x_scale=[width, *[1.0] * len(widths)])
+    # A curve that is one step has no width: without bounds the search leaves the numbers.
+    start = np.array([middle, *np.log(widths)])
+    reach = np.array([float(np.ptp(t)), *[_DECADES * math.log(10.0)] * len(widths)])
+    solution = least_squares(
+        error, start, x_scale=[width, *[1.0] * len(widths)], bounds=(start - reach, start + reach)
+    )
     residuals, moving = error(solution.x), (measured > 1e-3) & (measured < 1.0 - 1e-3)
     return LawFit(
         law,

@@ -17,6 +17,8 @@ UNITS: Final[dict[str, dict[str, float]]] = {
     "specific heat": {"j/gk": 1000.0, "kj/kgk": 1000.0, "j/kgk": 1.0, "cal/gk": 4184.0, "wh/kgk": 3600.0},
     "enthalpy": {"j/g": 1000.0, "kj/kg": 1000.0, "j/kg": 1.0, "cal/g": 4184.0, "wh/kg": 3600.0},
 }
+#: Signals before the calibration of the sensitivity, which no file states.
+_VOLTAGES: Final = ("µv/mg", "µv", "mv", "mv/mg", "uv/mg", "uv")
 #: Units of heat flow that need the mass of the sample.
 OF_SAMPLE: Final = ("mw", "w", "µw")
 #: Plausible specific heats of solids and liquids [J/(kg K)]: from metals to water, with a margin.
@@ -113,6 +115,12 @@ def check_unit(column: Column, where: str) -> None:
         The unit does not; the text has the column, the unit and those that are known.
     """
     factors = UNITS.get(column.quantity, {})
+    if column.unit in _VOLTAGES:
+        raise InputError(
+            f"{where}: column '{column.name}': found the voltage of the sensor ({column.unit}); expected a "
+            "heat flow. Apply the sensitivity calibration in the program of the instrument, and export mW/mg "
+            "or mW"
+        )
     if column.unit is not None and column.unit not in factors:
         raise InputError(
             f"{where}: column '{column.name}': found the unit '{column.unit}' for a {column.quantity}; "

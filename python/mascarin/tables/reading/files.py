@@ -19,6 +19,7 @@ from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked
+from mascarin.tables.reading.influx import is_influx, read_influx
 from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
 from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
@@ -113,6 +114,20 @@ class Read:
         return {name: getattr(self, name) for name in names}
 
 
+def _of_archive(path: Path, content: bytes) -> Read | None:
+    """A file that says by its first letters how it is read."""
+    if is_bsrn(content):
+        frame = read_bsrn(path, content)
+        said = f"{path.name}: a station-to-archive file of BSRN, record 0100, minutes in UTC."
+    elif is_influx(content):
+        frame = read_influx(decoded(content, path.name)[0], path.name)
+        said = f"{path.name}: annotated CSV of InfluxDB, {len(frame.columns) - 1} series."
+    else:
+        return None
+    rows = 1 + np.arange(len(frame), dtype=np.int64)
+    return Read(with_time_column(frame), rows, (said,), dict(frame.attrs.get("units", {})))
+
+
 def read_frame(
     path: Path, content: bytes, separator: str | None, decimal: str | None, skip_lines: int | None
 ) -> Read:
@@ -151,12 +166,9 @@ def read_frame(
     if path.suffix.lower() in {".parquet", ".pq"}:
         return _parquet(path)
     named, content = unpacked(path, content)
-    if is_bsrn(content):
-        frame = read_bsrn(path, content)
-        said = (f"{path.name}: a station-to-archive file of BSRN, record 0100, minutes in UTC.",)
-        units = dict(frame.attrs["units"])
-        rows = 1 + np.arange(len(frame), dtype=np.int64)
-        return Read(with_time_column(frame), rows, said, units)
+    archive = _of_archive(path, content)
+    if archive is not None:
+        return archive
     sheet: tuple[str, ...] = ()
     if named.suffix.lower() in ENDINGS:
         text, sheet = sheet_text(path)
