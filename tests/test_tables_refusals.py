@@ -53,6 +53,12 @@ class Case:
     climate: bool = False
 
 
+INFLUX = [
+    ",result,table,_time,_value,_field,_measurement",
+    *(f",,0,2024-01-01T00:{10 * k:02d}:00Z,{20.0 + k},air,lab" for k in (0, 2, 1)),
+]
+
+
 def rows(count: int = 6, form: str = "%Y-%m-%d %H:%M", value: str = "{:.2f}", mark: str = ",") -> list[str]:
     times = pd.date_range("2023-07-13 10:00", periods=count, freq="10min")
     return [mark.join([t.strftime(form), value.format(20.0 + 0.25 * k)]) for k, t in enumerate(times)]
@@ -132,6 +138,10 @@ CASES = {
     "an archive without irradiance": Case(
         bsrn(20).replace("*U0100", "*U0300").splitlines(),
         lambda lines, given: (bsrn(20).splitlines(), given), None, None, "0300", name="station.dat"),
+    "a series with two values": Case(
+        [*INFLUX, INFLUX[-1].replace("21.0", "23.0")], repaired(5, None), 5, "air", "2024-01-01T00:10:00Z"),
+    "series without times": Case(
+        [INFLUX[0].replace("_time", "when"), *INFLUX[1:]], repaired(1, INFLUX[0]), 1, None, "when"),
 }  # fmt: skip
 
 
