@@ -90,6 +90,11 @@ def read_influx(text: str, where: str) -> pd.DataFrame:
 
 def _take(entries: dict[str, str], series: dict[_Key, dict[str, str]], location: str) -> None:
     """Add the values of a row to their series."""
+    if _TIME not in entries:
+        raise InputError(
+            f"{location}: found {len(entries)} entries; expected those of the line of names, {_TIME!r} among "
+            "them. The file is cut or damaged: export it again, or remove the line"
+        )
     tags = {name: text for name, text in entries.items() if name not in _ABOUT}
     if _VALUE in entries:
         values = {tags.pop("_field", _VALUE): entries[_VALUE]}

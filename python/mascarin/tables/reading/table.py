@@ -271,16 +271,14 @@ def read_table(
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
     frame, lines = frame.loc[~empty], lines[~empty]
-    if len(frame) < 2:
-        raise InputError(
-            f"{where}: found {len(frame)} rows, expected at least two to know the step: get the whole file."
-        )
+    _require_two(frame, "rows", where)
     if time is None and time_format is None and (parts := parts_of_time(frame)):
         time, time_format = parts
     text, used = time_text(frame, time, where)
     frame = frame.drop(columns=used)
     frame = without_entries(frame, missing) if missing else frame
     text, frame, lines, dropped = rows_with_values(text, frame, lines, where)
+    _require_two(frame, "rows with values", where)
     stated = read.clock if read is not None else ("", 0)
     zone, clock, of_zone = _clock(used, text, zone, where, stated)
     frame.index, notes = stamps_from(text, time_format, zone, clock, lines, where)
@@ -295,6 +293,13 @@ def read_table(
         table = replace(table, of_pvgis=True, notes=(*table.notes, note))
     table = table if read is None else replace(table, **read.said_of_itself)
     return replace(table, entry_units=of_entries)
+
+
+def _require_two(frame: pd.DataFrame, rows: str, where: str) -> None:
+    if len(frame) < 2:
+        raise InputError(
+            f"{where}: found {len(frame)} {rows}, expected at least two to know the step: get the whole file."
+        )
 
 
 def _shifted(
