@@ -177,7 +177,7 @@ surfaces:
     construction: ceiling
     area: 9
     tilt: 0
-    outside: {zone: attic, convection: {kind: paper_eq5, factor: 0.8}, emissivity: 0.05}
+    outside: {zone: attic, convection: {kind: guichard2016_eq5, factor: 0.8}, emissivity: 0.05}
     inside:
       zone: room
       emissivity: 0.9

@@ -129,7 +129,7 @@ if TYPE_CHECKING:
     Iso15099 = ConvectionLaw
     LinearWind = ConvectionLaw
     Mowitt = ConvectionLaw
-    PaperEq5 = ConvectionLaw
+    Guichard2016Eq5 = ConvectionLaw
     Power = ConvectionLaw
     PowerLaw = ConvectionLaw
     Tarp = ConvectionLaw
@@ -178,6 +178,7 @@ __all__ = [
     "GivenGap",
     "GivenSun",
     "Ground",
+    "Guichard2016Eq5",
     "GumbelLaw",
     "Humidistat",
     "Humidity",
@@ -202,7 +203,6 @@ __all__ = [
     "Output",
     "Pane",
     "PaneGlazing",
-    "PaperEq5",
     "Parameter",
     "PhaseChangeMaterial",
     "Power",

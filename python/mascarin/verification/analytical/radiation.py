@@ -200,7 +200,7 @@ _LENGTH, _AREA, _PERIMETER, _ROUGH = 2.5, 4.0, 8.0, 1.67
 _STILL: Final = (
     Convection("{kind: constant, coefficient: 3.2}", 90, lambda d, _: 3.2),
     Convection("{kind: alamdari_hammond, length: 2.5}", 90, lambda d, _: _blend(1.5, 1.23, d, _LENGTH)),
-    Convection("{kind: paper_eq5, length: 2.5}", 90,
+    Convection("{kind: guichard2016_eq5, length: 2.5}", 90,
          lambda d, _: float(((1.51 * d**0.25 / _LENGTH) ** 6 + (1.33 * d ** (1 / 3)) ** 6) ** (1 / 6))),
     Convection("{kind: tarp}", 90, lambda d, _: 1.31 * d ** (1 / 3)),
     # The warm surface faces down where the tilt is 0 and up where it is 180: stable, unstable.

@@ -133,8 +133,8 @@ fn power() {
 
 /// Equation 5 of the paper is one formula for all directions, without a border.
 #[test]
-fn paper_eq5() {
-    let law = Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]);
+fn guichard2016_eq5() {
+    let law = Convection::law("guichard2016_eq5", &[("length", id(0)), ("factor", id(1))]);
     for tilt in [45.0, 90.0, 135.0] {
         let [up, down] = beside(&law, &[2.0, 1.0], tilt);
         assert!(jump(up) < 1e-12 && jump([up[0], down[0]]) < 1e-12);

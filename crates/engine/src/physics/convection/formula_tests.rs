@@ -90,7 +90,7 @@ fn laws_without_buoyancy() {
 }
 
 #[test]
-fn alamdari_hammond_and_paper_eq5() {
+fn alamdari_hammond_and_guichard2016_eq5() {
     let blend = "f*((1.5*(abs(dT)/L)^(1/4))^6 + (1.23*abs(dT)^(1/3))^6)^(1/6)";
     let plate = "f*((1.4*(abs(dT)/L)^(1/4))^6 + (1.63*abs(dT)^(1/3))^6)^(1/6)";
     let stable = "f*0.6*(abs(dT)/L^2)^(1/5)";
@@ -99,7 +99,7 @@ fn alamdari_hammond_and_paper_eq5() {
     assert_same_law(&built_in, &law, &["L", "f"], &[2.7, 1.1]);
     let law = "f*((1.51*abs(dT)^(1/4)/H)^6 + (1.33*abs(dT)^(1/3))^6)^(1/6)";
     assert_same_law(
-        &Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]),
+        &Convection::law("guichard2016_eq5", &[("length", id(0)), ("factor", id(1))]),
         law,
         &["H", "f"],
         &[0.3, 0.9],

@@ -477,7 +477,7 @@ pub fn cell(gamma: f64) -> Description {
 
     let outer = b.power([2.0, 1.2, 0.33, 3.1, 0.8], [2.0, 0.7, 0.25, 3.1, 0.8]);
     let inner = Convection::law(
-        "paper_eq5",
+        "guichard2016_eq5",
         &[("length", b.number("eq5.length", 2.0)), ("factor", b.number("eq5.factor", 1.0))],
     );
     let (outside, inside) = (b.outdoors(outer, 0.9, 0.5), b.inside(room, inner, 0.9));

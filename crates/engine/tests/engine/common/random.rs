@@ -28,7 +28,7 @@ const DRAWN: [&str; 9] = [
     "tarp",
     "power",
     "linear_wind",
-    "paper_eq5",
+    "guichard2016_eq5",
     "mowitt",
     "iso15099",
     "doe2",
@@ -451,7 +451,7 @@ impl Maker<'_> {
                     &[("constant", constant), ("wind", self.number("convection.wind", 1.0, 5.0))],
                 )
             }
-            4 => law("paper_eq5", &[("length", length), ("factor", factor)]),
+            4 => law("guichard2016_eq5", &[("length", length), ("factor", factor)]),
             5 if outdoors => law("mowitt", &[("factor", factor)]),
             5 => law("iso15099", &[("length", length), ("factor", factor)]),
             _ => law("doe2", &[("factor", factor), ("roughness", roughness)]),

@@ -9,13 +9,13 @@ use crate::physics::convection::prelude::*;
 
 /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`.
 #[derive(Debug, Clone)]
-pub(crate) struct PaperEq5<S> {
+pub(crate) struct Guichard2016Eq5<S> {
     factor: S,
     laminar: S,
     turbulent: S,
 }
 
-impl<S: Real> NamedLaw<S> for PaperEq5<S> {
+impl<S: Real> NamedLaw<S> for Guichard2016Eq5<S> {
     const ROW: LawRow = LawRow::new(
         "Alamdari and Hammond as printed in Guichard et al. 2016, eq. 5",
         "Equation 5 of Guichard et al. 2016 as printed.",
@@ -32,13 +32,13 @@ impl<S: Real> NamedLaw<S> for PaperEq5<S> {
     }
 }
 
-impl<S> Correlation<S> for PaperEq5<S> {
-    type Of<T> = PaperEq5<T>;
+impl<S> Correlation<S> for Guichard2016Eq5<S> {
+    type Of<T> = Guichard2016Eq5<T>;
 
     #[inline(always)]
-    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> PaperEq5<T> {
+    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Guichard2016Eq5<T> {
         let Self { factor, laminar, turbulent } = self;
-        PaperEq5 { factor: change(factor), laminar: change(laminar), turbulent: change(turbulent) }
+        Guichard2016Eq5 { factor: change(factor), laminar: change(laminar), turbulent: change(turbulent) }
     }
 
     #[inline(always)]
@@ -55,7 +55,7 @@ impl<S> Correlation<S> for PaperEq5<S> {
     }
 }
 
-impl<S: Real> WindPart<S> for PaperEq5<S> {}
+impl<S: Real> WindPart<S> for Guichard2016Eq5<S> {}
 
 #[cfg(test)]
 mod tests {
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let law = Convection::law("paper_eq5", &[("length", id(0)), ("factor", id(1))]);
+        let law = Convection::law("guichard2016_eq5", &[("length", id(0)), ("factor", id(1))]);
         // 5 K, 0.28 m: the first term 1.51 5^.25 / 0.28 = 8.06419 is much larger than 1.33 5^(1/3) = 2.27427
         assert_close(coefficient(&surface(&law, &[0.28, 1.0], 1.0), 5.0, 0.0, false), 8.064_9);
     }
