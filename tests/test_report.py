@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 VOID = {"meta", "link", "img", "br", "input"}
-SECTIONS = ["criteria", "model", "data", "sensitivity", "parameters", "comparison", "curves", "carpets",
+SECTIONS = ["summary",
+    "criteria", "model", "data", "sensitivity", "parameters", "comparison", "curves", "carpets",
             "phase-change", "residuals", "error-sources", "energy", "notes", "reproduce"]  # fmt: skip
 
 
@@ -303,6 +304,7 @@ def opened(page: Page, file: Path) -> tuple[list[str], list[str]]:
     page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(file.as_uri())
+    page.evaluate("document.querySelectorAll('details.appendix').forEach(d => d.open = true)")
     page.wait_for_selector("#plot-values canvas")
     return asked, complaints
 

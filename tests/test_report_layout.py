@@ -41,6 +41,7 @@ def report_of_many(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def page_of_many(page: Page, report_of_many: Path) -> Page:
     """That report in a browser."""
     page.goto(report_of_many.as_uri())
+    page.evaluate("document.querySelectorAll('details.appendix').forEach(d => d.open = true)")
     page.wait_for_selector("#plot-values canvas")
     return page
 

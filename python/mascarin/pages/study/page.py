@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
+from string import ascii_uppercase
 from types import ModuleType
 from typing import Any, Final
 
@@ -13,6 +14,7 @@ from mascarin.pages.study.data.labels import (
     label_of,
     main_model,
     model_label,
+    note_words,
     period_label,
     short_periods,
     unit_of,
@@ -34,10 +36,12 @@ from mascarin.pages.study.sections import (
     reproduce,
     residuals,
     sensitivity,
+    summary,
 )
 
-#: In the order of the page.
+#: In the order of the page: the summary, then the appendices, which are folded on a screen.
 SECTIONS: Final[tuple[ModuleType, ...]] = (
+    summary,
     criteria,
     model,
     data,
@@ -71,7 +75,7 @@ def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
         "intro": study.get("intro", []),
         "looks": _looks(study, series),
         "observed": {"label": observed.get("label", "measured"), "note": observed.get("note", "")},
-        "contradictions": [str(entry.get("text", "")) for entry in study.get("contradictions", [])],
+        "contradictions": [" ".join(note_words(study, entry)) for entry in study.get("contradictions", [])],
         "facts": _facts(study),
         "headline": headline(study, series),
         "sections": _sections(study, series),
@@ -212,20 +216,21 @@ def _span(values: Sequence[float]) -> str:
 
 
 def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
-    """The sections with content, numbered in their order."""
+    """The sections with content; appendices have letters."""
     sections: list[dict[str, Any]] = []
     for module in SECTIONS:
         content = module.content(study, series)
         if content:
             key = module.__name__.rpartition(".")[2]
-            number = len(sections) + 1
+            appendices = sum(section["folded"] for section in sections)
             tables = [_further_table(t) for t in _tables(study) if t.get("section", "comparison") == key]
             sections.append(
                 {
                     "id": key.replace("_", "-"),
                     "template": f"pages/study/sections/{key}.html",
                     "title": module.TITLE,
-                    "number": number,
+                    "folded": module is not summary,
+                    "mark": "" if module is summary else ascii_uppercase[appendices],
                     "content": content,
                     "tables": tables,
                 }

@@ -120,9 +120,23 @@
     for (const p of plots) p.setSize({ width: p.root.parentElement.clientWidth, height: p.height });
   }
 
+  // What a link leads to is opened, with all that it is folded in.
+  function unfold() {
+    const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!target) return;
+    const own = target.matches("section") ? target.querySelector(":scope > details") : null;
+    for (let d = own || target.closest("details"); d; d = d.parentElement.closest("details")) d.open = true;
+    target.scrollIntoView();
+  }
+  addEventListener("hashchange", unfold);
+  unfold();
+
   if (box && series.count) {
     box.hidden = false;
-    draw();
+    // Curves have no width before their appendix is open.
+    const folded = box.closest("details");
+    if (folded && !folded.open) folded.addEventListener("toggle", draw, { once: true });
+    else draw();
     for (const name of ["sensor", "beside"]) document.getElementById(picks[name])?.addEventListener("change", draw);
     document.getElementById(picks.period).addEventListener("change", zoom);
     for (const input of box.querySelectorAll("input[name=model]")) input.addEventListener("change", draw);

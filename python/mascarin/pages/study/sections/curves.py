@@ -127,6 +127,28 @@ def headline(study: Mapping[str, Any], curves: Series) -> Panels | None:
     return None
 
 
+def last_period(study: Mapping[str, Any], curves: Series) -> Panels | None:
+    """Curves of the first sensor over the first part of the last period, where it is not the headline's.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    curves : Series
+        Curves.
+    """
+    periods = [key for key, period in study.get("periods", {}).items() if period.get("spans")]
+    if not periods or periods[-1] in short_periods(study)[-1:]:
+        return None
+    times, sensors = _of_period(study, curves, periods[-1])
+    for name, compared in sensors.items():
+        panels = _single(study, times, name, compared, "summary-blind")
+        span = text.span_of(times[0], times[-1])
+        label = period_label(study, periods[-1]).lower()
+        return replace(panels, title=f"{panels.title}, {label}, {span}")
+    return None
+
+
 def _of_period(
     study: Mapping[str, Any], curves: Series, period: str
 ) -> tuple[list[datetime], dict[str, Compared]]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Final
 
 from markupsafe import Markup
 
@@ -13,6 +14,7 @@ from mascarin.pages.study.data.labels import model_label
 from mascarin.pages.study.data.series import Series
 
 TITLE = "Energy balance"
+_MJ_PER_KWH: Final = 3.6
 
 
 def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
@@ -23,44 +25,58 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     return {
         "closure": text.significant(ledger.get("closure"), 2),
         "drawing": ledger_bars(ledger),
-        "rows": [
-            {"label": str(t.get("label", "")), "value": text.significant(t.get("value"), 4)}
-            for t in ledger.get("terms", [])
-        ],
         "model": model_label(study, ledger.get("model")),
     }
 
 
-def ledger_bars(ledger: Mapping[str, Any]) -> Markup | None:
+@dataclass(frozen=True)
+class _Shape:
+    """Sizes of the bars of an energy balance [px]: in the narrow one, names are above their bars."""
+
+    width: float
+    row: float
+    middle: float
+    half: float
+    drop: float
+
+
+_WIDE: Final = _Shape(680.0, 26.0, 480.0, 100.0, 0.0)
+_NARROW: Final = _Shape(520.0, 38.0, 260.0, 170.0, 15.0)
+
+
+def ledger_bars(ledger: Mapping[str, Any], *, narrow: bool = False) -> Markup | None:
     """Terms of the energy balance as bars about zero.
 
     Parameters
     ----------
     ledger : mapping
         As in :class:`~mascarin.pages.study.data.schema.Ledger`.
+    narrow : bool
+        Names above the bars, for half a page.
     """
     terms = [t for t in ledger.get("terms", []) if t.get("value") is not None]
     if not terms:
         return None
+    shape = _NARROW if narrow else _WIDE
     largest = max(abs(float(t["value"])) for t in terms) or 1.0
-    svg = Svg(680.0, 8.0 + 26.0 * len(terms))
-    middle, half = 480.0, 100.0
+    height = 8.0 + shape.row * len(terms)
+    svg = Svg(shape.width, height)
     for row, term in enumerate(terms):
         value = float(term["value"])
-        y = 4.0 + 26.0 * row
-        length = half * value / largest
-        svg.label(0.0, y + 16.0, str(term.get("label", "")), "layer-name")
-        kind = "gain" if value >= 0 else "loss"
+        y = 4.0 + shape.row * row
+        end = shape.middle + shape.half * value / largest
+        svg.label(0.0, y + (11.0 if narrow else 16.0), str(term.get("label", "")), "layer-name")
         svg.add(
             "rect",
-            x=min(middle, middle + length),
-            y=y + 4.0,
-            width=max(abs(length), 0.5),
-            height=16.0,
-            class_=kind,
+            x=min(shape.middle, end),
+            y=y + 4.0 + shape.drop,
+            width=max(abs(end - shape.middle), 0.5),
+            height=16.0 if not narrow else 13.0,
+            class_="gain" if value >= 0 else "loss",
         )
-        x = middle + length + (6.0 if value >= 0 else -6.0)
-        shown = f"{text.significant(value, 4)}\u00a0MJ"
-        svg.label(x, y + 16.0, shown, "layer-name", "start" if value >= 0 else "end")
-    svg.line(middle, 0.0, middle, 8.0 + 26.0 * len(terms), "axis")
+        words = f"{text.significant(value / _MJ_PER_KWH, 4)}\u00a0kWh"
+        side, anchor = (6.0, "start") if value >= 0 else (-6.0, "end")
+        svg.label(end + side, y + 15.0 + shape.drop, words, "layer-name", anchor)
+    if not narrow:
+        svg.line(shape.middle, 0.0, shape.middle, height, "axis")
     return svg.markup("Heat flows of the energy balance")

@@ -1,0 +1,308 @@
+"""The first pages: verdict, what to do next, criteria as one matrix, parameters, and three figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from markupsafe import Markup
+
+from mascarin._io import units
+from mascarin.figures import text
+from mascarin.figures.svg.chart import Svg
+from mascarin.pages.study.data.labels import (
+    label_of,
+    main_model,
+    note_words,
+    parameter_label,
+    period_label,
+    unit_of,
+)
+from mascarin.pages.study.data.series import Series
+from mascarin.pages.study.sections import curves
+from mascarin.pages.study.sections.energy import ledger_bars
+
+TITLE = "Summary"
+#: Parameters that are listed here; the appendix has all.
+_LISTED: Final = 10
+#: Steps that are named at most.
+_STEPS: Final = 5
+#: Width of the figure of sensitivity, its axis, and its longest bar. [px]
+_WIDTH: Final = 520.0
+_AXIS: Final = 230.0
+_BAR: Final = 90.0
+#: Parameters in the figure of sensitivity.
+_BARS: Final = 8
+
+
+def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+    """Values of the template; None where the study has neither criteria nor parameters."""
+    matrix, listed = criteria_matrix(study), _parameters(study)
+    if matrix is None and not listed:
+        return None
+    return {
+        "verdict": verdict(study),
+        "next": next_steps(study),
+        "matrix": matrix,
+        "parameters": listed,
+        "parameter_count": len(_calibrated(study)),
+        "blind": curves.last_period(study, series),
+        "sensitivity": _sensitivity(study),
+        "energy": ledger_bars(study["ledger"], narrow=True) if study.get("ledger") else None,
+    }
+
+
+def _judged(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Criteria of the model that is shown."""
+    criteria = list(study.get("criteria", []))
+    model = main_model(study)
+    return [c for c in criteria if c.get("model", "fitted") == model] or criteria
+
+
+def verdict(study: Mapping[str, Any]) -> list[str]:
+    """What was reached, in two sentences.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+
+    Returns
+    -------
+    list of str
+        At most two sentences; none where nothing was judged.
+    """
+    return [sentence for sentence in (_criteria_words(study), _trust_words(study)) if sentence]
+
+
+def _criteria_words(study: Mapping[str, Any]) -> str:
+    judged = _judged(study)
+    if not judged:
+        return ""
+    met = sum(1 for criterion in judged if criterion.get("passed"))
+    total = len(judged)
+    share = f"meets {'all ' if met == total else f'{met} of '}{total} criteria"
+    if met == 0:
+        share = f"meets none of {total} criteria"
+    subject = "The calibrated model" if _calibrated(study) else "The model"
+    return f"{subject} {share}{_scatter_words(study)}."
+
+
+def _scatter_words(study: Mapping[str, Any]) -> str:
+    """The standard deviation of the error in the last judged period."""
+    model = main_model(study)
+    for period in reversed(list(study.get("periods", {}))):
+        by_unit: dict[str, list[float]] = {}
+        for sensor, periods in study.get("sensors", {}).items():
+            deviation = periods.get(period, {}).get(model, {}).get("sd")
+            if deviation is not None:
+                unit = units.difference(unit_of(study, sensor))
+                by_unit.setdefault(unit, []).append(float(deviation))
+        if by_unit:
+            words = " and ".join(
+                f"{_span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
+            )
+            name = period_label(study, period).lower()
+            return f"; its error has a standard deviation of {words} by sensor ({name})"
+    return ""
+
+
+def _span(values: Sequence[float]) -> str:
+    low, high = text.fixed(min(values)), text.fixed(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def _trust_words(study: Mapping[str, Any]) -> str:
+    """How far bands and intervals can be trusted."""
+    contradictions = len(study.get("contradictions", []))
+    coverage = _coverage(study)
+    parts = []
+    if coverage is not None:
+        share, period, asked = coverage
+        parts.append(
+            f"{text.percent(share, 0)} of the values of {period_label(study, period).lower()} lie in its "
+            f"prediction bands of {text.percent(asked, 0)}"
+        )
+    if contradictions:
+        times = "once" if contradictions == 1 else f"{contradictions} times"
+        parts.append(f"it contradicts its data or what is known {times} (head of this page)")
+    elif study.get("parameters"):
+        parts.append("no contradiction with the data of its identification was seen")
+    if not parts:
+        return ""
+    sentence = "; ".join(parts)
+    return f"{sentence[0].upper()}{sentence[1:]}."
+
+
+def _coverage(study: Mapping[str, Any]) -> tuple[float, str, float] | None:
+    """Mean part inside the bands, period, and what was asked; each sensor counts alike."""
+    bands = study.get("band", {})
+    for period in reversed(list(study.get("periods", {}))):
+        shares = [
+            float(share)
+            for entry in bands.values()
+            if (share := entry.get("held", {}).get(period)) is not None
+        ]
+        if shares:
+            asked = min(float(entry.get("confidence", 0.95)) for entry in bands.values())
+            return sum(shares) / len(shares), period, asked
+    return None
+
+
+def next_steps(study: Mapping[str, Any]) -> list[str]:
+    """What to do next, the most important first.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    """
+    steps = [*_causes(study), *_bounds(study), *_largest_miss(study), *_weak_parameter(study)]
+    return steps[:_STEPS]
+
+
+def _causes(study: Mapping[str, Any]) -> list[str]:
+    """The first causes of the diagnosis; what was left out of the data for its defects is none any more."""
+    causes = [c for c in study.get("diagnosis", {}).get("causes", []) if c.get("group") != "data"]
+    return [" ".join(note_words(study, {"text": cause.get("text", "")})) for cause in causes[:2]]
+
+
+def _bounds(study: Mapping[str, Any]) -> list[str]:
+    """Parameters whose estimate is the end of their range."""
+    names = [
+        parameter_label(study, path)
+        for path, entry in study.get("parameters", {}).items()
+        if entry.get("at_bound")
+    ]
+    if not names:
+        return []
+    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    verb = "are" if others else "is"
+    return [
+        f"{names[0]}{others} {verb} at the end of the stated range: measure it, state a wider range with its "
+        "source, or look for a cause outside of the parameters."
+    ]
+
+
+def _largest_miss(study: Mapping[str, Any]) -> list[str]:
+    """The criterion that is missed by most."""
+    missed = [c for c in _judged(study) if not c.get("passed") and c.get("value") is not None]
+    if not missed:
+        return []
+
+    def ratio(criterion: Mapping[str, Any]) -> float:
+        limit = abs(float(criterion.get("limit") or 0.0))
+        return abs(float(criterion["value"])) / limit if limit else 0.0
+
+    worst = max(missed, key=ratio)
+    value, limit = text.beside_limit(worst["value"], worst.get("limit"))
+    unit = units.difference(str(worst.get("unit", "")))
+    place = f"{label_of(study, str(worst['sensor']))}, " if worst.get("sensor") else ""
+    period = period_label(study, str(worst.get("period", ""))).lower()
+    return [
+        f"Look first at {place}{period}: {worst.get('name', '')} is missed by most ({value} {unit}, limit "
+        f"{limit} {unit})."
+    ]
+
+
+def _weak_parameter(study: Mapping[str, Any]) -> list[str]:
+    """The parameter whose change would reduce the remaining error most."""
+    steps = study.get("shortfall", {}).get("steps", [])
+    if not steps:
+        return []
+    name = parameter_label(study, str(steps[0].get("path", "")))
+    return [f"Determine {name} by a measurement of its own: it would reduce the remaining error most."]
+
+
+def criteria_matrix(study: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Criteria and periods as rows, sensors as columns.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    """
+    judged = _judged(study)
+    if not judged:
+        return None
+    sensors = list(dict.fromkeys(str(c.get("sensor", "")) for c in judged))
+    rows: dict[tuple[str, str], dict[str, Any]] = {}
+    for criterion in judged:
+        key = (str(criterion.get("name", "")), str(criterion.get("period", "")))
+        row = rows.setdefault(key, {"name": text.typeset(key[0]), "period": key[1], "cells": {}})
+        value, _ = text.beside_limit(criterion.get("value"), criterion.get("limit"))
+        unit = units.difference(str(criterion.get("unit", "")))
+        row["cells"][str(criterion.get("sensor", ""))] = {
+            "text": f"{value} {unit}".strip(),
+            "passed": bool(criterion.get("passed")),
+        }
+    return {
+        "sensors": [label_of(study, sensor) if sensor else "all" for sensor in sensors],
+        "rows": [
+            {
+                "name": row["name"],
+                "period": period_label(study, row["period"]) if row["period"] else "",
+                "cells": [row["cells"].get(sensor) for sensor in sensors],
+            }
+            for row in rows.values()
+        ],
+        "met": sum(1 for c in judged if c.get("passed")),
+        "total": len(judged),
+    }
+
+
+def _calibrated(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    return {path: entry for path, entry in study.get("parameters", {}).items() if "fitted" in entry}
+
+
+def _largest_shares(study: Mapping[str, Any]) -> dict[str, tuple[float, str]]:
+    """Largest index of each parameter, and the sensor that has it."""
+    largest: dict[str, tuple[float, str]] = {}
+    for sensor, entries in study.get("sensitivity", {}).items():
+        for path, entry in entries.items():
+            share = float(entry.get("share") or 0.0)
+            largest[path] = max(largest.get(path, (-1.0, "")), (share, str(sensor)))
+    return largest
+
+
+def _parameters(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """The calibrated parameters that matter most, with their intervals."""
+    shares = _largest_shares(study)
+    entries = _calibrated(study)
+    ordered = sorted(entries, key=lambda path: -shares.get(path, (0.0, ""))[0])[:_LISTED]
+    rows = []
+    for path in ordered:
+        entry = entries[path]
+        fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
+        rows.append(
+            {
+                "label": parameter_label(study, path),
+                "path": path,
+                "unit": units.shown(str(entry.get("unit", ""))),
+                "nominal": text.significant(entry.get("nominal")),
+                "fitted": fitted,
+                "interval": "not stated" if entry.get("stated") is False else interval,
+            }
+        )
+    return rows
+
+
+def _sensitivity(study: Mapping[str, Any]) -> Markup | None:
+    """Bars of the largest indices."""
+    shares = _largest_shares(study)
+    if not shares:
+        return None
+    strongest = sorted(shares, key=lambda path: -shares[path][0])[:_BARS]
+    height = 8.0 + 26.0 * len(strongest)
+    svg = Svg(_WIDTH, height)
+    largest = max(shares[strongest[0]][0], 1e-9)
+    for row, path in enumerate(strongest):
+        share, sensor = shares[path]
+        y = 4.0 + 26.0 * row
+        svg.label(0.0, y + 16.0, parameter_label(study, path), "layer-name")
+        length = max(_BAR * share / largest, 0.5)
+        svg.add("rect", x=_AXIS, y=y + 4.0, width=length, height=16.0, class_="gain")
+        words = f"{text.percent(share, 0)}, {label_of(study, sensor)}"
+        svg.label(_AXIS + length + 6.0, y + 16.0, words, "layer-name")
+    svg.line(_AXIS, 0.0, _AXIS, height, "axis")
+    return svg.markup("Largest sensitivity index of each parameter, and its sensor")

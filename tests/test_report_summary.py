@@ -1,0 +1,127 @@
+"""The first pages of a report: every sentence follows from facts, and they fit on three sheets of paper."""
+
+from __future__ import annotations
+
+import copy
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import report_example
+from mascarin.pages.study import write
+from mascarin.pages.study.sections import summary
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+
+def criterion(value: float, *, sensor: str = "room_air", period: str = "blind") -> dict[str, Any]:
+    return {
+        "name": "|max error| <= 1 K", "sensor": sensor, "period": period, "metric": "max_error",
+        "value": value, "limit": 1.0, "unit": "K", "passed": abs(value) <= 1.0, "model": "fitted",
+    }  # fmt: skip
+
+
+def study(**entries: Any) -> dict[str, Any]:
+    return {
+        "title": "A study",
+        "models": {"fitted": {"label": "fitted"}},
+        "periods": {"blind": {"label": "Blind days"}},
+        "sensor_info": {"room_air": {"label": "Room air", "unit": "degC"}},
+        **entries,
+    }
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ((0.5, 0.9), "meets all 2 criteria"),
+        ((0.5, 1.2), "meets 1 of 2 criteria"),
+        ((1.5, 1.2), "meets none of 2"),
+    ],
+)
+def test_the_verdict_counts_the_criteria(values: tuple[float, float], said: str) -> None:
+    [first, *_] = summary.verdict(study(criteria=[criterion(value) for value in values]))
+    assert said in first
+    assert first.startswith("The model")
+    fitted = {"a.b": {"fitted": 1.0, "nominal": 2.0}}
+    [first, *_] = summary.verdict(study(criteria=[criterion(v) for v in values], parameters=fitted))
+    assert first.startswith("The calibrated model")
+
+
+def test_the_verdict_says_what_bands_hold_and_what_contradicts() -> None:
+    fitted = {"a.b": {"fitted": 1.0, "nominal": 2.0}}
+    band = {"room_air": {"confidence": 0.95, "held": {"blind": 0.61}}}
+    good = summary.verdict(study(parameters=fitted, band=band))[-1]
+    assert good.startswith("61\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
+    assert "no contradiction" in good
+    bad = summary.verdict(study(parameters=fitted, band=band, contradictions=[{"text": "x"}, {"text": "y"}]))[
+        -1
+    ]
+    assert "contradicts its data or what is known 2 times" in bad
+    assert "no contradiction" not in bad
+    assert summary.verdict(study()) == []
+
+
+def test_steps_follow_from_bounds_misses_and_causes() -> None:
+    assert summary.next_steps(study(criteria=[criterion(0.5)])) == []
+    steps = summary.next_steps(
+        study(
+            criteria=[criterion(1.2), criterion(3.0, period="late")],
+            parameters={"zones.room.infiltration": {"fitted": 0.0, "at_bound": True}},
+            diagnosis={
+                "causes": [
+                    {"group": "data", "text": "50 repeated values are left out."},
+                    {"group": "sensor", "text": "'room_air' reads 0.4 K too high."},
+                ]
+            },
+            shortfall={"steps": [{"path": "site.sky.a"}]},
+        )
+    )
+    assert [step.split()[0] for step in steps] == ["Room", "room", "Look", "Determine"]
+    assert "left out" not in " ".join(steps)
+    assert "3.00 K, limit 1.00 K" in steps[2]
+    assert "at the end of the stated range" in steps[1]
+
+
+def test_each_criterion_has_its_cell() -> None:
+    matrix = summary.criteria_matrix(
+        study(criteria=[criterion(0.5), criterion(1.5, sensor="steel"), criterion(0.2, period="late")])
+    )
+    assert matrix is not None
+    assert (matrix["met"], matrix["total"], matrix["sensors"]) == (2, 3, ["Room air", "steel"])
+    cells = [[cell and cell["passed"] for cell in row["cells"]] for row in matrix["rows"]]
+    assert cells == [[True, False], [True, None]]
+    other = copy.deepcopy(criterion(0.5)) | {"model": "nominal"}
+    assert summary.criteria_matrix(study(criteria=[other, criterion(0.5)]))["total"] == 1  # type: ignore[index]
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write(tmp_path_factory.mktemp("summary") / "report.html", *report_example.lgi())
+
+
+@pytest.mark.browser
+def test_three_sheets_of_paper_and_a_short_page_on_a_telephone(page: Page, report: Path) -> None:
+    page.goto(report.as_uri())
+    page.set_viewport_size({"width": 390, "height": 800})
+    assert page.evaluate("document.documentElement.scrollHeight") <= 12_000
+    page.evaluate(
+        "document.querySelectorAll('section:has(> .appendix)').forEach(e => e.style.display = 'none')"
+    )
+    assert page.pdf(format="A4").count(b"/Type /Page\n") <= 3
+
+
+@pytest.mark.browser
+def test_a_link_unfolds_what_it_leads_to(page: Page, report: Path) -> None:
+    page.goto(report.as_uri())
+    assert page.locator("details.appendix[open]").count() == 0
+    assert not page.locator("#explorer").is_visible()
+    page.click(".contents a[href='#curves']")
+    page.wait_for_selector("#plot-values canvas")
+    assert page.evaluate("document.querySelector('#plot-values canvas').clientWidth") > 200
+    # A reference to a table inside of another appendix.
+    page.evaluate("location.hash = '#table-parameters'")
+    page.wait_for_selector("#table-parameters")
+    assert page.locator("details.appendix[open]").count() == 2
