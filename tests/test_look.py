@@ -23,6 +23,7 @@ import pytest
 import mascarin as mc
 from mascarin import cli, examples
 from mascarin.building.geometry import Polygon
+from mascarin.building.rooms import rooms
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.pages.explore import Server, Session, choice
@@ -198,6 +199,23 @@ def test_the_page_of_a_run_has_its_numbers(capsys: pytest.CaptureFixture[str], t
     assert float(found[1].replace("\u202f", "")) == pytest.approx(heating, rel=1e-3)
     assert alone["building_sha256"] in text
     assert "<script" not in text
+
+
+def test_rooms_are_shown_apart_from_cavities() -> None:
+    cell = mc.new_room(
+        "4x3x2.8", roof="steel", gap="ventilated", ceiling="plasterboard 12.5mm", place="golden"
+    )
+    cavities = set(cell.zones) - set(rooms(cell))
+    assert len(cavities) == 1
+    assert rooms(mc.load(HOUSE)) == list(mc.load(HOUSE).zones)
+    climate = mc.Climate.from_epw("shipped:golden")
+    run = mc.simulate(cell, climate, start="2001-07-01", end="2001-07-03", step="1h")
+    text = run_page(run, Notes(rooms=rooms(cell)))
+    assert "Air temperature of cavities" in text
+    [room] = rooms(cell)
+    highest = float(run[f"{room}.air_temperature"].max())
+    assert f"to {highest:.1f}" in text.partition("lowest and highest of all rooms")[0]
+    assert "Air temperature of cavities" not in run_page(run, Notes())
 
 
 def test_names_on_the_page_of_a_run_stay_text() -> None:

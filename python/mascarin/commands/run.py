@@ -230,6 +230,7 @@ def _print_lines(warnings: Sequence[str]) -> None:
 
 def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
     from mascarin.building import check
+    from mascarin.building.rooms import rooms
     from mascarin.pages.run.page import Notes, write
 
     start = "warning: "
@@ -238,6 +239,7 @@ def _write_report(file: Path, simulation: Simulation, results: Results, inputs: 
         outdoors=simulation.weather("air_temperature"),
         warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
         inputs=[(name, str(path)) for name, path in inputs.items()],
+        rooms=rooms(simulation.building),
     )
     write(file, results, notes)
     print(f"wrote {file}", file=sys.stderr)

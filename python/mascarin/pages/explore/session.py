@@ -15,6 +15,7 @@ from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin.building import load
 from mascarin.building.files.yaml_text import text_of
+from mascarin.building.rooms import rooms
 from mascarin.errors import InputError
 from mascarin.figures import text
 from mascarin.pages.explore import choice
@@ -212,8 +213,9 @@ class Session:
         return max(1, -(-len(self.simulation.index) // _MAX_POINTS))
 
     def _comfort(self, results: Results, band: Band) -> list[dict[str, Any]]:
+        # A cavity such as a roof gap has no comfort.
         zones = [
-            name for name in self.simulation.building.zones if f"{name}.operative_temperature" in results
+            name for name in rooms(self.simulation.building) if f"{name}.operative_temperature" in results
         ]
         rows = []
         for zone in zones:

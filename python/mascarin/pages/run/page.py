@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.building.outputs.output import Output
     from mascarin.simulation.results import Results
+
+    _Numbered: TypeAlias = tuple[int, Output]
 
 #: Kinds of outputs that are shown without being asked for, in their order.
 _FIGURES: Final = (
@@ -34,6 +37,8 @@ _FIGURES: Final = (
 )
 #: Curves in one figure, and intervals of a curve: more of them are averaged.
 _CURVES, _POINTS = 8, 700
+#: Kinds that every zone has, of which rooms are shown apart from cavities.
+_OF_ZONES: Final = ("air_temperature", "operative_temperature", "relative_humidity")
 _KINDS_OF_LOADS: Final = ("heating_load", "cooling_load")
 _FLOWS: Final = {
     "solar": "Solar radiation on surfaces",
@@ -63,11 +68,18 @@ class Notes(NamedTuple):
         Warnings about the building.
     inputs : sequence of (str, str)
         Files and options, by name.
+    rooms : sequence of str
+        Zones that are no cavities; empty: all.
     """
 
     outdoors: Array | None = None
     warnings: Sequence[str] = ()
     inputs: Sequence[tuple[str, str]] = ()
+    rooms: Sequence[str] = ()
+
+    def in_room(self, output: str) -> bool:
+        """Whether an output is that of a room."""
+        return not self.rooms or output.partition(".")[0] in self.rooms
 
 
 def needed(building: Building) -> list[str]:
@@ -140,7 +152,7 @@ def render(results: Results, notes: Notes) -> str:
             title=provenance.building,
             version=provenance.version,
             sections=sections,
-            facts=_facts(results),
+            facts=_facts(results, notes),
             period=text.span_of(results.index[0], results.index[-1]),
             climate=_climate(provenance.climate),
         )
@@ -151,13 +163,17 @@ def _climate(climate: Mapping[str, Any]) -> str:
     return Path(str(climate.get("file") or climate.get("source") or "")).name
 
 
-def _facts(results: Results) -> list[dict[str, str]]:
+def _facts(results: Results, notes: Notes) -> list[dict[str, str]]:
     facts = []
-    air = [k for k, output in enumerate(results.outputs) if output.kind == "air_temperature"]
+    air = [
+        k
+        for k, output in enumerate(results.outputs)
+        if output.kind == "air_temperature" and notes.in_room(output.name)
+    ]
     if air:
         low, high = (float(f(results.records[:, air])) for f in (np.min, np.max))
         span = f"{text.fixed(low, 1)} to {text.fixed(high, 1)}\u00a0°C"
-        facts.append(("Air temperature", span, "lowest and highest of all zones", ""))
+        facts.append(("Air temperature", span, "lowest and highest of all rooms", ""))
     for kind, title in (("heating", "Heating"), ("cooling", "Cooling")):
         if any(output.kind == f"{kind}_load" for output in results.outputs):
             heat = abs(results.energy.into[kind]) / 3.6e6
@@ -175,20 +191,31 @@ def _figures(results: Results, notes: Notes) -> list[dict[str, Any]]:
     figures = []
     requested_kinds = [o.kind for o in results.outputs if o.kind not in _FIGURES and not o.usual]
     for kind in dict.fromkeys((*_FIGURES, *requested_kinds)):  # those that were asked for follow
-        curves = [
-            (output.name.rpartition(".")[0], results.records[:, k], output.mean)
-            for k, output in enumerate(results.outputs)
-            if output.kind == kind
-        ]
-        if not curves or (kind in _KINDS_OF_LOADS and not any(values.any() for _, values, _ in curves)):
-            continue
-        title, unit = KINDS[kind].label, KINDS[kind].unit
-        left_out = len(curves) - _CURVES
-        shown = curves[:_CURVES]
-        if kind == "air_temperature" and notes.outdoors is not None:
-            shown = [*shown, ("outdoors", notes.outdoors, False)]
-        figures.append(_figure(title, unit, shown, results.index, max(left_out, 0)))
+        outputs = [(k, output) for k, output in enumerate(results.outputs) if output.kind == kind]
+        of_rooms = [(k, output) for k, output in outputs if notes.in_room(output.name)]
+        for title, part in _apart(kind, outputs, of_rooms):
+            curves = [
+                (output.name.rpartition(".")[0], results.records[:, k], output.mean) for k, output in part
+            ]
+            if not curves or (kind in _KINDS_OF_LOADS and not any(values.any() for _, values, _ in curves)):
+                continue
+            left_out = len(curves) - _CURVES
+            shown = curves[:_CURVES]
+            if kind == "air_temperature" and notes.outdoors is not None:
+                shown = [*shown, ("outdoors", notes.outdoors, False)]
+            figures.append(_figure(title, KINDS[kind].unit, shown, results.index, max(left_out, 0)))
     return figures
+
+
+def _apart(
+    kind: str, outputs: list[_Numbered], of_rooms: list[_Numbered]
+) -> list[tuple[str, list[_Numbered]]]:
+    """Air temperatures of rooms apart from those of cavities; all else together."""
+    title = KINDS[kind].label
+    if kind not in _OF_ZONES or len(of_rooms) in (0, len(outputs)):
+        return [(title, outputs)]
+    of_cavities = [entry for entry in outputs if entry not in of_rooms]
+    return [(title, of_rooms), (f"{title} of cavities", of_cavities)]
 
 
 def _figure(
@@ -282,7 +309,7 @@ def _loads(results: Results) -> list[dict[str, str]]:
 def _energy(results: Results) -> dict[str, Any]:
     into = {flow_words(flow): value / 1e6 for flow, value in results.energy.into.items() if value}
     heats = [*into.items(), ("Stored in walls and air", results.energy.stored / 1e6)]
-    rows = [(label, text.significant(heat, 4), text.significant(heat / 3.6, 4)) for label, heat in heats]
+    rows = [(label, text.significant(heat / 3.6, 4)) for label, heat in heats]
     return {
         "drawing": ledger_bars({"terms": [{"label": label, "value": heat} for label, heat in heats]}),
         "rows": rows,
