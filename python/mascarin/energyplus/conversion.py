@@ -14,17 +14,19 @@ from mascarin.energyplus.envelope.idf_surfaces import read_openings, read_surfac
 from mascarin.energyplus.envelope.shades import describe_shades
 from mascarin.energyplus.envelope.surfaces import describe_surfaces
 from mascarin.energyplus.envelope.windows import describe_openings
+from mascarin.energyplus.ledger import note_unread
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.findings import Finding
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import read
-from mascarin.energyplus.model.schedules import calendar_year, day_of
+from mascarin.energyplus.model.schedules import calendar_year, day_of, steps_per_hour
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
 from mascarin.energyplus.zones.conditioning import describe_conditioning, usual_temperatures
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
+from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
 
@@ -105,14 +107,17 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     surfaces = describe_surfaces(context, all_surfaces, coefficients)
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
-    describe_gains(context, zones, usual_temperatures(context, zones))
+    air = usual_temperatures(context, zones)
+    describe_gains(context, zones, air)
+    describe_water(context, zones, air)
     describe_air(context, zones)
     describe_conditioning(context, zones)
     describe_enclosures(context, _built(context), zones)
     version = _version(context)
-    note_unsupported(context)
-    building = _built(context)
     start, end = _period(context)
+    note_unsupported(context)
+    note_unread(context)
+    building = _built(context)
     return Conversion(
         file=Path(file),
         version=version,
@@ -122,19 +127,13 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
         names=context.names.original,
         start=start,
         end=end,
-        steps_per_hour=_steps_per_hour(context),
+        steps_per_hour=steps_per_hour(context),
     )
 
 
 @reads("Version")
 def _version(context: Context) -> str:
     return ".".join(str(part) for part in context.model.version[:2])
-
-
-@reads("Timestep")
-def _steps_per_hour(context: Context) -> int:
-    step = context.model.one("Timestep")
-    return int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6)
 
 
 @reads("Building")

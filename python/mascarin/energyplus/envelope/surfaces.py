@@ -185,7 +185,9 @@ def _outdoors(context: Context, surface: IdfSurface, coefficients: ConvectionCoe
         side_section["absorptance"] = side["absorptance"]
     if coefficient.combined:
         side_section["longwave"] = "none"
-    hidden = {key: False for key, on in (("sun", surface.sun), ("wind", surface.wind)) if not on}
+    # EnergyPlus has no wind at and below the ground.
+    windy = surface.wind and float(surface.points[:, 2].mean()) > 0.0
+    hidden = {key: False for key, on in (("sun", surface.sun), ("wind", windy)) if not on}
     if hidden:
         side_section["exposure"] = hidden
     return side_section
@@ -206,11 +208,7 @@ def _between_zones(
             "Correct it",
         )
     if other.beyond.casefold() != surface.item.name.casefold():
-        raise surface.item.error(
-            f"'{other.item.name}' on its other side, which names '{other.beyond or other.boundary}'",
-            "two surfaces that name each other",
-            "Correct one of them",
-        )
+        return _one_sided(context, surface, other, coefficients)
     areas = g.area_of(surface.points), g.area_of(other.points)
     if abs(areas[0] - areas[1]) > 0.02 * max(areas):
         context.findings.approximated(
@@ -222,6 +220,20 @@ def _between_zones(
     if other.zone is surface.zone:
         context.findings.approximated(surface.item, "both sides in one zone", "an internal mass of the zone")
     return outer
+
+
+def _one_sided(
+    context: Context, surface: IdfSurface, other: IdfSurface, coefficients: ConvectionCoefficients
+) -> Section:
+    """A surface whose other side is a surface that names another one."""
+    context.findings.approximated(
+        surface.item,
+        f"'{other.item.name}' on its other side, which names '{other.beyond or other.boundary}'",
+        f"the other side is in zone '{other.zone.name}': its heat comes from there; in EnergyPlus it has "
+        "the temperature of that surface, and its heat comes from nowhere",
+    )
+    outer = _toward_zone(context, other, coefficients, construction_of(context, surface.item), outer=True)
+    return outer | {"convection": coefficients.inside(other.item, other.zone, g.tilt_of(other.points))}
 
 
 @reads("SurfaceProperty:OtherSideCoefficients")
@@ -330,7 +342,7 @@ def _finite_differences(context: Context) -> dict[str, bool]:
         named[item.word("construction_name")] = item, item.word("algorithm")
     for item in context.model.of("SurfaceProperty:HeatTransferAlgorithm:SurfaceList"):
         words: list[Any] = [value for row in item.rows("surface") for value in row.values()]
-        words += [value for key, value in item.fields.items() if key.startswith("surface_name_")]
+        words += item.fields.starting("surface_name_")
         named |= {str(name).strip().casefold(): (item, item.word("algorithm")) for name in words}
     for item in context.model.of("SurfaceProperty:HeatTransferAlgorithm:MultipleSurface"):
         context.findings.left_out(

@@ -10,6 +10,7 @@ from mascarin.building.parts.description import Description
 from mascarin.energyplus.model.findings import Findings
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject
+from mascarin.energyplus.model.year import Year
 
 Section = dict[str, Any]
 #: Sections of a description, in its order: that of the written file.
@@ -32,12 +33,24 @@ class Names:
     original: dict[str, dict[str, str]] = field(default_factory=dict)
     taken: set[tuple[str, str]] = field(default_factory=set)
 
-    def of(self, section: str, name: str) -> str:
-        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case."""
-        key = (section, name.strip().casefold())
+    def of(self, section: str, name: str, kind: str = "") -> str:
+        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case.
+
+        Parameters
+        ----------
+        section : str
+            Section of the description.
+        name : str
+            Name in the file.
+        kind : str
+            Class of the object, where objects of several classes may have one name.
+        """
+        key = (section, f"{kind}|{name.strip()}".casefold())
         if key not in self.by_original:
             self.by_original[key] = self.new(section, name)
-            self.original.setdefault(section, {})[name.strip()] = self.by_original[key]
+            held = self.original.setdefault(section, {})
+            original = f"{kind} {name.strip()}" if kind and name.strip() in held else name.strip()
+            held[original] = self.by_original[key]
         return self.by_original[key]
 
     def new(self, section: str, name: str) -> str:
@@ -45,7 +58,9 @@ class Names:
         # Results of zones, surfaces, windows and sensors are named after them: one set of names.
         room = "parts" if section in ("zones", "surfaces", "windows") else section
         plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
-        plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
+        if not plain.isidentifier():
+            # Gains and the like are held by zone: the first word says what they are.
+            plain = f"{section.split()[0].rstrip('s')}_{plain}"
         candidate, count = plain, 1
         while (room, candidate.casefold()) in self.taken:
             count += 1
@@ -68,12 +83,21 @@ class Context:
         Names of the parts.
     sections : dict of str to dict
         The description, as far as it is made.
+    years : dict of str to Year
+        Schedules of the file that were read, by name in small letters.
+    shapes : dict of str to str
+        Schedules of the description by what they say.
+    resistances : dict of str to float
+        Whole resistance of the materials without mass, which may be several layers. [m2 K/W]
     """
 
     model: IdfModel
     findings: Findings = field(default_factory=Findings)
     names: Names = field(default_factory=Names)
     sections: dict[str, Section] = field(default_factory=dict)
+    years: dict[str, Year] = field(default_factory=dict)
+    shapes: dict[str, str] = field(default_factory=dict)
+    resistances: dict[str, float] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
         """A section of the description.

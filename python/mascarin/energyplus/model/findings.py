@@ -52,7 +52,7 @@ class Findings:
     """Findings in the order in which they were made, each once."""
 
     unique: dict[Finding, None] = field(default_factory=dict)
-    _objects: set[tuple[str, str, int | None]] = field(default_factory=set)
+    _objects: set[tuple[str, str, int | None, str]] = field(default_factory=set)
 
     def left_out(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is not carried over and changes the results."""
@@ -73,11 +73,12 @@ class Findings:
 
     def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
         self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
-        self._objects.add((item.kind, item.name, item.line))
+        for known in ("", level):
+            self._objects.add((item.kind, item.name, item.line, known))
 
-    def about(self, item: IdfObject) -> bool:
-        """Whether something is noted about an object."""
-        return (item.kind, item.name, item.line) in self._objects
+    def about(self, item: IdfObject, level: Level | Literal[""] = "") -> bool:
+        """Whether something is noted about an object; of one level, if it is given."""
+        return (item.kind, item.name, item.line, level) in self._objects
 
     def of(self, level: Level) -> list[Finding]:
         """Findings of one level, by line."""

@@ -20,10 +20,47 @@ from mascarin.errors import InputError, did_you_mean
 
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
 _COMMENT: Final = re.compile(rb"![^\n]*")
+#: Lines of the macro preprocessor, and its expressions in fields.
+_MACRO: Final = re.compile(rb"^[ \t]*##[^\n]*|#(?:eval)?[ \t]*\[[^\n]*", re.MULTILINE | re.IGNORECASE)
 #: White space, and what old editors write at the end of a file.
 _ENDING: Final = b" \t\r\n\x1a\x00\xef\xbb\xbf"
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
 _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
+
+
+class Fields(dict[str, Any]):
+    """Fields of an object, which remember which of them were looked at.
+
+    Attributes
+    ----------
+    seen : set of str
+        Names of the fields that were read.
+    """
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        super().__init__(values)
+        self.seen: set[str] = set()
+
+    def __getitem__(self, key: str) -> Any:
+        self.seen.add(key)
+        return super().__getitem__(key)
+
+    def __contains__(self, key: object) -> bool:
+        self.seen.add(str(key))
+        return super().__contains__(key)
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """The value of a field, which counts as read."""
+        self.seen.add(key)
+        return super().get(key, default)
+
+    def starting(self, prefix: str) -> list[Any]:
+        """Values of the fields whose names start so; they count as read."""
+        return [self[key] for key in list(self) if key.startswith(prefix)]
+
+    def unseen(self) -> dict[str, Any]:
+        """Fields that nothing has read."""
+        return {key: value for key, value in super().items() if key not in self.seen}
 
 
 @dataclass(frozen=True)
@@ -36,7 +73,7 @@ class IdfObject:
         Class of the object, such as ``Zone``.
     name : str
         Its name; empty for a class without names.
-    fields : mapping of str to object
+    fields : Fields
         Values by the names of epJSON; blank fields are left out.
     defaults : mapping of str to object
         Default of each field in this version of EnergyPlus.
@@ -48,7 +85,7 @@ class IdfObject:
 
     kind: str
     name: str
-    fields: Mapping[str, Any]
+    fields: Fields
     defaults: Mapping[str, Any] = field(repr=False)
     line: int | None
     file: str
@@ -65,11 +102,13 @@ class IdfObject:
 
     def get(self, *keys: str) -> Any:
         """First given value of some fields, else their default; None without either."""
-        for values in (self.fields, self.defaults):
-            for key in keys:
-                if key in values:
-                    return values[key]
-        return None
+        stated: Any = None
+        for key in reversed(keys):
+            value = self.fields.get(key)
+            stated = stated if value is None else value
+        if stated is not None:
+            return stated
+        return next((self.defaults[key] for key in keys if key in self.defaults), None)
 
     def text(self, *keys: str) -> str:
         """The same as text without spaces at its ends; empty where nothing is given."""
@@ -263,7 +302,18 @@ def _idfkit() -> Any:
 
 def _idf(kit: Any, path: Path) -> Any:
     data = path.read_bytes()
+    if b"\0" in data:
+        line = data.count(b"\n", 0, data.index(b"\0")) + 1
+        raise InputError(f"{path}:{line}: found bytes that are no text; expected {_EXPECTED}. Check the file")
     plain = _COMMENT.sub(b"", data)
+    macro = _MACRO.search(plain)
+    if macro is not None:
+        line = plain.count(b"\n", 0, macro.start()) + 1
+        text = macro[0].decode("latin-1").strip()[:60]
+        raise InputError(
+            f"{path}:{line}: found the macro '{text}'; expected objects alone. Write the file out by the "
+            "preprocessor EPMacro, which comes with EnergyPlus, and convert out.idf"
+        )
     last = plain.rfind(b";") + 1
     incomplete = plain[last:].strip(_ENDING)
     if incomplete:
@@ -338,7 +388,7 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
             defaults[kind] = _defaults(schema, kind)
         plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
         line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
-        item = IdfObject(kind, str(entry.name or ""), plain, defaults[kind], line, path.name)
+        item = IdfObject(kind, str(entry.name or ""), Fields(plain), defaults[kind], line, path.name)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
             raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")

@@ -19,6 +19,8 @@ from mascarin.errors import InputError
 
 #: Surfaces whose directions differ by less do not see each other [deg].
 _SAME_DIRECTION: Final = 10.0
+#: Area of a surface over that of all which it sees, above which it sees itself [-].
+_LARGE: Final = 0.99
 _NO_CORNERS: Final = "surfaces without corners"
 
 
@@ -93,7 +95,12 @@ def by_areas(zone_surfaces: Sequence[ZoneSurface]) -> dict[str, dict[str, float]
         View factors by the names of the surfaces. [-]
     """
     areas = np.array([float(item.area) for item in zone_surfaces])
-    exchange = np.outer(areas, areas) * _visible(zone_surfaces)
+    visible = _visible(zone_surfaces)
+    largest = int(np.argmax(areas))
+    # What faces less area than it has must see itself too; EnergyPlus does the same.
+    if areas[largest] > _LARGE * float(areas @ visible[largest]):
+        visible[largest, largest] = 1.0
+    exchange = np.outer(areas, areas) * visible
     factors = np.ones(len(zone_surfaces))
     for _ in range(2000):
         rows = exchange @ factors

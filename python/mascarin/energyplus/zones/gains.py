@@ -94,19 +94,28 @@ def _zones(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zo
 def people_in(context: Context, zone: Zone, zones: dict[str, Zone]) -> float:
     """Number of people in a zone at a schedule of 1."""
     return sum(
-        _number_of_people(item, zone)
+        _number_of_people(context, item, zone)
         for item in context.model.of("People")
         if zone in _zones(context, item, zones)
     )
 
 
-def _number_of_people(item: IdfObject, zone: Zone) -> float:
+def _number_of_people(context: Context, item: IdfObject, zone: Zone) -> float:
     method = item.word("number_of_people_calculation_method")
     if method.startswith("people/"):
-        return item.needed("people_per_floor_area", "people_per_zone_floor_area") * zone.floor
+        return zone.floor * _level(context, item, "people_per_floor_area", "people_per_zone_floor_area")
     if method.startswith("area/"):
-        return zone.floor / max(item.needed("floor_area_per_person", "zone_floor_area_per_person"), 1e-9)
-    return item.needed("number_of_people")
+        area = _level(context, item, "floor_area_per_person", "zone_floor_area_per_person")
+        return zone.floor / area if area > 0.0 else 0.0
+    return _level(context, item, "number_of_people")
+
+
+def _level(context: Context, item: IdfObject, *keys: str) -> float:
+    """Size of a gain; 0 where the file leaves it blank, as in EnergyPlus."""
+    level = item.number(*keys)
+    if level is None:
+        context.findings.approximated(item, f"no value of {keys[0]}", "0 is used, as in EnergyPlus")
+    return level or 0.0
 
 
 def sensible(activity: float, air: float) -> float:
@@ -124,7 +133,7 @@ def sensible(activity: float, air: float) -> float:
 
 
 def _people(context: Context, item: IdfObject, zone: Zone, air: float) -> Heat:
-    count = _number_of_people(item, zone)
+    count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
@@ -145,10 +154,11 @@ def _design_level(context: Context, item: IdfObject, zone: Zone, zones: dict[str
     method = item.word("design_level_calculation_method")
     if method in ("watts/area", "power/area"):
         keys = ("watts_per_floor_area", "watts_per_zone_floor_area", "power_per_floor_area")
-        return item.needed(*keys, "power_per_zone_floor_area") * zone.floor
+        return _level(context, item, *keys, "power_per_zone_floor_area") * zone.floor
     if method in ("watts/person", "power/person"):
-        return item.needed("watts_per_person", "power_per_person") * people_in(context, zone, zones)
-    return item.needed("design_level", "lighting_level")
+        level = _level(context, item, "watts_per_person", "power_per_person")
+        return level * people_in(context, zone, zones)
+    return _level(context, item, "design_level", "lighting_level")
 
 
 def _lights(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
@@ -190,7 +200,7 @@ def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
         power = most * _peak(heat.power)
         if power == 0.0:
             continue
-        name = context.names.of(f"gains of {zone.name}", heat.name)
+        name = context.names.of(f"gains of {zone.name}", heat.name, heat.item.kind)
         gains[name] = {"power": round(power, 6)}
         if heat.radiative > 0.0:
             gains[name]["radiative"] = round(heat.radiative, 6)
