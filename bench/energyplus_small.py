@@ -75,13 +75,13 @@ def _stored() -> dict[str, npt.NDArray[np.int32]]:
 
 
 def reference(name: str) -> dict[str, Zone]:
-    """Results of EnergyPlus by zone, in capital letters; empty where EnergyPlus refuses the model."""
+    """Results of EnergyPlus by zone, in small letters; empty where EnergyPlus refuses the model."""
     zones = {}
     for key, values in _stored().items():
         file, zone, quantity = key.split("|")
         if file == name and quantity == "air":
             loads = {which: _stored().get(f"{file}|{zone}|{which}") for which in LOADS}
-            zones[zone] = Zone(
+            zones[zone.casefold()] = Zone(
                 np.cumsum(values.astype(float)) * STEP,
                 {which: load / 100.0 for which, load in loads.items() if load is not None},
             )
@@ -125,7 +125,7 @@ def packed(name: str, table: pd.DataFrame) -> dict[str, npt.NDArray[np.int32]]:
 
 
 def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict[str, Zone]:
-    """Results of Mascarin by zone of the model, in capital letters; a year, unless days are given."""
+    """Results of Mascarin by zone of the model, in small letters; a year, unless days are given."""
     building = conversion.building
     outputs = [f"{zone}.air_temperature" for zone in building.zones]
     for zone, described in building.zones.items():
@@ -148,7 +148,7 @@ def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict
         zip(records.columns, records.to_numpy().reshape(hours, -1, len(outputs)).mean(axis=1).T, strict=True)
     )
     return {
-        original.upper(): Zone(
+        original.casefold(): Zone(
             hourly[f"{zone}.air_temperature"],
             {
                 which: by_month(hourly[f"{zone}.{which}_load"] / 1000.0)
@@ -188,7 +188,7 @@ def rows(name: str) -> list[str]:
                 percent = f" ({100.0 * (pair[0] / pair[1] - 1.0):+.1f} %)" if pair[1] else ""
                 cells[k] = f"{pair[0]:.0f}, {pair[1]:.0f}{percent}"
         remark = "; ".join(listed) if theirs else "EnergyPlus refuses it"
-        text.append(f"| {name} | {zone.lower()} | {' | '.join(cells)} | {remark} |")
+        text.append(f"| {name} | {zone} | {' | '.join(cells)} | {remark} |")
     return text
 
 

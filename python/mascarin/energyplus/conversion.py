@@ -8,6 +8,8 @@ from datetime import date, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mascarin.building import Building
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.idf_surfaces import read_openings, read_surfaces
@@ -15,11 +17,12 @@ from mascarin.energyplus.envelope.shades import describe_shades
 from mascarin.energyplus.envelope.surfaces import describe_surfaces
 from mascarin.energyplus.envelope.windows import describe_openings
 from mascarin.energyplus.ledger import note_unread
+from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.dates import calendar_year, day_of, steps_per_hour
 from mascarin.energyplus.model.findings import Finding
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import read
-from mascarin.energyplus.model.schedules import calendar_year, day_of, steps_per_hour
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
@@ -147,16 +150,51 @@ def _ordered(context: Context) -> Section:
 def _built(context: Context) -> Building:
     """The building as far as it is described.
 
+    Parts whose corners a description refuses keep their areas and directions.
+
     Raises
     ------
     InputError
         What the file describes is refused; the text names its objects.
     """
-    try:
-        return Building.from_dict(_ordered(context))
-    except InputError as error:
-        text = str(error)
-        raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
+    while True:
+        try:
+            return Building.from_dict(_ordered(context))
+        except InputError as error:
+            text = str(error)
+            if not _flattened(context, text):
+                raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
+
+
+def _flattened(context: Context, text: str) -> bool:
+    """Whether corners that an error names were given up, in favour of areas."""
+    surfaces, windows = context.section("surfaces"), context.section("windows")
+    refused = {match[1] for match in re.finditer(r"windows\.(\w+)\.vertices\n", text)}
+    for match in re.finditer(r"surfaces '([^']+)' and '([^']+)' cover the same area", text):
+        twins = [name for name in match.groups() if "vertices" in surfaces.get(name, {})]
+        for name in twins[-1:]:
+            points = np.array(surfaces[name].pop("vertices"))
+            surfaces[name] |= g.flat(points)
+            refused |= {window for window, held in windows.items() if held["surface"] == name}
+            _note_flat(context, "surfaces", name, "it covers another surface")
+    done = bool(twins) if (twins := re.findall("cover the same area", text)) else False
+    for name in refused:
+        points = windows.get(name, {}).pop("vertices", None)
+        if points is not None:
+            windows[name].setdefault("area", round(g.area_of(np.array(points)), 6))
+            _note_flat(context, "windows", name, "its corners do not fit its wall and what is in it")
+            done = True
+    return done
+
+
+def _note_flat(context: Context, section: str, name: str, what: str) -> None:
+    original = next(
+        (key for key, entered in context.names.original.get(section, {}).items() if entered == name), name
+    )
+    for item in context.model.items:
+        if item.name.casefold() == original.casefold() and item.kind.casefold() in context.model.read:
+            context.findings.approximated(item, what, "area and direction alone: nothing shades it")
+            return
 
 
 def _origins(context: Context, text: str) -> str:

@@ -161,9 +161,10 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
 }
 #: Settings of which there is one, and objects that are named by others: unused, they have no effect.
 _UNUSED: Final = (
-    "version", "timestep", "surfaceconvectionalgorithm:", "schedule:", "material", "construction", "runperiod",
-    "windowmaterial:", "windowproperty:frameanddivider", "windowgap", "thermostatsetpoint:", "zonelist",
+    "surfaceconvectionalgorithm:", "schedule:", "material", "construction", "runperiod", "windowmaterial:",
+    "windowproperty:frameanddivider", "windowgap", "thermostatsetpoint:", "zonelist",
     "space", "hvactemplate:thermostat", "externalinterface:", "surfaceproperty:othersidecoefficients",
+    "designspecification:", "site:watermains", "zonehvac:equipmentlist",
 )  # fmt: skip
 
 

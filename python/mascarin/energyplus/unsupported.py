@@ -88,7 +88,7 @@ _MISSING: Final = {
     "complexfenestration": "see the windows that use it",
     "swimmingpool": "no pool",
     "surfaceproperty:solarincidentinside": "the sun that enters falls where it would, not by this schedule",
-    "complexfenestrationproperty:solarabsorbed": "panes absorb the sun that falls on them, not by this schedule",
+    "complexfenestrationproperty:solarabsorbed": "panes absorb what falls on them, not by this schedule",
     "electricequipment:ite": "no heat of these computers",
     "geometrytransform": "the building has the shape of the file, not the new aspect ratio",
     "surfacecontrol:movableinsulation": "no movable insulation: more sun is absorbed, more heat is lost",
@@ -150,13 +150,9 @@ def _longest(kind: str, table: dict[str, str]) -> str:
     return max((start for start in table if kind.startswith(start)), key=len, default="")
 
 
-@reads("RunPeriodControl:SpecialDays", "Site:HeightVariation", "RunPeriod")
+@reads("Site:HeightVariation", "RunPeriod")
 def _beside(context: Context) -> None:
     """What is read, and acts on more than what is carried over."""
-    for item in context.model.of("RunPeriodControl:SpecialDays"):
-        word = item.word("special_day_type")
-        if word not in ("holiday", ""):
-            context.findings.approximated(item, f"special days of type {word}", "they are days as all others")
     heights = context.model.one("Site:HeightVariation")
     if heights is not None and heights.fields.get("air_temperature_gradient_coefficient"):
         context.findings.approximated(

@@ -222,6 +222,12 @@ def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpeni
         if base is None:
             context.model.require(item, "building_surface_name", *SURFACES)
             raise item.error("no surface", "a surface", "Correct building_surface_name")
+        if base.boundary == "adiabatic":
+            raise item.error(
+                f"building_surface_name: found '{base.item.name}', which is adiabatic",
+                "a surface that heat passes, as in EnergyPlus",
+                "Remove the opening, or give the surface another boundary condition",
+            )
         all_openings.append(_opening(context, rules, item, base))
     return all_openings
 

@@ -100,13 +100,8 @@ def _shape(context: Context, surface: IdfSurface) -> tuple[Section, bool]:
         context.findings.approximated(
             surface.item, str(error).split("; expected")[0], "area and direction alone: it shades nothing"
         )
-        return _flat(surface.points), False
+        return g.flat(surface.points), False
     return {"vertices": g.rounded(points)}, True
-
-
-def _flat(points: g.Array) -> Section:
-    geometry = {"area": g.area_of(points), "tilt": g.tilt_of(points), "azimuth": g.azimuth_of(points)}
-    return {key: round(value, 5) for key, value in geometry.items()}
 
 
 def _toward_zone(
@@ -261,7 +256,7 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     if weather_coefficients or (air and (abs(air - 1.0) > 1e-9 or weight or soil)):
         what = ", ".join(weather_coefficients) or "outdoor air mixed with other temperatures"
         context.findings.left_out(
-            surface.item, f"{item.label} with {what}", "no heat flows through this surface"
+            item, f"{what}, at '{surface.item.name}'", "no heat flows through this surface"
         )
         return {"adiabatic": True}, False
     if air:

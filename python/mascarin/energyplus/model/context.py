@@ -120,7 +120,6 @@ class Context:
         """Zones of the file."""
         return self.model.of("Zone")
 
-    @reads("Zone", "ZoneList", "Space", "SpaceList")
     def zones_of(self, user: IdfObject, *keys: str) -> list[IdfObject]:
         """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
 
@@ -129,21 +128,36 @@ class Context:
         InputError
             There is no such zone.
         """
+        return [zone for zone, _ in self.places_of(user, *keys)]
+
+    @reads("Zone", "ZoneList", "Space", "SpaceList")
+    def places_of(self, user: IdfObject, *keys: str) -> list[tuple[IdfObject, IdfObject | None]]:
+        """Zones that a field names, each with the space in it where one is named.
+
+        Raises
+        ------
+        InputError
+            There is no such zone.
+        """
         model, name_of_target = self.model, user.text(*keys)
         if (zone := model.named(name_of_target, "Zone")) is not None:
-            return [zone]
+            return [(zone, None)]
         if (zones := model.named(name_of_target, "ZoneList")) is not None:
-            return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
+            return [
+                (model.require(zones, "zone_name", "Zone", name=name), None)
+                for name in listed(zones, "zones")
+            ]
         if (space := model.named(name_of_target, "Space")) is not None:
-            return [model.require(space, "zone_name", "Zone")]
+            return [(model.require(space, "zone_name", "Zone"), space)]
         if (spaces := model.named(name_of_target, "SpaceList")) is not None:
             space_objects = [
                 model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")
             ]
-            return [model.require(space, "zone_name", "Zone") for space in space_objects]
+            return [(model.require(space, "zone_name", "Zone"), space) for space in space_objects]
         # Named so that the error lists the zones.
         key = next((key for key in keys if user.text(key)), keys[0])
-        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)]
+        target = model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)
+        return [(target, None)]
 
 
 def listed(item: IdfObject, wrapper: str) -> list[str]:

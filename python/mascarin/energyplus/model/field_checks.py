@@ -91,7 +91,7 @@ def _is_finite(value: float) -> bool:
 
 def _outside(value: float, definition: Mapping[str, Any]) -> str | None:
     """The limit of the schema that a number misses."""
-    for key, strict, sign, at, beyond in (
+    for key, strict, sign, bound, beyond in (
         ("minimum", "exclusiveMinimum", 1.0, "at least", "a number above"),
         ("maximum", "exclusiveMaximum", -1.0, "at most", "a number below"),
     ):
@@ -106,7 +106,7 @@ def _outside(value: float, definition: Mapping[str, Any]) -> str | None:
                 return f"{beyond} {limit:g}"
             limit = definition.get(key, limit)
         if sign * (value - limit) < 0.0:
-            return f"{at} {limit:g}"
+            return f"{bound} {limit:g}"
     return None
 
 

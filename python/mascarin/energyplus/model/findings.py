@@ -73,8 +73,7 @@ class Findings:
 
     def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
         self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
-        for known in ("", level):
-            self._objects.add((item.kind, item.name, item.line, known))
+        self._objects |= {(item.kind, item.name, item.line, any_level) for any_level in ("", level)}
 
     def about(self, item: IdfObject, level: Level | Literal[""] = "") -> bool:
         """Whether something is noted about an object; of one level, if it is given."""

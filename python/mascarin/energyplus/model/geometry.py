@@ -189,6 +189,12 @@ def azimuth_of(points: Array) -> float:
     return math.degrees(math.atan2(float(n[0]), float(n[1]))) % 360.0
 
 
+def flat(points: Array) -> dict[str, float]:
+    """Area and direction of a polygon, as a description has them without corners. [m2, deg]"""
+    geometry = {"area": area_of(points), "tilt": tilt_of(points), "azimuth": azimuth_of(points)}
+    return {key: round(value, 5) for key, value in geometry.items()}
+
+
 def plane_through(points: Array) -> Plane:
     """Directions in the plane of a polygon."""
     return plane_of(azimuth_of(points), tilt_of(points))

@@ -195,6 +195,14 @@ class IdfModel:
         self.looked_up |= {kind.casefold() for kind in kinds}
         return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
 
+    def of_class(self, kind: str) -> list[IdfObject]:
+        """Objects of a class, which does not count as looked up."""
+        return self._by_kind.get(kind.casefold(), [])
+
+    def has(self, kind: str) -> bool:
+        """Whether the file has objects of a class, which do not count as looked up."""
+        return kind.casefold() in self._by_kind
+
     def one(self, kind: str) -> IdfObject | None:
         """The object of a class of which there is one; None without it."""
         objects = self.of(kind)
@@ -391,7 +399,12 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
         item = IdfObject(kind, str(entry.name or ""), Fields(plain), defaults[kind], line, path.name)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
-            raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")
+            advice = (
+                "ParametricPreprocessor of EnergyPlus writes a file for each of its runs: convert one"
+                if re.search(r"found '\s*=", fault)
+                else "EnergyPlus refuses it too: correct the field"
+            )
+            raise InputError(f"{item.where}: {fault}. {advice}")
         items.append(item)
     return items
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import calendar
 import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,11 +15,22 @@ from typing import Final
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.dates import holidays, last_day, special_days, steps_per_hour, summer_time
 from mascarin.energyplus.model.field_checks import finite
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
-from mascarin.energyplus.model.year import DAYS, Day, Week, Year, ahead, combined, constant, plain, year_of
-from mascarin.tables.timezones import YEARS
+from mascarin.energyplus.model.year import (
+    DAYS,
+    Day,
+    Week,
+    Year,
+    ahead,
+    combined,
+    constant,
+    day_before,
+    plain,
+    year_of,
+)
 
 SCHEDULES: Final = (
     "Schedule:Compact",
@@ -29,19 +39,21 @@ SCHEDULES: Final = (
     "Schedule:File",
     "Schedule:File:Shading",
     "ExternalInterface:Schedule",
+    "ExternalInterface:FunctionalMockupUnitImport:To:Schedule",
+    "ExternalInterface:FunctionalMockupUnitExport:To:Schedule",
 )
 _WEEKS: Final = ("Schedule:Week:Daily", "Schedule:Week:Compact")
 _DAYS: Final = ("Schedule:Day:Hourly", "Schedule:Day:Interval", "Schedule:Day:List")
-_MONTHS: Final = {name.casefold(): k for k, name in enumerate(calendar.month_name) if name} | {
-    name.casefold(): k for k, name in enumerate(calendar.month_abbr) if name
-}
+#: Kinds of days that occur only where special days name them, and all kinds of a parsed week.
+_SPECIAL: Final = ("summerdesignday", "winterdesignday", "customday1", "customday2")
+_KINDS: Final = (*DAYS, *_SPECIAL)
 #: Words of kinds of days, each also as a part of a longer word, as EnergyPlus finds them.
 _GROUPS: Final = {
-    "alldays": DAYS,
+    "alldays": _KINDS,
     "weekday": ("monday", "tuesday", "wednesday", "thursday", "friday"),
     "weekend": ("saturday", "sunday"),
     **{day: (day,) for day in DAYS},
-    **dict.fromkeys(("summer", "winter", "customday1", "customday2"), ()),
+    **{day.removesuffix("designday"): (day,) for day in _SPECIAL},
 }
 #: Words of EnergyPlus for the values of steps between the times of a schedule, the older ones included.
 _BETWEEN: Final = {"no": "no", "": "no", "yes": "average", "average": "average", "linear": "linear"}
@@ -64,22 +76,13 @@ def year(context: Context, user: IdfObject, *keys: str, default: float = 1.0) ->
     item = context.model.require(user, key, *SCHEDULES)
     held = context.years
     if item.name.casefold() not in held:
-        summer = _summer(context)
+        summer = summer_time(context)
         values = _year(context, item)
+        values = _with_special_days(context, values)
         held[item.name.casefold()] = replace(
             values if summer is None else ahead(values, *summer), name=item.name
         )
     return held[item.name.casefold()]
-
-
-@reads("RunPeriodControl:DaylightSavingTime")
-def _summer(context: Context) -> tuple[str, str] | None:
-    """First and last day of daylight saving time as ``MM-DD``; None without it."""
-    item = context.model.one("RunPeriodControl:DaylightSavingTime")
-    if item is None:
-        return None
-    days = [_date(item, item.text(key), calendar_year(context)) for key in ("start_date", "end_date")]
-    return f"{days[0]:%m-%d}", f"{days[1]:%m-%d}"
 
 
 def _year(context: Context, item: IdfObject) -> Year:
@@ -141,84 +144,25 @@ def _entered(context: Context, name: str, values: Year, kind: str) -> str:
     return context.shapes[key]
 
 
-# --- the year that is simulated -----------------------------------------------------------------------------
-
-
-@reads("RunPeriod")
-def calendar_year(context: Context) -> int:
-    """Year without a 29 February whose days of the week are those of the run period."""
-    item = context.model.one("RunPeriod")
-    if item is None:
-        return 2017
-    begin_year = item.number("begin_year")
-    if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
-        raise item.error(
-            f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
-        )
-    if begin_year is not None and not calendar.isleap(int(begin_year)):
-        return int(begin_year)
-    month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
-    names = [name.casefold() for name in calendar.day_name]
-    word = item.word("day_of_week_for_start_day")
-    weekday = names.index(word) if word in names else 6
-    if begin_year is not None and word not in names:
-        weekday = day_of(item, int(begin_year), month, day).weekday()
-    years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
-    return next(candidate for candidate in years if day_of(item, candidate, month, day).weekday() == weekday)
-
-
-def day_of(item: IdfObject, in_year: int, month: int, day: int) -> date:
-    """A day of a year; 29 February counts as the 28th.
-
-    Raises
-    ------
-    InputError
-        There is no such day.
-    """
-    try:
-        return date(in_year, month, 28 if (month, day) == (2, 29) else day)
-    except (ValueError, OverflowError):
-        raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
-
-
-@reads("RunPeriodControl:SpecialDays")
-def holidays(context: Context) -> list[str]:
-    """Holidays of the file, as ``MM-DD``, in order."""
-    dates: set[str] = set()
-    for item in context.model.of("RunPeriodControl:SpecialDays"):
-        if item.word("special_day_type") not in ("holiday", ""):
-            continue
-        first = _date(item, item.text("start_date"), calendar_year(context))
-        for k in range(int(item.number("duration") or 1)):
-            dates.add(f"{first + timedelta(days=k):%m-%d}")
-    return sorted(dates)
-
-
-def _date(item: IdfObject, text: str, in_year: int) -> date:
-    """A date such as 12/25, December 25, 25 Dec, 4th Thursday in November, Last Monday in May."""
-    words = re.findall(r"[a-z]+|\d+", text.casefold())
-    numbers = [int(word) if len(word) < 9 else 0 for word in words if word.isdigit()]  # no day is 0
-    months = [_MONTHS[word] for word in words if word in _MONTHS]
-    weekday = next((k for k, name in enumerate(calendar.day_name) if name.casefold() in words), None)
-    try:
-        if weekday is not None and months:
-            days = [
-                date(in_year, months[0], d)
-                for d in range(1, calendar.monthrange(in_year, months[0])[1] + 1)
-                if date(in_year, months[0], d).weekday() == weekday
-            ]
-            return days[-1] if "last" in words else days[numbers[0] - 1]
-        if months:
-            return date(in_year, months[0], numbers[0])
-        return date(in_year, numbers[0], numbers[1])
-    except (IndexError, ValueError):
-        raise item.error(f"found a date '{text}'", "a day such as 12/25", "Correct the date") from None
-
-
-def _end(item: IdfObject, text: str) -> str:
-    """A last day as ``MM-DD``; 29 February counts as the 28th."""
-    cleaned = re.sub(r"\b0?2/29\b", "2/28", text)
-    return f"{_date(item, cleaned, 2017):%m-%d}"
+def _with_special_days(context: Context, values: Year) -> Year:
+    """A year of weeks with all kinds of days as one of the usual kinds: special days are seasons."""
+    if len(values.seasons[0][1]) == len(DAYS):
+        return values
+    special = {
+        f"{first + timedelta(days=k):%m-%d}": _KINDS.index(kind)
+        for first, duration, kind in special_days(context)
+        if kind in _SPECIAL
+        for k in range(duration)
+    }
+    ends = {until for until, _ in values.seasons}
+    for day in special:
+        ends |= {day, day_before(day)}
+    seasons = []
+    for until in sorted(ends - {""}):
+        week = values.week_at(until)
+        kind = special.get(until)
+        seasons.append((until, week[: len(DAYS)] if kind is None else (week[kind],) * len(DAYS)))
+    return year_of(seasons)
 
 
 # --- classes of schedules -----------------------------------------------------------------------------------
@@ -252,7 +196,7 @@ def _throughs(
             if end:
                 yield end, [*days, (who, _closed(context, item, who, points, between))]
             text = tail.strip() or low.removeprefix("through").strip()
-            end, days, who, points = _end(item, text), [], "", []
+            end, days, who, points = last_day(item, text), [], "", []
         elif low.startswith("for"):
             if who:
                 days = [*days, (who, _closed(context, item, who, points, between))]
@@ -337,13 +281,6 @@ def _by_steps(context: Context, points: list[tuple[int, float]], between: str) -
     return tuple(day)
 
 
-@reads("Timestep")
-def steps_per_hour(context: Context) -> int:
-    """Number of time steps of EnergyPlus in an hour."""
-    step = context.model.one("Timestep")
-    return int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6)
-
-
 def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) -> Week:
     """A day of each kind; the first entry that names it counts."""
     day_of_kind: dict[str, Day] = {}
@@ -352,7 +289,7 @@ def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) ->
         for word in re.findall(r"[a-z0-9]+", who):
             groups = [group for group in _GROUPS if group in word]
             if "allotherdays" in word or "alldays" in word:
-                names += DAYS
+                names += _KINDS
             elif groups:
                 names += [name for group in groups for name in _GROUPS[group]]
             elif word not in ("day", "days", "designday", "design", "and"):
@@ -361,12 +298,13 @@ def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) ->
                 )
         for name in names:
             day_of_kind.setdefault(name, day)
-    missing = [name for name in DAYS if name not in day_of_kind]
+    used = {name for *_, name in special_days(context)}
+    missing = [name for name in _KINDS if name not in day_of_kind and (name in DAYS or name in used)]
     if missing:
         context.findings.approximated(
             item, f"no values for {', '.join(missing)}", "0 on these days, as in EnergyPlus"
         )
-    return tuple(day_of_kind.get(name, ((0, 0.0),)) for name in DAYS)
+    return tuple(day_of_kind.get(name, ((0, 0.0),)) for name in _KINDS)
 
 
 @reads(*_WEEKS)
@@ -384,7 +322,7 @@ def _weeks(context: Context, item: IdfObject) -> Year:
 @reads(*_DAYS)
 def _week_of(context: Context, item: IdfObject) -> Week:
     if item.kind == "Schedule:Week:Daily":
-        keys = [f"{name}_schedule_day_name" for name in DAYS]
+        keys = [f"{name}_schedule_day_name" for name in _KINDS]
         return tuple(_day(context, context.model.require(item, key, *_DAYS)) for key in keys)
     days = []
     for row in item.rows("data"):
@@ -436,7 +374,7 @@ def _file(context: Context, item: IdfObject) -> Year:
             [(minutes * (j + 1), value) for j, value in enumerate(values[k * count : (k + 1) * count])],
             between,
         )
-        seasons.append((f"{first + timedelta(days=k):%m-%d}", (day,) * len(DAYS)))
+        seasons.append((f"{first + timedelta(days=k):%m-%d}", (day,) * len(_KINDS)))
     return year_of(seasons)
 
 

@@ -96,7 +96,7 @@ def ahead(year: Year, first: str, last: str) -> Year:
     spans = [(first, last)] if first <= last else [("01-01", last), (first, "12-31")]
     ends = {until for until, _ in year.seasons}
     for start, end in spans:
-        ends |= {end} | ({_day_before(start)} if start != "01-01" else set())
+        ends |= {end, day_before(start)} - {""}
     seasons = []
     for until in sorted(ends):
         week = year.week_at(until)
@@ -105,7 +105,10 @@ def ahead(year: Year, first: str, last: str) -> Year:
     return replace(_merged(Year(tuple(seasons))), name=year.name)
 
 
-def _day_before(day: str) -> str:
+def day_before(day: str) -> str:
+    """The day before a day ``MM-DD``; empty before the first of the year."""
+    if day == "01-01":
+        return ""
     return f"{date(2017, int(day[:2]), int(day[3:])) - timedelta(days=1):%m-%d}"
 
 

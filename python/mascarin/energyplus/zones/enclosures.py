@@ -21,6 +21,8 @@ from mascarin.errors import InputError
 _SAME_DIRECTION: Final = 10.0
 #: Area of a surface over that of all which it sees, above which it sees itself [-].
 _LARGE: Final = 0.99
+#: Endings of the names of shades that are reveals.
+_REVEALS: Final = tuple(f"reveal_{k}" for k in range(1, 5))
 _NO_CORNERS: Final = "surfaces without corners"
 
 
@@ -40,8 +42,15 @@ def describe_enclosures(context: Context, building: Building, zones: dict[str, Z
     main = context.model.one("Building")
     word = main.word("solar_distribution") if main is not None else ""
     traced = word.startswith("fullinterior")
-    if word.startswith("minimal"):
+    if main is not None and word.startswith("minimal"):
         context.section("site")["self_shading"] = False
+        # Only the reveals of windows, which stand out of the plane of their wall here, shade them.
+        shades = context.section("shades")
+        for name in [name for name in shades if not name.endswith(_REVEALS)]:
+            del shades[name]
+            context.findings.no_effect(
+                [main], "minimal shadowing", "nothing but reveals shades, as in EnergyPlus"
+            )
     for zone in zones.values():
         zone_surfaces = building.connections.of(zone.name)
         held = context.section("zones")[zone.name]

@@ -26,6 +26,8 @@ _SET_POINTS: Final = (
 )
 #: Density [kg/m3] and specific heat [J/(kg K)] of water in the use of water, as in EnergyPlus.
 _WATER: Final = (999.9, 4180.0)
+#: Temperature of the mains where the file says nothing, as in EnergyPlus [degC].
+_MAINS: Final = 10.0
 #: Height over diameter of a tank whose height is not stated [-].
 _SLENDER: Final = 1.0
 
@@ -85,11 +87,11 @@ def _loss(item: IdfObject) -> float:
     """Conductance between a tank and its zone. [W/K]"""
     share = item.number("off_cycle_loss_fraction_to_zone", "skin_loss_fraction_to_zone")
     share = 1.0 if share is None else share
-    whole = item.number(
+    coefficient = item.number(
         "off_cycle_loss_coefficient_to_ambient_temperature", "heat_gain_coefficient_from_ambient_temperature"
     )
     if item.kind in _MIXED:
-        return share * (whole or 0.0)
+        return share * (coefficient or 0.0)
     skin = item.number(
         "uniform_skin_loss_coefficient_per_unit_area_to_ambient_temperature",
         "uniform_skin_loss_coefficient_per_unit_area_to_ambient_temperature",
@@ -129,24 +131,31 @@ def _uses(context: Context, zones: dict[str, Zone], air: dict[str, float]) -> No
             year(context, item, "sensible_fraction_schedule_name"),
         )
         water = _mixed_temperature(context, item)
-        if water is None:
-            context.findings.left_out(
-                item,
-                "heat of warm water whose temperature a plant makes",
-                f"up to {max(conductance.values):.3g} W for each kelvin above the air are missing",
-            )
-            continue
         _enter(context, item, zone, conductance, water, air)
 
 
-def _mixed_temperature(context: Context, item: IdfObject) -> Year | None:
-    """Temperature of the water at the tap; None where a plant makes it. [degC]"""
-    target, hot = "target_temperature_schedule_name", "hot_water_supply_temperature_schedule_name"
-    if item.text(target) and item.text(hot):
-        return combined(min, year(context, item, target), year(context, item, hot))
-    if item.text(hot):
-        return year(context, item, hot)
-    return year(context, item, target) if item.text(target) else None
+@reads("Site:WaterMainsTemperature")
+def _mixed_temperature(context: Context, item: IdfObject) -> Year:
+    """Temperature of the water at the tap: its target between cold and hot, or cold. [degC]"""
+    cold = _cold(context, item)
+    if not item.text("target_temperature_schedule_name"):
+        return cold
+    target = year(context, item, "target_temperature_schedule_name")
+    if not item.text("hot_water_supply_temperature_schedule_name"):
+        return target
+    hot = year(context, item, "hot_water_supply_temperature_schedule_name")
+    return combined(lambda aim, low, high: max(min(aim, high), low), target, cold, hot)
+
+
+def _cold(context: Context, item: IdfObject) -> Year:
+    """Temperature of cold water. [degC]"""
+    if item.text("cold_water_supply_temperature_schedule_name"):
+        return year(context, item, "cold_water_supply_temperature_schedule_name")
+    mains = context.model.one("Site:WaterMainsTemperature")
+    if mains is not None and mains.word("calculation_method") == "schedule":
+        return year(context, mains, "temperature_schedule_name")
+    mean = None if mains is None else mains.number("annual_average_outdoor_air_temperature")
+    return constant(_MAINS if mean is None else mean)
 
 
 def _enter(

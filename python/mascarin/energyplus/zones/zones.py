@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Zone:
         Areas facing outdoors: all, and walls alone. [m2]
     wind : float
         Wind at the middle of the zone over that at the mast. [-]
+    spaces : dict of str to float
+        Floor area of its spaces by name in small letters, as far as they have floors. [m2]
     """
 
     item: IdfObject
@@ -45,6 +47,7 @@ class Zone:
     outdoors: float
     walls: float
     wind: float
+    spaces: dict[str, float] = field(default_factory=dict, compare=False)
 
 
 def describe_zones(context: Context, surfaces: list[IdfSurface]) -> dict[str, Zone]:
@@ -129,7 +132,18 @@ def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], w
         outdoors=sum(g.area_of(surface.points) for surface in outer),
         walls=sum(g.area_of(surface.points) for surface in outer if surface.shape == "wall"),
         wind=wind_factor(wind, middle),
+        spaces=_spaces(zone_surfaces),
     )
+
+
+def _spaces(surfaces: list[IdfSurface]) -> dict[str, float]:
+    """Floor areas of the spaces that surfaces name. [m2]"""
+    areas: dict[str, float] = {}
+    for surface in surfaces:
+        space = surface.item.word("space_name")
+        if space and surface.shape == "floor":
+            areas[space] = areas.get(space, 0.0) + g.area_of(surface.points)
+    return areas
 
 
 def _enclosed(floor: float, surfaces: list[IdfSurface]) -> float:
