@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from datetime import date, timedelta
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from mascarin.energyplus.zones.gains import describe_gains
 from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
+
+#: Lines of an error that are shown.
+_MOST_LINES: Final = 40
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,11 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     context = Context(read(Path(file)))
     all_surfaces = read_surfaces(context)
     if not all_surfaces and not context.model.of("InternalMass"):
-        raise InputError(f"{file}: found no surfaces; expected walls, floors and roofs of the zones")
+        count = len(context.model.of_class("Zone"))
+        raise InputError(
+            f"{file}: found {count or 'no'} Zone and no surfaces; expected walls, floors and roofs of zones. "
+            "There is no building to convert where a file has plants or schedules alone"
+        )
     inside = read_openings(context, all_surfaces)
     describe_site(context, None if weather is None else Path(weather))
     zones = describe_zones(context, all_surfaces)
@@ -118,6 +125,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_enclosures(context, _built(context), zones)
     version = _version(context)
     start, end = _period(context)
+    steps = steps_per_hour(context)
     note_unsupported(context)
     note_unread(context)
     building = _built(context)
@@ -130,7 +138,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
         names=context.names.original,
         start=start,
         end=end,
-        steps_per_hour=steps_per_hour(context),
+        steps_per_hour=steps,
     )
 
 
@@ -163,6 +171,7 @@ def _built(context: Context) -> Building:
         except InputError as error:
             text = str(error)
             if not _flattened(context, text):
+                text = _short(text)
                 raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
 
 
@@ -195,6 +204,14 @@ def _note_flat(context: Context, section: str, name: str, what: str) -> None:
         if item.name.casefold() == original.casefold() and item.kind.casefold() in context.model.read:
             context.findings.approximated(item, what, "area and direction alone: nothing shades it")
             return
+
+
+def _short(text: str) -> str:
+    """An error of many lines as far as one reads it."""
+    lines = text.splitlines()
+    if len(lines) <= _MOST_LINES:
+        return text
+    return "\n".join([*lines[:_MOST_LINES], f"and {len(lines) - _MOST_LINES} lines more"])
 
 
 def _origins(context: Context, text: str) -> str:

@@ -43,6 +43,9 @@ _OPENINGS: Final = {
 }
 #: Tilt above which EnergyPlus turns a roof or ceiling, and below which it turns a floor [deg].
 _VERTICAL: Final = 90.0
+#: Rms of the air temperature of a small room where no sun of the ground reaches its south side [K], in
+#: EnergyPlus 25.2; the model is in tests/idf_small.
+_GROUND_HIDDEN: Final = 0.6
 #: Difference of view factors that is not noted [-].
 _SAME_VIEW: Final = 0.05
 OPENINGS: Final = ("FenestrationSurface:Detailed", *_OPENINGS)
@@ -161,6 +164,7 @@ def _ground_seen(context: Context, item: IdfObject, points: g.Array) -> None:
             item,
             f"a view factor to the ground of {entered_view:g}",
             f"{by_tilt:.2f} by its tilt: {share} % {more} of the sun that the ground reflects reaches it",
+            _GROUND_HIDDEN,
         )
 
 

@@ -16,6 +16,9 @@ _MONTHS: Final = {name.casefold(): k for k, name in enumerate(calendar.month_nam
     name.casefold(): k for k, name in enumerate(calendar.month_abbr) if name
 }
 
+#: Numbers of time steps in an hour that EnergyPlus takes.
+_STEPS: Final = (1, 2, 3, 4, 5, 6, 10, 12, 15, 20, 30, 60)
+
 
 @reads("RunPeriod")
 def calendar_year(context: Context) -> int:
@@ -115,5 +118,11 @@ def summer_time(context: Context) -> tuple[str, str] | None:
 @reads("Timestep")
 def steps_per_hour(context: Context) -> int:
     """Number of time steps of EnergyPlus in an hour."""
-    step = context.model.one("Timestep")
-    return int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6)
+    item = context.model.one("Timestep")
+    number = item.number("number_of_timesteps_per_hour") if item is not None else None
+    if item is None or not number:
+        return 6
+    feasible = min(_STEPS, key=lambda steps: abs(steps - number))
+    if feasible != number:
+        context.findings.approximated(item, f"{number:g} steps in an hour", f"{feasible}, as in EnergyPlus")
+    return feasible

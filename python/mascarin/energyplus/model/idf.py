@@ -9,6 +9,7 @@ from __future__ import annotations
 import bisect
 import json
 import re
+import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,8 @@ _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
 _COMMENT: Final = re.compile(rb"![^\n]*")
 #: Lines of the macro preprocessor, and its expressions in fields.
 _MACRO: Final = re.compile(rb"^[ \t]*##[^\n]*|#(?:eval)?[ \t]*\[[^\n]*", re.MULTILINE | re.IGNORECASE)
+#: Blank fields at the end of an object, from the second one on.
+_BLANK_END: Final = re.compile(rb"(?<=,)\s*,[\s,]*(?=;)")
 #: White space, and what old editors write at the end of a file.
 _ENDING: Final = b" \t\r\n\x1a\x00\xef\xbb\xbf"
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
@@ -334,9 +337,30 @@ def _idf(kit: Any, path: Path) -> Any:
         )
     try:
         data.decode("utf-8")
+        encoding = "utf-8"
     except UnicodeDecodeError:
-        return kit.parse_idf(path, encoding="latin-1", preserve_formatting=True)
-    return kit.parse_idf(path, encoding="utf-8", preserve_formatting=True)
+        encoding = "latin-1"
+    tidy = _without_blank_ends(data)
+    if tidy == data:
+        return kit.parse_idf(path, encoding=encoding, preserve_formatting=True)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "model.idf"
+        copy.write_bytes(tidy)
+        return kit.parse_idf(copy, encoding=encoding, preserve_formatting=True)
+
+
+def _without_blank_ends(data: bytes) -> bytes:
+    """A file without the blank fields at the ends of its objects, with the same lines.
+
+    EnergyPlus reads over blank fields after the last field of a class; a parser by its schema does not.
+    """
+    blanked = bytearray(data)
+    plain = _COMMENT.sub(lambda match: b" " * len(match[0]), data)
+    for match in _BLANK_END.finditer(plain):
+        for place in range(match.start(), match.end()):
+            if plain[place : place + 1] == b",":
+                blanked[place] = ord(" ")
+    return bytes(blanked)
 
 
 def _epjson(kit: Any, path: Path) -> Any:
@@ -397,6 +421,8 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
         plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
         line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
         item = IdfObject(kind, str(entry.name or ""), Fields(plain), defaults[kind], line, path.name)
+        if form == "epjson":
+            _only_known(schema, item)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
             advice = (
@@ -407,6 +433,17 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
             raise InputError(f"{item.where}: {fault}. {advice}")
         items.append(item)
     return items
+
+
+def _only_known(schema: Any, item: IdfObject) -> None:
+    """Refuse fields that the class does not have, as EnergyPlus does."""
+    names = set((schema.get_inner_schema(item.kind) or {}).get("properties", {}))
+    names |= set(schema.get_all_field_names(item.kind))
+    for key in item.fields.unseen():
+        if names and key not in names and not key.startswith("idf_"):
+            raise item.error(
+                f"found the field '{key}'", "a field of this class", did_you_mean(key, names) or "Remove it"
+            )
 
 
 def _defaults(schema: Any, kind: str) -> dict[str, Any]:
