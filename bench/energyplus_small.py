@@ -124,6 +124,11 @@ def packed(name: str, table: pd.DataFrame) -> dict[str, npt.NDArray[np.int32]]:
     return stored
 
 
+@cache
+def _climate() -> mc.Climate:
+    return mc.Climate.from_epw(WEATHER)
+
+
 def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict[str, Zone]:
     """Results of Mascarin by zone of the model, in small letters; a year, unless days are given."""
     building = conversion.building
@@ -132,7 +137,7 @@ def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict
         outputs += [f"{zone}.{which}_load" for which in described.loads]
     run = mc.simulate(
         building,
-        mc.Climate.from_epw(WEATHER),
+        _climate(),
         start=start or f"{conversion.start[:4]}-01-01",
         end=end or f"{int(conversion.start[:4]) + 1}-01-01",
         step=f"{60 // conversion.steps_per_hour}min",

@@ -83,15 +83,14 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "*watts_per_*": _METHOD,
     },
     "electricequipment": {"design_level": _METHOD, "*watts_per_*": _METHOD},
-    "gasequipment": {"design_level": _METHOD, "*power_per_*": _METHOD, "*watts_per_*": _METHOD},
-    "hotwaterequipment": {"design_level": _METHOD, "*power_per_*": _METHOD, "*watts_per_*": _METHOD},
-    "steamequipment": {"design_level": _METHOD, "*power_per_*": _METHOD, "*watts_per_*": _METHOD},
-    "otherequipment": {"design_level": _METHOD, "*power_per_*": _METHOD, "*watts_per_*": _METHOD},
+    "gasequipment": {"design_level": _METHOD, "power_per_*": _METHOD},
+    "hotwaterequipment": {"design_level": _METHOD, "power_per_*": _METHOD},
+    "steamequipment": {"design_level": _METHOD, "power_per_*": _METHOD},
+    "otherequipment": {"design_level": _METHOD, "power_per_*": _METHOD},
     "material": {
         "roughness": _OUTER,
         "solar_absorptance": _OUTER,
         "thermal_absorptance": _OUTER,
-        "absorptance_*_input_method": "absorptances are numbers",
     },
     "materialproperty:glazingspectraldata": {"*": "read as a table"},
     "windowmaterial:glazing": {
@@ -114,7 +113,7 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "?_origin": "coordinates of the world",
         "direction_of_relative_north": "coordinates of the world",
     },
-    "space": {"space_type": "a report", "tag_*": "a report", "tags": "a report"},
+    "space": {"space_type": "a report", "tags": "a report"},
     "runperiod": {
         "use_weather_file_*_indicators": "rain and snow have no effect here: docs/energyplus.md",
         "end_year": "the period is an option of a run here",
@@ -144,7 +143,6 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "*humidi*": "moisture: listed with the system",
     },
     "windowshadingcontrol": {"*": "listed with the control"},
-    "windowproperty:shadingcontrol": {"*": "listed with the control"},
     "airflownetwork": {"*": "listed with the network"},
     "zoneinfiltration:designflowrate": {"*flow*": _METHOD, "air_changes_per_hour": _METHOD},
     "zoneventilation:designflowrate": {
