@@ -85,6 +85,8 @@ MEASURED = {
     "surrounding_surfaces": "SurfaceProperty:SurroundingSurfaces",
 }
 NAMES = sorted(path.stem for path in SMALL.glob("*.idf"))
+VERSIONS = ((9, 4, 0), (25, 2, 0), max(idfkit.get_schema_manager().get_supported_versions()))
+EPJSON = '{"Version":{"v":{"version_identifier":"%s"}}%s}'
 CARRIED = [name for name in NAMES if name not in REFUSED and name not in LISTED]
 
 
