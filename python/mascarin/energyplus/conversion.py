@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import date, timedelta
+from datetime import timedelta
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.dates import calendar_year, day_of, steps_per_hour
 from mascarin.energyplus.model.findings import Finding
 from mascarin.energyplus.model.handlers import reads
-from mascarin.energyplus.model.idf import read
+from mascarin.energyplus.model.idf import IdfObject, read
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
@@ -230,13 +230,21 @@ def _origins(context: Context, text: str) -> str:
 
 @reads("RunPeriod")
 def _period(context: Context) -> tuple[str, str]:
-    """First day, and day after the last one, of the first run period."""
-    year, item = calendar_year(context), context.model.one("RunPeriod")
-    values: dict[str, Any] = {}
+    """First day, and day after the last one, of the first run period; the others are noted."""
+    year = calendar_year(context)
+    items = context.model.of("RunPeriod")
+    for item in items[1:]:
+        start, end = _days_of(item, year)
+        context.findings.no_effect(
+            [item], "another run period", f"the same building, with --start {start} --end {end}"
+        )
+    return _days_of(items[0], year) if items else (f"{year}-01-01", f"{year + 1}-01-01")
+
+
+def _days_of(item: IdfObject, year: int) -> tuple[str, str]:
+    """First day of a run period, and day after its last one."""
+    days = []
     for key, default in (("begin", (1, 1)), ("end", (12, 31))):
-        month = item.number(f"{key}_month") if item is not None else None
-        day = item.number(f"{key}_day_of_month") if item is not None else None
-        first = int(month or default[0]), int(day or default[1])
-        values[key] = date(year, *default) if item is None else day_of(item, year, *first)
-    last = values["end"] + timedelta(days=1)
-    return values["begin"].isoformat(), last.isoformat()
+        month, day = item.number(f"{key}_month"), item.number(f"{key}_day_of_month")
+        days.append(day_of(item, year, int(month or default[0]), int(day or default[1])))
+    return days[0].isoformat(), (days[1] + timedelta(days=1)).isoformat()
