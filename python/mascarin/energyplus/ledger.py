@@ -116,6 +116,7 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "space": {"space_type": "a report", "tags": "a report"},
     "runperiod": {
         "use_weather_file_*_indicators": "rain and snow have no effect here: docs/energyplus.md",
+        "use_weather_file_*": "of another run period",
         "end_year": "the period is an option of a run here",
         "day_of_week_for_start_day": "the begin year says it",
         "apply_weekend_holiday_rule": "a date of holidays",

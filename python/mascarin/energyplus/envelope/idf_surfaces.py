@@ -232,7 +232,14 @@ def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpeni
                 "a surface that heat passes, as in EnergyPlus",
                 "Remove the opening, or give the surface another boundary condition",
             )
-        all_openings.append(_opening(context, rules, item, base))
+        opening = _opening(context, rules, item, base)
+        if base.boundary.startswith("otherside") and opening.shape in ("window", "glassdoor"):
+            raise item.error(
+                f"building_surface_name: found '{base.item.name}', whose other side is given",
+                "a surface outdoors or between zones, as in EnergyPlus",
+                "Remove the window, or give the surface another boundary condition",
+            )
+        all_openings.append(opening)
     return all_openings
 
 

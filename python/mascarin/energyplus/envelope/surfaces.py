@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -14,11 +15,12 @@ from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
 from mascarin.energyplus.envelope.materials import skin
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.dates import steps_per_hour
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import temperature, year
 from mascarin.energyplus.model.site import ground
-from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
 from mascarin.errors import InputError
 
 #: Boundary conditions that stand for ground whose temperature another program or model finds.
@@ -267,7 +269,8 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     fixed = item.number("constant_temperature") or 0.0
     values = year(context, item, "constant_temperature_schedule_name", default=fixed)
     if item.word("sinusoidal_variation_of_constant_temperature_coefficient") == "yes":
-        context.findings.left_out(item, "a sinusoidal temperature", "its constant part alone is used")
+        values = _wave(context, item, values)
+        weight = 1.0
     below = ground(context) if soil else constant(0.0)
     total = combined(lambda fixed_value, soil_value: weight * fixed_value + soil * soil_value, values, below)
     side = held_at(context, item.name, total)
@@ -276,6 +279,21 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     if "ground" in side:
         return {"scheduled": _as_schedule(context, item.name, total), "convection": coefficient}, False
     return side | {"convection": coefficient}, False
+
+
+def _wave(context: Context, item: IdfObject, values: Year) -> Year:
+    """A constant temperature times a sine of the time, in the steps of EnergyPlus. [degC]"""
+    period = item.number("period_of_sinusoidal_variation") or 24.0
+    if 24.0 % period > 1e-9:
+        context.findings.left_out(
+            item, f"a sine of {period:g} h, which does not divide a day", "its mean, 0 degC, is used"
+        )
+        return constant(0.0)
+    step = 60 // steps_per_hour(context)
+    day = tuple(
+        (start, math.sin(2.0 * math.pi * (start + step) / (60.0 * period))) for start in range(0, 1440, step)
+    )
+    return combined(lambda value, share: value * share, values, year_of([("12-31", (day,) * len(DAYS))]))
 
 
 def _as_schedule(context: Context, name: str, values: Year) -> str:
