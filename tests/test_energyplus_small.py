@@ -265,6 +265,16 @@ def test_what_energyplus_reads_over_is_read_over(tmp_path: Path) -> None:
     assert any(finding.kind == "Timestep" for finding in conversion.findings)
 
 
+def test_expressions_have_the_values_of_the_first_run(tmp_path: Path) -> None:
+    thick = ("Material,concrete,MediumRough,0.15", "Material,concrete,MediumRough,=sqrt($t)/2")
+    runs = "\n  Parametric:SetValueForRun,$T,0.09,0.2;\n"
+    conversion = convert(written(tmp_path, thick, more=runs))
+    assert conversion.description["constructions"]["wall"]["layers"][0]["thickness"] == pytest.approx(0.15)
+    assert any("first run" in text for text in left_out(conversion))
+    with pytest.raises(InputError, match=r"13: Material 'concrete'.*ParametricPreprocessor"):
+        convert(written(tmp_path, thick))
+
+
 def test_a_changed_building_is_not_written_over(tmp_path: Path) -> None:
     file = tmp_path / "box.yaml"
     assert not was_edited(file)

@@ -84,7 +84,7 @@ _MISSING: Final = {
     "energymanagementsystem": "what this program changes during a run stays as described",
     "pythonplugin": "what this program changes during a run stays as described",
     "externalinterface": "what this program changes during a run stays as described",
-    "parametric": "the file is converted with the values that it holds",
+    "parametric": "the values of its first run are used: the other runs are other buildings",
     "complexfenestration": "see the windows that use it",
     "swimmingpool": "no pool",
     "surfaceproperty:solarincidentinside": "the sun that enters falls where it would, not by this schedule",

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
+from mascarin.energyplus.model.expressions import values_of_first_run, with_values
 from mascarin.energyplus.model.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
 
@@ -407,6 +408,11 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
     schema = document.schema
     lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
     defaults: dict[str, dict[str, Any]] = {}
+    parameters = values_of_first_run(
+        (str(entry.obj_type), str(entry.name or ""), dict(entry.data))
+        for entry in document.all_objects
+        if str(entry.obj_type).startswith("Parametric:")
+    )
     items = []
     for k, entry in enumerate(document.all_objects):
         kind = str(entry.obj_type)
@@ -419,6 +425,8 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
         if kind not in defaults:
             defaults[kind] = _defaults(schema, kind)
         plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
+        if parameters:
+            plain = {key: with_values(value, parameters) for key, value in plain.items()}
         line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
         item = IdfObject(kind, str(entry.name or ""), Fields(plain), defaults[kind], line, path.name)
         if form == "epjson":
