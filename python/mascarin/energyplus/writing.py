@@ -56,12 +56,12 @@ def _line(findings: list[Finding]) -> str:
     whats = list(dict.fromkeys(finding.what for finding in findings))
     what = whats[0] if len(whats) == 1 else f"{whats[0]} and the like"
     named = [finding for finding in findings if finding.name]
-    places = [
+    labels = [
         f"'{finding.name}'" + ("" if finding.line is None else f" in line {finding.line}")
         for finding in named[:_NAMED]
     ]
-    more = f" and {len(findings) - len(places)} more" if places and len(findings) > len(places) else ""
-    where = f" ({', '.join(places)}{more})" if places else ""
+    more = f" and {len(findings) - len(labels)} more" if labels and len(findings) > len(labels) else ""
+    where = f" ({', '.join(labels)}{more})" if labels else ""
     return f"{first.kind}, {len(findings)} times{where}: {what}: {first.consequence}"
 
 
@@ -86,17 +86,17 @@ def yaml_text(conversion: Conversion) -> str:
         *terminal_lines(conversion),
     ]
     comments = "".join(f"# {line}\n" for part in head for line in part.splitlines())
-    rest = f"{comments}\n{text_of(conversion.description)}"
+    body = f"{comments}\n{text_of(conversion.description)}"
     origin = f"Converted from {conversion.file.name} (EnergyPlus {conversion.version}) by mascarin convert"
-    return f"# {origin}, {_MARK}{_mark(rest)}.\n{rest}"
+    return f"# {origin}, {_MARK}{_mark(body)}.\n{body}"
 
 
 def was_edited(file: Path) -> bool:
     """Whether a file is there that is not as a conversion has written it."""
     if not file.is_file():
         return False
-    first, _, rest = file.read_text(encoding="utf-8", errors="replace").partition("\n")
-    return not first.endswith(f"{_MARK}{_mark(rest)}.")
+    first, _, body = file.read_text(encoding="utf-8", errors="replace").partition("\n")
+    return not first.endswith(f"{_MARK}{_mark(body)}.")
 
 
 def _mark(text: str) -> str:

@@ -170,8 +170,8 @@ def normal_of(points: Array) -> Array:
     """Vector area of a polygon by its right-hand rule, shape (3,). [m2]"""
     x, y, z = 0.0, 0.0, 0.0
     # Plain numbers: many times as fast as arrays for a few corners.
-    first, *rest = points.tolist()
-    edges = [[a - b for a, b in zip(corner, first, strict=True)] for corner in rest]
+    first, *corners = points.tolist()
+    edges = [[a - b for a, b in zip(corner, first, strict=True)] for corner in corners]
     for (ax, ay, az), (bx, by, bz) in pairwise(edges):
         x, y, z = x + ay * bz - az * by, y + az * bx - ax * bz, z + ax * by - ay * bx
     return 0.5 * np.array([x, y, z])

@@ -12,6 +12,7 @@ import re
 import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Final
 
@@ -61,6 +62,10 @@ class Fields(dict[str, Any]):
     def starting(self, prefix: str) -> list[Any]:
         """Values of the fields whose names start so; they count as read."""
         return [self[key] for key in list(self) if key.startswith(prefix)]
+
+    def pass_over(self, pattern: str) -> None:
+        """Count fields as read that a finding speaks of, or that have no effect; ``*`` stands for any text."""
+        self.seen |= {key for key in self if fnmatchcase(key, pattern)}
 
     def unseen(self) -> dict[str, Any]:
         """Fields that nothing has read."""
@@ -358,9 +363,9 @@ def _without_blank_ends(data: bytes) -> bytes:
     blanked = bytearray(data)
     plain = _COMMENT.sub(lambda match: b" " * len(match[0]), data)
     for match in _BLANK_END.finditer(plain):
-        for place in range(match.start(), match.end()):
-            if plain[place : place + 1] == b",":
-                blanked[place] = ord(" ")
+        for offset in range(match.start(), match.end()):
+            if plain[offset : offset + 1] == b",":
+                blanked[offset] = ord(" ")
     return bytes(blanked)
 
 
