@@ -64,7 +64,7 @@ class Fields(dict[str, Any]):
         return [self[key] for key in list(self) if key.startswith(prefix)]
 
     def pass_over(self, pattern: str) -> None:
-        """Count fields as read that a finding speaks of, or that have no effect; ``*`` stands for any text."""
+        """Count fields as read that a finding speaks of, or without effect; ``*`` stands for any text."""
         self.seen |= {key for key in self if fnmatchcase(key, pattern)}
 
     def unseen(self) -> dict[str, Any]:
