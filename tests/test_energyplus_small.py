@@ -275,6 +275,16 @@ def test_expressions_have_the_values_of_the_first_run(tmp_path: Path) -> None:
         convert(written(tmp_path, thick))
 
 
+def test_unlike_layers_of_a_pair_are_noted(tmp_path: Path) -> None:
+    text = (SMALL / "interior_window.idf").read_text(encoding="utf-8")
+    assert not any("layers" in entry.what for entry in convert(SMALL / "interior_window.idf").findings)
+    pair = "BuildingSurface:Detailed,b W,Wall,sym"
+    assert pair in text
+    (tmp_path / "pair.idf").write_text(text.replace(pair, pair[:-3] + "slab"), encoding="utf-8")
+    findings = convert(tmp_path / "pair.idf").findings
+    assert [entry.name for entry in findings if "layers of 'slab'" in entry.what] == ["b W"]
+
+
 def test_a_changed_building_is_not_written_over(tmp_path: Path) -> None:
     file = tmp_path / "box.yaml"
     assert not was_edited(file)

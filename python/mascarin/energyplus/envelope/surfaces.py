@@ -12,7 +12,7 @@ from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
-from mascarin.energyplus.envelope.materials import skin
+from mascarin.energyplus.envelope.materials import layers_of, skin
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.dates import steps_per_hour
@@ -211,6 +211,15 @@ def _between_zones(
         context.findings.approximated(
             other.item, f"{areas[1]:.2f} m2, on its other side {areas[0]:.2f} m2", "the first area is used"
         )
+    first, second = construction_of(context, surface.item), construction_of(context, other.item)
+    if first.kind == second.kind == "Construction" and first is not second:
+        layers = [[layer.name for layer in layers_of(context, item)] for item in (first, second)]
+        if layers[0] != layers[1][::-1]:
+            context.findings.approximated(
+                other.item,
+                f"layers of '{second.name}' that are not those of '{first.name}' on its other side",
+                f"those of '{first.name}' are used on both sides",
+            )
     done.reversed_names.add(other.item.name.casefold())
     done.placed[other.item.name.casefold()] = context.names.of("surfaces", surface.item.name)
     outer = _toward_zone(context, other, coefficients, construction_of(context, surface.item), outer=True)
