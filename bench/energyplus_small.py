@@ -41,7 +41,7 @@ LOADS = {
     "cooling": "Zone Air System Sensible Cooling Energy [J](Hourly)",
 }
 #: Resolution of the stored temperatures [K].
-STEP = 0.01
+STEP = 0.02
 _MONTHS = np.repeat(np.arange(12), [24 * days for days in (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)])
 
 Array = npt.NDArray[np.float64]
