@@ -25,7 +25,7 @@ LEFT_OUT = {
     "5Zone_IdealLoadsAirSystems_ReturnPlenum": {"AirLoopHVAC"},
     "AirflowNetwork3zVent": {"AirflowNetwork"},
     "CondFD1ZonePurchAirAutoSizeWithPCM": set(),
-    "GroundTempOSCCompactSched": set(),
+    "GroundTempOSCCompactSched": {"ZoneVentilation"},
     "PurchAirWindowBlind": {"WindowShadingControl"},
     "SolarShadingTest": {"Shading"},
     "VentilationSimpleTest": {"ZoneVentilation"},

@@ -76,7 +76,9 @@ def test_what_no_handler_reads_is_left_out_by_name(tmp_path: Path) -> None:
     (tmp_path / "model.idf").write_text(TEXT, encoding="utf-8")
     findings = convert(tmp_path / "model.idf").findings
     assert [entry.name for entry in findings if entry.kind == "ZoneControl:Humidistat"] == ["Damp"]
-    assert not [entry for entry in findings if entry.kind in ("Version", "RunPeriod", "Zone", "Material")]
+    assert not [entry for entry in findings if entry.kind in ("Version", "RunPeriod", "Zone")]
+    unused = [(entry.level, entry.name) for entry in findings if entry.kind == "Material"]
+    assert unused == [("no effect", "Unused")], "what nothing names has no effect"
 
 
 def test_every_section_of_a_description_can_be_written(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ def convert(
     *,
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
     weather: Path | None = None,
+    force: bool = False,
     as_json: AsJson = False,
 ) -> int:
     """Convert a model of EnergyPlus to a building.
@@ -36,15 +37,22 @@ def convert(
     out : Path
         File for the building. Default: the name of the model with .yaml, in the current folder.
     weather : Path
-        Weather file (EPW) that gives the site, for a model without Site:Location.
+        Weather file (EPW) that gives the site: for a model without Site:Location, or of another place.
+    force : bool
+        Write over a building file that was changed since it was converted.
     """
     from mascarin.energyplus import convert as converted
-    from mascarin.energyplus import report, run_options, terminal_lines, yaml_text
+    from mascarin.energyplus import report, run_options, terminal_lines, was_edited, yaml_text
 
     target = Path(f"{model.stem}.yaml") if out is None else out
     if target.suffix.lower() not in (".yaml", ".yml"):
         raise InputError(f"--out: found '{target}'; expected a file that ends with .yaml")
     with writing(target):
+        if not force and was_edited(target):
+            raise InputError(
+                f"{target}: found a building that was changed since it was converted, or never was; "
+                "expected a new file. Give another name with --out, or write over it with --force"
+            )
         conversion = converted(model, weather=weather)
         atomic.write(target, yaml_text(conversion))
     if as_json:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import date, timedelta
+from datetime import timedelta
 from pathlib import Path
-from typing import Any
+from typing import Final
+
+import numpy as np
 
 from mascarin.building import Building
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
@@ -14,19 +16,25 @@ from mascarin.energyplus.envelope.idf_surfaces import read_openings, read_surfac
 from mascarin.energyplus.envelope.shades import describe_shades
 from mascarin.energyplus.envelope.surfaces import describe_surfaces
 from mascarin.energyplus.envelope.windows import describe_openings
+from mascarin.energyplus.ledger import note_unread
+from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.dates import calendar_year, day_of, steps_per_hour
 from mascarin.energyplus.model.findings import Finding
 from mascarin.energyplus.model.handlers import reads
-from mascarin.energyplus.model.idf import read
-from mascarin.energyplus.model.schedules import calendar_year, day_of
+from mascarin.energyplus.model.idf import IdfObject, read
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
 from mascarin.energyplus.zones.conditioning import describe_conditioning, usual_temperatures
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
+from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
+
+#: Lines of an error that are shown.
+_MOST_LINES: Final = 40
 
 
 @dataclass(frozen=True)
@@ -97,7 +105,11 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     context = Context(read(Path(file)))
     all_surfaces = read_surfaces(context)
     if not all_surfaces and not context.model.of("InternalMass"):
-        raise InputError(f"{file}: found no surfaces; expected walls, floors and roofs of the zones")
+        count = len(context.model.of_class("Zone"))
+        raise InputError(
+            f"{file}: found {count or 'no'} Zone and no surfaces; expected walls, floors and roofs of zones. "
+            "There is no building to convert where a file has plants or schedules alone"
+        )
     inside = read_openings(context, all_surfaces)
     describe_site(context, None if weather is None else Path(weather))
     zones = describe_zones(context, all_surfaces)
@@ -105,14 +117,18 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     surfaces = describe_surfaces(context, all_surfaces, coefficients)
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
-    describe_gains(context, zones, usual_temperatures(context, zones))
+    air = usual_temperatures(context, zones)
+    describe_gains(context, zones, air)
+    describe_water(context, zones, air)
     describe_air(context, zones)
     describe_conditioning(context, zones)
     describe_enclosures(context, _built(context), zones)
     version = _version(context)
-    note_unsupported(context)
-    building = _built(context)
     start, end = _period(context)
+    steps = steps_per_hour(context)
+    note_unsupported(context)
+    note_unread(context)
+    building = _built(context)
     return Conversion(
         file=Path(file),
         version=version,
@@ -122,19 +138,13 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
         names=context.names.original,
         start=start,
         end=end,
-        steps_per_hour=_steps_per_hour(context),
+        steps_per_hour=steps,
     )
 
 
 @reads("Version")
 def _version(context: Context) -> str:
     return ".".join(str(part) for part in context.model.version[:2])
-
-
-@reads("Timestep")
-def _steps_per_hour(context: Context) -> int:
-    step = context.model.one("Timestep")
-    return int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6)
 
 
 @reads("Building")
@@ -148,16 +158,60 @@ def _ordered(context: Context) -> Section:
 def _built(context: Context) -> Building:
     """The building as far as it is described.
 
+    Parts whose corners a description refuses keep their areas and directions.
+
     Raises
     ------
     InputError
         What the file describes is refused; the text names its objects.
     """
-    try:
-        return Building.from_dict(_ordered(context))
-    except InputError as error:
-        text = str(error)
-        raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
+    while True:
+        try:
+            return Building.from_dict(_ordered(context))
+        except InputError as error:
+            text = str(error)
+            if not _flattened(context, text):
+                text = _short(text)
+                raise InputError(f"{context.model.file}: {text}{_origins(context, text)}") from None
+
+
+def _flattened(context: Context, text: str) -> bool:
+    """Whether corners that an error names were given up, in favour of areas."""
+    surfaces, windows = context.section("surfaces"), context.section("windows")
+    refused = {match[1] for match in re.finditer(r"windows\.(\w+)\.vertices\n", text)}
+    for match in re.finditer(r"surfaces '([^']+)' and '([^']+)' cover the same area", text):
+        twins = [name for name in match.groups() if "vertices" in surfaces.get(name, {})]
+        for name in twins[-1:]:
+            points = np.array(surfaces[name].pop("vertices"))
+            surfaces[name] |= g.flat(points)
+            refused |= {window for window, held in windows.items() if held["surface"] == name}
+            _note_flat(context, "surfaces", name, "it covers another surface")
+    done = bool(twins) if (twins := re.findall("cover the same area", text)) else False
+    for name in refused:
+        points = windows.get(name, {}).pop("vertices", None)
+        if points is not None:
+            windows[name].setdefault("area", round(g.area_of(np.array(points)), 6))
+            _note_flat(context, "windows", name, "its corners do not fit its wall and what is in it")
+            done = True
+    return done
+
+
+def _note_flat(context: Context, section: str, name: str, what: str) -> None:
+    original = next(
+        (key for key, entered in context.names.original.get(section, {}).items() if entered == name), name
+    )
+    for item in context.model.items:
+        if item.name.casefold() == original.casefold() and item.kind.casefold() in context.model.read:
+            context.findings.approximated(item, what, "area and direction alone: nothing shades it")
+            return
+
+
+def _short(text: str) -> str:
+    """An error of many lines as far as one reads it."""
+    lines = text.splitlines()
+    if len(lines) <= _MOST_LINES:
+        return text
+    return "\n".join([*lines[:_MOST_LINES], f"and {len(lines) - _MOST_LINES} lines more"])
 
 
 def _origins(context: Context, text: str) -> str:
@@ -176,13 +230,21 @@ def _origins(context: Context, text: str) -> str:
 
 @reads("RunPeriod")
 def _period(context: Context) -> tuple[str, str]:
-    """First day, and day after the last one, of the first run period."""
-    year, item = calendar_year(context), context.model.one("RunPeriod")
-    values: dict[str, Any] = {}
+    """First day, and day after the last one, of the first run period; the others are noted."""
+    year = calendar_year(context)
+    items = context.model.of("RunPeriod")
+    for item in items[1:]:
+        start, end = _days_of(item, year)
+        context.findings.no_effect(
+            [item], "another run period", f"the same building, with --start {start} --end {end}"
+        )
+    return _days_of(items[0], year) if items else (f"{year}-01-01", f"{year + 1}-01-01")
+
+
+def _days_of(item: IdfObject, year: int) -> tuple[str, str]:
+    """First day of a run period, and day after its last one."""
+    days = []
     for key, default in (("begin", (1, 1)), ("end", (12, 31))):
-        month = item.number(f"{key}_month") if item is not None else None
-        day = item.number(f"{key}_day_of_month") if item is not None else None
-        first = int(month or default[0]), int(day or default[1])
-        values[key] = date(year, *default) if item is None else day_of(item, year, *first)
-    last = values["end"] + timedelta(days=1)
-    return values["begin"].isoformat(), last.isoformat()
+        month, day = item.number(f"{key}_month"), item.number(f"{key}_day_of_month")
+        days.append(day_of(item, year, int(month or default[0]), int(day or default[1])))
+    return days[0].isoformat(), (days[1] + timedelta(days=1)).isoformat()

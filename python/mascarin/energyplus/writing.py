@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Final
 
 from mascarin.building.files.yaml_text import text_of
 from mascarin.energyplus.conversion import Conversion
-from mascarin.energyplus.model.findings import LEVELS
+from mascarin.energyplus.model.findings import LEVELS, Finding
 
+#: What stands before the mark of a written file.
+_MARK: Final = "unchanged while its mark is "
+#: Objects of a group that are named.
+_NAMED: Final = 3
 _HEADINGS: Final = {
     "left out": "Left out; the results change:",
     "approximated": "Carried over in another form:",
@@ -17,7 +23,9 @@ _HEADINGS: Final = {
 
 
 def terminal_lines(conversion: Conversion) -> Iterator[str]:
-    """What is not carried over as it is, by level and line.
+    """What is not carried over as it is: by level, one line for the objects of a class with one effect.
+
+    The largest measured effects come first, then those of which there are most objects.
 
     Parameters
     ----------
@@ -25,13 +33,36 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
         From `convert`.
     """
     for level in LEVELS:
-        findings = sorted(
-            (finding for finding in conversion.findings if finding.level == level),
-            key=lambda finding: finding.line or 0,
-        )
-        if findings:
+        groups: dict[tuple[str, str], list[Finding]] = {}
+        for finding in conversion.findings:
+            if finding.level == level:
+                groups.setdefault((finding.kind, finding.consequence), []).append(finding)
+        if groups:
             yield _HEADINGS[level]
-            yield from (f"  {finding.text()}" for finding in findings)
+            for findings in sorted(groups.values(), key=_rank):
+                yield f"  {_line(findings)}"
+
+
+def _rank(findings: list[Finding]) -> tuple[float, int, int]:
+    sizes = [finding.kelvin for finding in findings if finding.kelvin is not None]
+    return -max(sizes, default=0.0), -len(findings), findings[0].line or 0
+
+
+def _line(findings: list[Finding]) -> str:
+    """One line for objects of a class with one effect, with the places of the first ones."""
+    first = findings[0]
+    if len(findings) == 1:
+        return first.text()
+    whats = list(dict.fromkeys(finding.what for finding in findings))
+    what = whats[0] if len(whats) == 1 else f"{whats[0]} and the like"
+    named = [finding for finding in findings if finding.name]
+    labels = [
+        f"'{finding.name}'" + ("" if finding.line is None else f" in line {finding.line}")
+        for finding in named[:_NAMED]
+    ]
+    more = f" and {len(findings) - len(labels)} more" if labels and len(findings) > len(labels) else ""
+    where = f" ({', '.join(labels)}{more})" if labels else ""
+    return f"{first.kind}, {len(findings)} times{where}: {what}: {first.consequence}"
 
 
 def run_options(conversion: Conversion) -> str:
@@ -43,18 +74,33 @@ def run_options(conversion: Conversion) -> str:
 def yaml_text(conversion: Conversion) -> str:
     """YAML file of the building, with comments on its origin and on what is not carried over.
 
+    The first line ends with a mark of all that follows, by which a file that was edited is known.
+
     Parameters
     ----------
     conversion : Conversion
         From `convert`.
     """
     head = [
-        f"Converted from {conversion.file.name} (EnergyPlus {conversion.version}) by mascarin convert.",
         f"The same period and days of the week: mascarin run FILE --weather EPW {run_options(conversion)}",
         *terminal_lines(conversion),
     ]
     comments = "".join(f"# {line}\n" for part in head for line in part.splitlines())
-    return f"{comments}\n{text_of(conversion.description)}"
+    body = f"{comments}\n{text_of(conversion.description)}"
+    origin = f"Converted from {conversion.file.name} (EnergyPlus {conversion.version}) by mascarin convert"
+    return f"# {origin}, {_MARK}{_mark(body)}.\n{body}"
+
+
+def was_edited(file: Path) -> bool:
+    """Whether a file is there that is not as a conversion has written it."""
+    if not file.is_file():
+        return False
+    first, _, body = file.read_text(encoding="utf-8", errors="replace").partition("\n")
+    return not first.endswith(f"{_MARK}{_mark(body)}.")
+
+
+def _mark(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def report(conversion: Conversion) -> dict[str, Any]:
@@ -82,7 +128,7 @@ def report(conversion: Conversion) -> dict[str, Any]:
         "findings": [
             {
                 "level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line,
-                "found": finding.what, "effect": finding.effect,
+                "found": finding.what, "effect": finding.effect, "kelvin": finding.kelvin,
             }
             for finding in conversion.findings
         ],

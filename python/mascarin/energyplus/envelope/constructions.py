@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.energyplus.envelope.materials import MELTING, plain_layers
+from mascarin.building.parts.materials.text_law import ConductivityLaw
+from mascarin.energyplus.envelope.materials import VARYING, plain_layers
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
@@ -45,9 +46,10 @@ def construction(context: Context, item: IdfObject, *, cut: bool, finite_differe
     return name
 
 
-@reads(*MELTING)
+@reads(*VARYING)
 def _can_melt(context: Context, item: IdfObject) -> bool:
-    properties = context.model.of(*MELTING)
+    """Whether a layer melts, or conducts by its temperature."""
+    properties = context.model.of(*VARYING)
     names = {material_property.name.casefold() for material_property in properties}
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     return any(item.word(key) in names for key in keys if item.word(key))
@@ -99,11 +101,16 @@ def _held(layer: Section, material: dict[str, Any]) -> tuple[float, float]:
     if material.get("kind") == "resistance":
         return float(material["resistance"]), 0.0
     solid = [
-        value[0] if isinstance(value, list) else value
+        value[0] if isinstance(value, list) else _at_20(value) if isinstance(value, dict) else value
         for value in (material[key] for key in ("conductivity", "density", "specific_heat"))
     ]
     thickness = float(layer["thickness"])
     return thickness / solid[0], thickness * solid[1] * solid[2]
+
+
+def _at_20(law: dict[str, Any]) -> float:
+    """Conductivity of a formula at 20 degC. [W/(m K)]"""
+    return float(ConductivityLaw(**law).value(20.0))
 
 
 def _named_apart(layers: list[Section]) -> list[Section]:

@@ -7,9 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from mascarin.energyplus.envelope.idf_surfaces import OPENINGS, SURFACES
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
-from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.idf import IdfModel, IdfObject
 
 #: Coefficients D + E V + F V^2 of the algorithm SimpleCombined by roughness, radiation included
 #: (ASHRAE Handbook of Fundamentals 1989, p. 22.4, as in the EnergyPlus Engineering Reference).
@@ -24,6 +25,15 @@ _COMBINED: Final = {
 #: Natural convection inside by the algorithm Simple: vertical, heat flow up and down, and both for tilted
 #: surfaces [W/(m2 K)] (Walton 1983, as in the EnergyPlus Engineering Reference).
 _SIMPLE: Final = (3.076, 4.040, 0.948, 3.870, 2.281)
+#: Kinds of surfaces in a group, where they are not of its name.
+_GROUPS: Final = {
+    "roof": ("roof", "ceiling"),
+    "ceiling": ("roof", "ceiling"),
+    "window": ("window", "glassdoor", "glazeddoor"),
+}
+#: Rms of the air temperature of a small room beside that with TARP, in EnergyPlus 25.2 [K]; the models are in
+#: tests/idf_small.
+_MEASURED: Final = {"adaptiveconvectionalgorithm": 0.4, "astmc1340": 0.8}
 #: Wind speeds between which the quadratic is replaced by a power [m/s].
 _WINDS: Final = (1.0, 8.0)
 
@@ -65,10 +75,16 @@ class ConvectionCoefficients:
                 side = item.word(f"convection_coefficient_{k}_location")
                 if side:
                     by_surface[item.word("surface_name"), side] = item
-        for item in self.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
-            self._context.findings.left_out(
-                item, "coefficients of a group of surfaces", "those of the algorithm of the building are used"
-            )
+        groups = self.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface")
+        faces = _faces(self.model) if groups else []
+        for item in groups:
+            word = item.word("surface_type")
+            named = [name for name, kind, outdoors in faces if _in_group(word, name, kind, outdoors)]
+            for k in (1, 2):
+                side = item.word(f"convection_coefficient_{k}_location")
+                by_surface |= {
+                    (name, side): item for name in named if side and (name, side) not in by_surface
+                }
         return by_surface
 
     @reads("SurfaceConvectionAlgorithm:Inside")
@@ -85,7 +101,10 @@ class ConvectionCoefficients:
             return _simple(tilt)
         if word not in ("tarp", "detailed", "bldgdetailed") and source is not None:
             self._context.findings.approximated(
-                source, f"inside convection by {word}", "the algorithm TARP is used: coefficients differ"
+                source,
+                f"inside convection by {word}",
+                "the algorithm TARP is used: coefficients differ",
+                _MEASURED.get(word),
             )
         return "iso15099" if window else "tarp"
 
@@ -128,6 +147,32 @@ class ConvectionCoefficients:
                 item, f"a coefficient by {kind}", "that of the algorithm of the building is used"
             )
         return word if side == "outside" or word == "tarp" else None
+
+
+def _faces(model: IdfModel) -> list[tuple[str, str, bool]]:
+    """Name, kind, and whether it is outdoors, of all surfaces and openings."""
+    faces = []
+    outdoors: dict[str, bool] = {}
+    for kind in (*SURFACES, *OPENINGS):
+        for item in model.of_class(kind):
+            word = item.word("surface_type") or kind.partition(":")[0].casefold()
+            base = item.word("building_surface_name")
+            entered = item.word("outside_boundary_condition")
+            simple = kind in ("Wall:Exterior", "Roof")
+            outside = outdoors.get(base, False) if base else entered == "outdoors" or simple
+            outdoors[item.name.casefold()] = outside
+            faces.append((item.name.casefold(), word, outside))
+    return faces
+
+
+def _in_group(word: str, name: str, kind: str, outdoors: bool) -> bool:
+    """Whether a surface belongs to a group such as AllExteriorWalls."""
+    if word == name:
+        return True
+    if not word.startswith(("allexterior", "allinterior")) or word.startswith("allexterior") != outdoors:
+        return False
+    group = word.removeprefix("allexterior").removeprefix("allinterior").removesuffix("s")
+    return kind in _GROUPS.get(group, (group,))
 
 
 def _simple(tilt: float) -> Any:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -40,6 +41,13 @@ _OPENINGS: Final = {
     "Door:Interzone": ("door", True),
     "GlazedDoor:Interzone": ("window", True),
 }
+#: Tilt above which EnergyPlus turns a roof or ceiling, and below which it turns a floor [deg].
+_VERTICAL: Final = 90.0
+#: Rms of the air temperature of a small room where no sun of the ground reaches its south side [K], in
+#: EnergyPlus 25.2; the model is in tests/idf_small.
+_GROUND_HIDDEN: Final = 0.6
+#: Difference of view factors that is not noted [-].
+_SAME_VIEW: Final = 0.05
 OPENINGS: Final = ("FenestrationSurface:Detailed", *_OPENINGS)
 
 
@@ -128,17 +136,36 @@ def _zone_of(context: Context, item: IdfObject) -> IdfObject:
 def _detailed(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
     zone = _zone_of(context, item)
     points = g.frame_of(zone, rules, rules.relative).place(g.corners_of(item))
-    shape = _DETAILED[item.kind] or item.word("surface_type")
+    shape = _DETAILED[item.kind] or item.word("surface_type") or "wall"
+    points = points[::-1] if rules.clockwise else points
+    points = _upright(context, item, shape, _checked(item, points))
+    if item.word("outside_boundary_condition") in ("outdoors", ""):
+        _ground_seen(context, item, points)
     return IdfSurface(
         item=item,
         zone=zone,
-        shape=shape or "wall",
+        shape=shape,
         boundary=item.word("outside_boundary_condition") or "outdoors",
         beyond=item.text("outside_boundary_condition_object"),
         sun=item.word("sun_exposure") != "nosun",
         wind=item.word("wind_exposure") != "nowind",
-        points=_checked(item, points[::-1] if rules.clockwise else points),
+        points=points,
     )
+
+
+def _ground_seen(context: Context, item: IdfObject, points: g.Array) -> None:
+    """Note a view factor to the ground that is not that of the tilt, which is used here."""
+    entered_view = item.number("view_factor_to_ground")
+    by_tilt = 0.5 * (1.0 - math.cos(math.radians(g.tilt_of(points))))
+    if entered_view is not None and abs(entered_view - by_tilt) > _SAME_VIEW:
+        share = round(100.0 * abs(by_tilt - entered_view))
+        more = "more" if by_tilt > entered_view else "less"
+        context.findings.left_out(
+            item,
+            f"a view factor to the ground of {entered_view:g}",
+            f"{by_tilt:.2f} by its tilt: {share} % {more} of the sun that the ground reflects reaches it",
+            _GROUND_HIDDEN,
+        )
 
 
 def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
@@ -152,7 +179,28 @@ def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
     shape, boundary = _SIMPLE[item.kind]
     outdoors = boundary == "outdoors"
     beyond = item.text("outside_boundary_condition_object")
-    return IdfSurface(item, zone, shape, boundary, beyond, outdoors, outdoors, _checked(item, points))
+    if boundary == "surface" and context.model.of_any_class(beyond, *SURFACES) is None:
+        # Such a surface may name a zone in place of a surface.
+        boundary = "surface" if context.model.of_any_class(beyond, "Zone") is None else "zone"
+    points = _upright(context, item, shape, _checked(item, points))
+    return IdfSurface(item, zone, shape, boundary, beyond, outdoors, outdoors, points)
+
+
+def _upright(context: Context, item: IdfObject, shape: str, points: g.Array) -> g.Array:
+    """Corners of a surface; those of a roof that looks down, or a floor that looks up, turned round."""
+    tilt = g.tilt_of(points)
+    if (shape in ("roof", "ceiling") and tilt > _VERTICAL) or (shape == "floor" and tilt < _VERTICAL):
+        context.findings.approximated(
+            item, f"a {shape} with a tilt of {tilt:.0f} deg", "its corners are turned round, as in EnergyPlus"
+        )
+        return points[::-1]
+    return points
+
+
+def turned(surface: IdfSurface, zone: IdfObject) -> IdfSurface:
+    """The other side of a surface, in another zone."""
+    shape = {"floor": "ceiling", "ceiling": "floor", "roof": "floor"}.get(surface.shape, surface.shape)
+    return replace(surface, zone=zone, shape=shape, beyond=surface.zone.name, points=surface.points[::-1])
 
 
 def _checked(item: IdfObject, points: g.Array) -> g.Array:
@@ -178,7 +226,20 @@ def read_openings(context: Context, surfaces: list[IdfSurface]) -> list[IdfOpeni
         if base is None:
             context.model.require(item, "building_surface_name", *SURFACES)
             raise item.error("no surface", "a surface", "Correct building_surface_name")
-        all_openings.append(_opening(context, rules, item, base))
+        if base.boundary == "adiabatic":
+            raise item.error(
+                f"building_surface_name: found '{base.item.name}', which is adiabatic",
+                "a surface that heat passes, as in EnergyPlus",
+                "Remove the opening, or give the surface another boundary condition",
+            )
+        opening = _opening(context, rules, item, base)
+        if base.boundary.startswith("otherside") and opening.shape in ("window", "glassdoor"):
+            raise item.error(
+                f"building_surface_name: found '{base.item.name}', whose other side is given",
+                "a surface outdoors or between zones, as in EnergyPlus",
+                "Remove the window, or give the surface another boundary condition",
+            )
+        all_openings.append(opening)
     return all_openings
 
 
@@ -188,6 +249,8 @@ def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface
     if item.kind == "FenestrationSurface:Detailed":
         points = g.frame_of(base.zone, rules, rules.relative).place(g.corners_of(item))
         points = points[::-1] if rules.clockwise else points
+        if base.boundary == "outdoors":
+            _ground_seen(context, item, base.points)
         shape = {"glassdoor": "window"}.get(item.word("surface_type"), item.word("surface_type"))
     else:
         plane = g.plane_through(base.points)
@@ -201,9 +264,16 @@ def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface
 
 
 def floor_area(zone: IdfObject, surfaces: list[IdfSurface]) -> float:
-    """Floor area of a zone: as given, else the sum of its floors. [m2]"""
+    """Floor area of a zone: as given, else the sum of its floors. [m2]
+
+    Parameters
+    ----------
+    zone : IdfObject
+        The zone.
+    surfaces : list of IdfSurface
+        Its surfaces.
+    """
     entered_area = zone.number("floor_area")
     if entered_area is not None and entered_area > 0.0:
         return entered_area
-    floors = (surface for surface in surfaces if surface.zone is zone and surface.shape == "floor")
-    return sum(g.area_of(surface.points) for surface in floors)
+    return sum(g.area_of(surface.points) for surface in surfaces if surface.shape == "floor")

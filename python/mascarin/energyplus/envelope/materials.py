@@ -40,11 +40,18 @@ WINDOW_MATERIALS: Final = (
 
 #: Properties without which a material does not melt.
 MELTING: Final = ("MaterialProperty:PhaseChange", "MaterialProperty:PhaseChangeHysteresis")
+#: Properties of a material that change with temperature, which only finite differences regard.
+VARYING: Final = (*MELTING, "MaterialProperty:VariableThermalConductivity")
 #: Concrete and surface resistances that EnergyPlus puts into constructions of C and F factors: thickness
 #: [m], conductivity [W/(m K)], density [kg/m3], specific heat [J/(kg K)]; inside, outside [m2 K/W]
 #: (EnergyPlus Engineering Reference, ground heat transfer calculations using C and F factor constructions).
 CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
 _FILMS: Final = (0.125, 0.03)
+#: Resistance of an unexposed F factor floor: 1000 h ft2 degF/Btu, as in EnergyPlus [m2 K/W].
+_UNEXPOSED: Final = 177.0
+#: Largest resistance of a material of a description [m2 K/W], and number of such layers.
+_MAX_RESISTANCE: Final = 100.0
+_MAX_LAYERS: Final = 10
 #: Distance from a jump of the heat capacity over which it is smoothed, of the shorter interval [-].
 _JUMP_WIDTH: Final = 0.25
 
@@ -79,26 +86,48 @@ def plain_layers(context: Context, construction: IdfObject, finite_differences: 
         return _factor_layers(context, construction, *_f_factor(construction))
     if construction.kind == "Construction:CfactorUndergroundWall":
         return _factor_layers(context, construction, *_c_factor(construction))
-    return [_layer(context, item, finite_differences) for item in layers_of(context, construction)]
+    layers = [_layer(context, item, finite_differences) for item in layers_of(context, construction)]
+    return [layer for parts in layers for layer in parts]
 
 
-@reads(*MELTING)
-def _layer(context: Context, item: IdfObject, finite_differences: bool) -> Section:
+@reads(*MELTING, "MaterialProperty:VariableThermalConductivity")
+def _layer(context: Context, item: IdfObject, finite_differences: bool) -> list[Section]:
     source = f"EnergyPlus {item.label}"
     melts = finite_differences and (
         context.model.named(item.name, "MaterialProperty:PhaseChange") is not None
         or context.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis") is not None
     )
-    name = context.names.of("materials", f"{item.name} melting" if melts else item.name)
+    varies = (
+        finite_differences
+        and context.model.named(item.name, "MaterialProperty:VariableThermalConductivity") is not None
+    )
+    kind = " melting" if melts else " variable" if varies else ""
+    name = context.names.of("materials", item.name + kind)
     materials = context.section("materials")
     thickness = item.number("thickness")
     if name not in materials:
-        materials[name] = _material(context, item, melts) | {"source": source}
-    bare = materials[name].get("kind") == "resistance"
-    return {"material": name} | ({} if bare else {"thickness": thickness})
+        materials[name] = _material(context, item, melts, varies) | {"source": source}
+    if materials[name].get("kind") == "resistance":
+        return _resistances(context, item, name)
+    return [{"material": name, "thickness": thickness}]
 
 
-def _material(context: Context, item: IdfObject, melts: bool) -> Section:
+def _resistances(context: Context, item: IdfObject, name: str) -> list[Section]:
+    """Layers of a resistance: one, or several equal ones where it is larger than that of a material."""
+    material = context.section("materials")[name]
+    total = context.resistances.setdefault(name, float(material["resistance"]))
+    if total > _MAX_LAYERS * _MAX_RESISTANCE:
+        context.findings.no_effect(
+            [item],
+            f"a resistance of {total:.4g} m2 K/W",
+            f"{_MAX_LAYERS * _MAX_RESISTANCE:g} m2 K/W: the heat flow is below 0.05 W/m2",
+        )
+    count = min(math.ceil(total / _MAX_RESISTANCE), _MAX_LAYERS)
+    material["resistance"] = min(total / count, _MAX_RESISTANCE) if count > 1 else total
+    return [{"material": name} for _ in range(count)]
+
+
+def _material(context: Context, item: IdfObject, melts: bool, varies: bool) -> Section:
     if item.kind in ("Material:NoMass", "Material:AirGap"):
         return {"kind": "resistance", "resistance": item.needed("thermal_resistance")}
     if item.kind == "Material:InfraredTransparent":
@@ -114,9 +143,13 @@ def _material(context: Context, item: IdfObject, melts: bool) -> Section:
         keys = tuple(f"{key}_of_dry_soil" for key in keys)
     conductivity, density, heat = (item.needed(key) for key in keys)
     solid = {"conductivity": conductivity, "density": density, "specific_heat": heat}
-    _variable_conductivity(context, item)
+    variable = _variable_conductivity(context, item) if varies else None
+    if variable is not None and melts:
+        context.findings.approximated(
+            item, "a conductivity that changes with temperature", "of a material that melts: it is constant"
+        )
     if not melts:
-        return solid
+        return solid if variable is None else solid | {"conductivity": variable}
     hysteresis = context.model.named(item.name, "MaterialProperty:PhaseChangeHysteresis")
     if hysteresis is not None:
         return _two_curves(context, hysteresis)
@@ -125,14 +158,26 @@ def _material(context: Context, item: IdfObject, melts: bool) -> Section:
 
 
 @reads("MaterialProperty:VariableThermalConductivity")
-def _variable_conductivity(context: Context, item: IdfObject) -> None:
+def _variable_conductivity(context: Context, item: IdfObject) -> Section | None:
+    """A conductivity that is linear between temperatures, as a formula; None where it is constant."""
     variable = context.model.named(item.name, "MaterialProperty:VariableThermalConductivity")
-    if variable is not None:
-        context.findings.approximated(
-            variable,
-            "conductivity that changes with temperature",
-            "that of the material is used at every temperature",
+    if variable is None:
+        return None
+    pairs = [tuple(row.values()) for row in variable.rows("values") or variable.rows("extensions")]
+    if not pairs:
+        keys = range(1, 11)
+        pairs = [
+            (variable.number(f"temperature_{k}"), variable.number(f"thermal_conductivity_{k}")) for k in keys
+        ]
+    points = [(float(pair[0]), float(pair[1])) for pair in pairs if None not in pair[:2]]
+    if not points or any(b[0] <= a[0] for a, b in pairwise(points)):
+        raise variable.error(
+            f"{len(points)} temperatures", "rising temperatures, each with its conductivity", "Correct them"
         )
+    terms = [f"{points[0][1]!r}"]
+    for (low, first), (high, last) in pairwise(points):
+        terms.append(f"({(last - first) / (high - low)!r})*(min(max(T, {low!r}), {high!r}) - ({low!r}))")
+    return {"formula": " + ".join(terms), "source": f"EnergyPlus {variable.label}"}
 
 
 def _enthalpy_table(context: Context, item: IdfObject, solid: Section) -> Section:
@@ -236,8 +281,11 @@ def _curve(peak: float, low: float, high: float) -> tuple[float, float]:
 
 
 def _f_factor(item: IdfObject) -> tuple[float, float]:
-    area, edge = item.needed("area"), item.needed("perimeterexposed")
-    return area / max(edge * item.needed("f_factor"), 1e-9) - sum(_FILMS), 0.0
+    area, edge = item.needed("area"), item.number("perimeterexposed") or 0.0
+    factor = item.needed("f_factor")
+    if edge <= 0.0 or factor <= 0.0:
+        return _UNEXPOSED, 0.0
+    return area / (edge * factor) - sum(_FILMS), 0.0
 
 
 def _c_factor(item: IdfObject) -> tuple[float, float]:
@@ -263,8 +311,9 @@ def _factor_layers(context: Context, item: IdfObject, total_resistance: float, _
         context.names.of("materials", item.name),
     )
     materials[concrete] = {"conductivity": conductivity, "density": density, "specific_heat": heat}
-    materials[soil] = {"kind": "resistance", "resistance": round(soil_resistance, 5)}
-    return [{"material": soil}, {"material": concrete, "thickness": thickness}]
+    if soil not in materials:
+        materials[soil] = {"kind": "resistance", "resistance": round(soil_resistance, 5)}
+    return [*_resistances(context, item, soil), {"material": concrete, "thickness": thickness}]
 
 
 def skin(context: Context, construction: IdfObject, outer: bool) -> dict[str, Any]:

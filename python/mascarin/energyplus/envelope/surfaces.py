@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -11,14 +12,15 @@ from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.glazings import construction_of
 from mascarin.energyplus.envelope.idf_surfaces import IdfSurface
-from mascarin.energyplus.envelope.materials import skin
+from mascarin.energyplus.envelope.materials import layers_of, skin
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.dates import steps_per_hour
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import temperature, year
 from mascarin.energyplus.model.site import ground
-from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
 from mascarin.errors import InputError
 
 #: Boundary conditions that stand for ground whose temperature another program or model finds.
@@ -100,13 +102,8 @@ def _shape(context: Context, surface: IdfSurface) -> tuple[Section, bool]:
         context.findings.approximated(
             surface.item, str(error).split("; expected")[0], "area and direction alone: it shades nothing"
         )
-        return _flat(surface.points), False
+        return g.flat(surface.points), False
     return {"vertices": g.rounded(points)}, True
-
-
-def _flat(points: g.Array) -> Section:
-    geometry = {"area": g.area_of(points), "tilt": g.tilt_of(points), "azimuth": g.azimuth_of(points)}
-    return {key: round(value, 5) for key, value in geometry.items()}
 
 
 def _toward_zone(
@@ -185,7 +182,9 @@ def _outdoors(context: Context, surface: IdfSurface, coefficients: ConvectionCoe
         side_section["absorptance"] = side["absorptance"]
     if coefficient.combined:
         side_section["longwave"] = "none"
-    hidden = {key: False for key, on in (("sun", surface.sun), ("wind", surface.wind)) if not on}
+    # EnergyPlus has no wind at and below the ground.
+    windy = surface.wind and float(surface.points[:, 2].mean()) > 0.0
+    hidden = {key: False for key, on in (("sun", surface.sun), ("wind", windy)) if not on}
     if hidden:
         side_section["exposure"] = hidden
     return side_section
@@ -206,22 +205,41 @@ def _between_zones(
             "Correct it",
         )
     if other.beyond.casefold() != surface.item.name.casefold():
-        raise surface.item.error(
-            f"'{other.item.name}' on its other side, which names '{other.beyond or other.boundary}'",
-            "two surfaces that name each other",
-            "Correct one of them",
-        )
+        return _one_sided(context, surface, other, coefficients)
     areas = g.area_of(surface.points), g.area_of(other.points)
     if abs(areas[0] - areas[1]) > 0.02 * max(areas):
         context.findings.approximated(
             other.item, f"{areas[1]:.2f} m2, on its other side {areas[0]:.2f} m2", "the first area is used"
         )
+    first, second = construction_of(context, surface.item), construction_of(context, other.item)
+    if first.kind == second.kind == "Construction" and first is not second:
+        layers = [[layer.name for layer in layers_of(context, item)] for item in (first, second)]
+        if layers[0] != layers[1][::-1]:
+            context.findings.approximated(
+                other.item,
+                f"layers of '{second.name}' that are not those of '{first.name}' on its other side",
+                f"those of '{first.name}' are used on both sides",
+            )
     done.reversed_names.add(other.item.name.casefold())
     done.placed[other.item.name.casefold()] = context.names.of("surfaces", surface.item.name)
     outer = _toward_zone(context, other, coefficients, construction_of(context, surface.item), outer=True)
     if other.zone is surface.zone:
         context.findings.approximated(surface.item, "both sides in one zone", "an internal mass of the zone")
     return outer
+
+
+def _one_sided(
+    context: Context, surface: IdfSurface, other: IdfSurface, coefficients: ConvectionCoefficients
+) -> Section:
+    """A surface whose other side is a surface that names another one."""
+    context.findings.approximated(
+        surface.item,
+        f"'{other.item.name}' on its other side, which names '{other.beyond or other.boundary}'",
+        f"the other side is in zone '{other.zone.name}': its heat comes from there; in EnergyPlus it has "
+        "the temperature of that surface, and its heat comes from nowhere",
+    )
+    outer = _toward_zone(context, other, coefficients, construction_of(context, surface.item), outer=True)
+    return outer | {"convection": coefficients.inside(other.item, other.zone, g.tilt_of(other.points))}
 
 
 @reads("SurfaceProperty:OtherSideCoefficients")
@@ -249,7 +267,7 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     if weather_coefficients or (air and (abs(air - 1.0) > 1e-9 or weight or soil)):
         what = ", ".join(weather_coefficients) or "outdoor air mixed with other temperatures"
         context.findings.left_out(
-            surface.item, f"{item.label} with {what}", "no heat flows through this surface"
+            item, f"{what}, at '{surface.item.name}'", "no heat flows through this surface"
         )
         return {"adiabatic": True}, False
     if air:
@@ -260,7 +278,8 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     fixed = item.number("constant_temperature") or 0.0
     values = year(context, item, "constant_temperature_schedule_name", default=fixed)
     if item.word("sinusoidal_variation_of_constant_temperature_coefficient") == "yes":
-        context.findings.left_out(item, "a sinusoidal temperature", "its constant part alone is used")
+        values = _wave(context, item, values)
+        weight = 1.0
     below = ground(context) if soil else constant(0.0)
     total = combined(lambda fixed_value, soil_value: weight * fixed_value + soil * soil_value, values, below)
     side = held_at(context, item.name, total)
@@ -269,6 +288,21 @@ def _other_side(context: Context, surface: IdfSurface) -> Outside:
     if "ground" in side:
         return {"scheduled": _as_schedule(context, item.name, total), "convection": coefficient}, False
     return side | {"convection": coefficient}, False
+
+
+def _wave(context: Context, item: IdfObject, values: Year) -> Year:
+    """A constant temperature times a sine of the time, in the steps of EnergyPlus. [degC]"""
+    period = item.number("period_of_sinusoidal_variation") or 24.0
+    if 24.0 % period > 1e-9:
+        context.findings.left_out(
+            item, f"a sine of {period:g} h, which does not divide a day", "its mean, 0 degC, is used"
+        )
+        return constant(0.0)
+    step = 60 // steps_per_hour(context)
+    day = tuple(
+        (start, math.sin(2.0 * math.pi * (start + step) / (60.0 * period))) for start in range(0, 1440, step)
+    )
+    return combined(lambda value, share: value * share, values, year_of([("12-31", (day,) * len(DAYS))]))
 
 
 def _as_schedule(context: Context, name: str, values: Year) -> str:
@@ -330,7 +364,7 @@ def _finite_differences(context: Context) -> dict[str, bool]:
         named[item.word("construction_name")] = item, item.word("algorithm")
     for item in context.model.of("SurfaceProperty:HeatTransferAlgorithm:SurfaceList"):
         words: list[Any] = [value for row in item.rows("surface") for value in row.values()]
-        words += [value for key, value in item.fields.items() if key.startswith("surface_name_")]
+        words += item.fields.starting("surface_name_")
         named |= {str(name).strip().casefold(): (item, item.word("algorithm")) for name in words}
     for item in context.model.of("SurfaceProperty:HeatTransferAlgorithm:MultipleSurface"):
         context.findings.left_out(

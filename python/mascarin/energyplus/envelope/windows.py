@@ -41,6 +41,10 @@ def describe_openings(
     """
     _shading_controls(context)
     names = {opening.item.name.casefold() for opening in openings}
+    doors: dict[str, list[g.Array]] = {}
+    for opening in openings:
+        if opening.shape == "door":
+            doors.setdefault(opening.base.item.name.casefold(), []).append(opening.points)
     for opening in openings:
         if opening.base.item.name.casefold() in surfaces.reversed_names:
             if opening.beyond.casefold() not in names:
@@ -49,7 +53,7 @@ def describe_openings(
                 )
             continue
         if opening.shape in _WINDOWS:
-            _window(context, opening, coefficients, surfaces)
+            _window(context, opening, coefficients, surfaces, doors)
         elif opening.shape == "door":
             _door(context, opening, coefficients, surfaces)
         else:
@@ -59,7 +63,11 @@ def describe_openings(
 
 
 def _window(
-    context: Context, opening: IdfOpening, coefficients: ConvectionCoefficients, surfaces: Surfaces
+    context: Context,
+    opening: IdfOpening,
+    coefficients: ConvectionCoefficients,
+    surfaces: Surfaces,
+    doors: dict[str, list[g.Array]],
 ) -> None:
     item, base = opening.item, opening.base
     wall = surfaces.placed[base.item.name.casefold()]
@@ -74,7 +82,12 @@ def _window(
         return
     frame = _frame_of(context, item) or glazed.frame
     points = g.without_repeats(opening.points + setback(opening))
-    shape = _glazed_shape(context, opening, points, frame, surfaces.has_vertices[wall])
+    free = not any(_overlap(points, door) for door in doors.get(base.item.name.casefold(), []))
+    if not free:
+        context.findings.approximated(
+            item, "a window over a door", "its area alone is taken from the wall, as in EnergyPlus"
+        )
+    shape = _glazed_shape(context, opening, points, frame, free and surfaces.has_vertices[wall])
     coefficient = coefficients.outside(item, base.zone, "very_smooth")
     tilt = g.tilt_of(base.points)
     window: Section = {"surface": wall, "glazing": glazed.name, **shape}
@@ -130,6 +143,14 @@ def _accepted(opening: IdfOpening, points: g.Array) -> bool:
         return bool(wall.contains(Polygon.of(opening.item.name, g.rounded(points))))
     except InputError:
         return False
+
+
+def _overlap(first: g.Array, second: g.Array) -> bool:
+    try:
+        outlines = [Polygon.of("opening", g.rounded(points)) for points in (first, second)]
+    except InputError:
+        return False
+    return bool(outlines[0].overlaps(outlines[1]))
 
 
 def _framed(points: g.Array, width: float) -> g.Array:
@@ -197,7 +218,7 @@ def _door(
             key: value for key, value in skin(context, door_construction, outer).items() if key in wall[side]
         }
         sides[side] = wall[side] | film_values
-    if wall["outside"].get("outdoors"):
+    if opening.base.boundary == "outdoors":
         coefficient = coefficients.outside(
             opening.item, opening.base.zone, skin(context, door_construction, outer=True)["roughness"]
         )

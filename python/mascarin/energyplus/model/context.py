@@ -10,6 +10,7 @@ from mascarin.building.parts.description import Description
 from mascarin.energyplus.model.findings import Findings
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfModel, IdfObject
+from mascarin.energyplus.model.year import Year
 
 Section = dict[str, Any]
 #: Sections of a description, in its order: that of the written file.
@@ -32,12 +33,24 @@ class Names:
     original: dict[str, dict[str, str]] = field(default_factory=dict)
     taken: set[tuple[str, str]] = field(default_factory=set)
 
-    def of(self, section: str, name: str) -> str:
-        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case."""
-        key = (section, name.strip().casefold())
+    def of(self, section: str, name: str, kind: str = "") -> str:
+        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case.
+
+        Parameters
+        ----------
+        section : str
+            Section of the description.
+        name : str
+            Name in the file.
+        kind : str
+            Class of the object, where objects of several classes may have one name.
+        """
+        key = (section, f"{kind}|{name.strip()}".casefold())
         if key not in self.by_original:
             self.by_original[key] = self.new(section, name)
-            self.original.setdefault(section, {})[name.strip()] = self.by_original[key]
+            held = self.original.setdefault(section, {})
+            original = f"{kind} {name.strip()}" if kind and name.strip() in held else name.strip()
+            held[original] = self.by_original[key]
         return self.by_original[key]
 
     def new(self, section: str, name: str) -> str:
@@ -45,7 +58,9 @@ class Names:
         # Results of zones, surfaces, windows and sensors are named after them: one set of names.
         room = "parts" if section in ("zones", "surfaces", "windows") else section
         plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
-        plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
+        if not plain.isidentifier():
+            # Gains and the like are held by zone: the first word says what they are.
+            plain = f"{section.split()[0].rstrip('s')}_{plain}"
         candidate, count = plain, 1
         while (room, candidate.casefold()) in self.taken:
             count += 1
@@ -68,12 +83,21 @@ class Context:
         Names of the parts.
     sections : dict of str to dict
         The description, as far as it is made.
+    years : dict of str to Year
+        Schedules of the file that were read, by name in small letters.
+    shapes : dict of str to str
+        Schedules of the description by what they say.
+    resistances : dict of str to float
+        Whole resistance of the materials without mass, which may be several layers. [m2 K/W]
     """
 
     model: IdfModel
     findings: Findings = field(default_factory=Findings)
     names: Names = field(default_factory=Names)
     sections: dict[str, Section] = field(default_factory=dict)
+    years: dict[str, Year] = field(default_factory=dict)
+    shapes: dict[str, str] = field(default_factory=dict)
+    resistances: dict[str, float] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
         """A section of the description.
@@ -96,7 +120,6 @@ class Context:
         """Zones of the file."""
         return self.model.of("Zone")
 
-    @reads("Zone", "ZoneList", "Space", "SpaceList")
     def zones_of(self, user: IdfObject, *keys: str) -> list[IdfObject]:
         """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
 
@@ -105,21 +128,36 @@ class Context:
         InputError
             There is no such zone.
         """
+        return [zone for zone, _ in self.places_of(user, *keys)]
+
+    @reads("Zone", "ZoneList", "Space", "SpaceList")
+    def places_of(self, user: IdfObject, *keys: str) -> list[tuple[IdfObject, IdfObject | None]]:
+        """Zones that a field names, each with the space in it where one is named.
+
+        Raises
+        ------
+        InputError
+            There is no such zone.
+        """
         model, name_of_target = self.model, user.text(*keys)
         if (zone := model.named(name_of_target, "Zone")) is not None:
-            return [zone]
+            return [(zone, None)]
         if (zones := model.named(name_of_target, "ZoneList")) is not None:
-            return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
+            return [
+                (model.require(zones, "zone_name", "Zone", name=name), None)
+                for name in listed(zones, "zones")
+            ]
         if (space := model.named(name_of_target, "Space")) is not None:
-            return [model.require(space, "zone_name", "Zone")]
+            return [(model.require(space, "zone_name", "Zone"), space)]
         if (spaces := model.named(name_of_target, "SpaceList")) is not None:
             space_objects = [
                 model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")
             ]
-            return [model.require(space, "zone_name", "Zone") for space in space_objects]
+            return [(model.require(space, "zone_name", "Zone"), space) for space in space_objects]
         # Named so that the error lists the zones.
         key = next((key for key in keys if user.text(key)), keys[0])
-        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)]
+        target = model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=name_of_target)
+        return [(target, None)]
 
 
 def listed(item: IdfObject, wrapper: str) -> list[str]:

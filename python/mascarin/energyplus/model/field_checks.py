@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
@@ -92,16 +91,22 @@ def _is_finite(value: float) -> bool:
 
 def _outside(value: float, definition: Mapping[str, Any]) -> str | None:
     """The limit of the schema that a number misses."""
-    if value < definition.get("minimum", -math.inf):
-        return f"at least {definition['minimum']:g}"
-    if value > definition.get("maximum", math.inf):
-        return f"at most {definition['maximum']:g}"
-    for key, words, missed in (
-        ("exclusiveMinimum", "above", value <= definition.get("exclusiveMinimum", -math.inf)),
-        ("exclusiveMaximum", "below", value >= definition.get("exclusiveMaximum", math.inf)),
+    for key, strict, sign, bound, beyond in (
+        ("minimum", "exclusiveMinimum", 1.0, "at least", "a number above"),
+        ("maximum", "exclusiveMaximum", -1.0, "at most", "a number below"),
     ):
-        if missed:
-            return f"a number {words} {definition[key]:g}"
+        exclusive = definition.get(strict)
+        # Up to 9.5, the strict limit is a word on the other limit; later it is a limit itself.
+        old = isinstance(exclusive, bool)
+        limit = definition.get(key) if old or exclusive is None else exclusive
+        if limit is None:
+            continue
+        if exclusive is not None and exclusive is not False:
+            if sign * (value - limit) <= 0.0:
+                return f"{beyond} {limit:g}"
+            limit = definition.get(key, limit)
+        if sign * (value - limit) < 0.0:
+            return f"{bound} {limit:g}"
     return None
 
 

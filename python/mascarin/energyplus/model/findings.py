@@ -31,6 +31,9 @@ class Finding:
         What was found.
     effect : str
         What this does to the results.
+    kelvin : float or None
+        Rms of the air temperature of a small room in EnergyPlus with the object, and without it, where it was
+        measured: ``bench/energyplus_small.py``. [K]
     """
 
     level: Level
@@ -39,12 +42,19 @@ class Finding:
     line: int | None
     what: str
     effect: str
+    kelvin: float | None = None
+
+    @property
+    def consequence(self) -> str:
+        """The effect, with its measured size."""
+        size = "" if self.kelvin is None else f": about {self.kelvin:g} K in a small room"
+        return self.effect + size
 
     def text(self) -> str:
         """The finding on one line."""
         position = "" if self.line is None else f"line {self.line}: "
         name = f" '{self.name}'" if self.name else ""
-        return f"{position}{self.kind}{name}: {self.what}: {self.effect}"
+        return f"{position}{self.kind}{name}: {self.what}: {self.consequence}"
 
 
 @dataclass
@@ -52,15 +62,15 @@ class Findings:
     """Findings in the order in which they were made, each once."""
 
     unique: dict[Finding, None] = field(default_factory=dict)
-    _objects: set[tuple[str, str, int | None]] = field(default_factory=set)
+    _objects: set[tuple[str, str, int | None, str]] = field(default_factory=set)
 
-    def left_out(self, item: IdfObject, what: str, effect: str) -> None:
+    def left_out(self, item: IdfObject, what: str, effect: str, kelvin: float | None = None) -> None:
         """Note an object or property that is not carried over and changes the results."""
-        self._add("left out", item, what, effect)
+        self._add("left out", item, what, effect, kelvin)
 
-    def approximated(self, item: IdfObject, what: str, effect: str) -> None:
+    def approximated(self, item: IdfObject, what: str, effect: str, kelvin: float | None = None) -> None:
         """Note an object or property that is carried over in another form."""
-        self._add("approximated", item, what, effect)
+        self._add("approximated", item, what, effect, kelvin)
 
     def no_effect(self, items: Iterable[IdfObject], what: str, effect: str) -> None:
         """Note objects of one class that are not needed."""
@@ -71,13 +81,15 @@ class Findings:
             count = f"{len(objects)} objects"
             self.unique[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
 
-    def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
-        self.unique[Finding(level, item.kind, item.name, item.line, what, effect)] = None
-        self._objects.add((item.kind, item.name, item.line))
+    def _add(
+        self, level: Level, item: IdfObject, what: str, effect: str, kelvin: float | None = None
+    ) -> None:
+        self.unique[Finding(level, item.kind, item.name, item.line, what, effect, kelvin)] = None
+        self._objects |= {(item.kind, item.name, item.line, any_level) for any_level in ("", level)}
 
-    def about(self, item: IdfObject) -> bool:
-        """Whether something is noted about an object."""
-        return (item.kind, item.name, item.line) in self._objects
+    def about(self, item: IdfObject, level: Level | Literal[""] = "") -> bool:
+        """Whether something is noted about an object; of one level, if it is given."""
+        return (item.kind, item.name, item.line, level) in self._objects
 
     def of(self, level: Level) -> list[Finding]:
         """Findings of one level, by line."""

@@ -9,21 +9,67 @@ from __future__ import annotations
 import bisect
 import json
 import re
+import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Final
 
 from mascarin._io.regular import require_regular
+from mascarin.energyplus.model.expressions import values_of_first_run, with_values
 from mascarin.energyplus.model.field_checks import AUTO, wrong_number
 from mascarin.errors import InputError, did_you_mean
 
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
 _COMMENT: Final = re.compile(rb"![^\n]*")
+#: Lines of the macro preprocessor, and its expressions in fields.
+_MACRO: Final = re.compile(rb"^[ \t]*##[^\n]*|#(?:eval)?[ \t]*\[[^\n]*", re.MULTILINE | re.IGNORECASE)
+#: Blank fields at the end of an object, from the second one on.
+_BLANK_END: Final = re.compile(rb"(?<=,)\s*,[\s,]*(?=;)")
 #: White space, and what old editors write at the end of a file.
 _ENDING: Final = b" \t\r\n\x1a\x00\xef\xbb\xbf"
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
 _EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
+
+
+class Fields(dict[str, Any]):
+    """Fields of an object, which remember which of them were looked at.
+
+    Attributes
+    ----------
+    seen : set of str
+        Names of the fields that were read.
+    """
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        super().__init__(values)
+        self.seen: set[str] = set()
+
+    def __getitem__(self, key: str) -> Any:
+        self.seen.add(key)
+        return super().__getitem__(key)
+
+    def __contains__(self, key: object) -> bool:
+        self.seen.add(str(key))
+        return super().__contains__(key)
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """The value of a field, which counts as read."""
+        self.seen.add(key)
+        return super().get(key, default)
+
+    def starting(self, prefix: str) -> list[Any]:
+        """Values of the fields whose names start so; they count as read."""
+        return [self[key] for key in list(self) if key.startswith(prefix)]
+
+    def pass_over(self, pattern: str) -> None:
+        """Count fields as read that a finding speaks of, or without effect; ``*`` stands for any text."""
+        self.seen |= {key for key in self if fnmatchcase(key, pattern)}
+
+    def unseen(self) -> dict[str, Any]:
+        """Fields that nothing has read."""
+        return {key: value for key, value in super().items() if key not in self.seen}
 
 
 @dataclass(frozen=True)
@@ -36,7 +82,7 @@ class IdfObject:
         Class of the object, such as ``Zone``.
     name : str
         Its name; empty for a class without names.
-    fields : mapping of str to object
+    fields : Fields
         Values by the names of epJSON; blank fields are left out.
     defaults : mapping of str to object
         Default of each field in this version of EnergyPlus.
@@ -48,7 +94,7 @@ class IdfObject:
 
     kind: str
     name: str
-    fields: Mapping[str, Any]
+    fields: Fields
     defaults: Mapping[str, Any] = field(repr=False)
     line: int | None
     file: str
@@ -65,11 +111,13 @@ class IdfObject:
 
     def get(self, *keys: str) -> Any:
         """First given value of some fields, else their default; None without either."""
-        for values in (self.fields, self.defaults):
-            for key in keys:
-                if key in values:
-                    return values[key]
-        return None
+        stated: Any = None
+        for key in reversed(keys):
+            value = self.fields.get(key)
+            stated = stated if value is None else value
+        if stated is not None:
+            return stated
+        return next((self.defaults[key] for key in keys if key in self.defaults), None)
 
     def text(self, *keys: str) -> str:
         """The same as text without spaces at its ends; empty where nothing is given."""
@@ -155,6 +203,14 @@ class IdfModel:
         """Objects of some classes."""
         self.looked_up |= {kind.casefold() for kind in kinds}
         return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
+
+    def of_class(self, kind: str) -> list[IdfObject]:
+        """Objects of a class, which does not count as looked up."""
+        return self._by_kind.get(kind.casefold(), [])
+
+    def has(self, kind: str) -> bool:
+        """Whether the file has objects of a class, which do not count as looked up."""
+        return kind.casefold() in self._by_kind
 
     def one(self, kind: str) -> IdfObject | None:
         """The object of a class of which there is one; None without it."""
@@ -263,7 +319,18 @@ def _idfkit() -> Any:
 
 def _idf(kit: Any, path: Path) -> Any:
     data = path.read_bytes()
+    if b"\0" in data:
+        line = data.count(b"\n", 0, data.index(b"\0")) + 1
+        raise InputError(f"{path}:{line}: found bytes that are no text; expected {_EXPECTED}. Check the file")
     plain = _COMMENT.sub(b"", data)
+    macro = _MACRO.search(plain)
+    if macro is not None:
+        line = plain.count(b"\n", 0, macro.start()) + 1
+        text = macro[0].decode("latin-1").strip()[:60]
+        raise InputError(
+            f"{path}:{line}: found the macro '{text}'; expected objects alone. Write the file out by the "
+            "preprocessor EPMacro, which comes with EnergyPlus, and convert out.idf"
+        )
     last = plain.rfind(b";") + 1
     incomplete = plain[last:].strip(_ENDING)
     if incomplete:
@@ -276,9 +343,30 @@ def _idf(kit: Any, path: Path) -> Any:
         )
     try:
         data.decode("utf-8")
+        encoding = "utf-8"
     except UnicodeDecodeError:
-        return kit.parse_idf(path, encoding="latin-1", preserve_formatting=True)
-    return kit.parse_idf(path, encoding="utf-8", preserve_formatting=True)
+        encoding = "latin-1"
+    tidy = _without_blank_ends(data)
+    if tidy == data:
+        return kit.parse_idf(path, encoding=encoding, preserve_formatting=True)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "model.idf"
+        copy.write_bytes(tidy)
+        return kit.parse_idf(copy, encoding=encoding, preserve_formatting=True)
+
+
+def _without_blank_ends(data: bytes) -> bytes:
+    """A file without the blank fields at the ends of its objects, with the same lines.
+
+    EnergyPlus reads over blank fields after the last field of a class; a parser by its schema does not.
+    """
+    blanked = bytearray(data)
+    plain = _COMMENT.sub(lambda match: b" " * len(match[0]), data)
+    for match in _BLANK_END.finditer(plain):
+        for offset in range(match.start(), match.end()):
+            if plain[offset : offset + 1] == b",":
+                blanked[offset] = ord(" ")
+    return bytes(blanked)
 
 
 def _epjson(kit: Any, path: Path) -> Any:
@@ -325,6 +413,11 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
     schema = document.schema
     lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
     defaults: dict[str, dict[str, Any]] = {}
+    parameters = values_of_first_run(
+        (str(entry.obj_type), str(entry.name or ""), dict(entry.data))
+        for entry in document.all_objects
+        if str(entry.obj_type).startswith("Parametric:")
+    )
     items = []
     for k, entry in enumerate(document.all_objects):
         kind = str(entry.obj_type)
@@ -337,13 +430,33 @@ def _items(document: Any, path: Path, form: str) -> list[IdfObject]:
         if kind not in defaults:
             defaults[kind] = _defaults(schema, kind)
         plain = {key: value for key, value in dict(entry.data).items() if value is not None and value != ""}
+        if parameters:
+            plain = {key: with_values(value, parameters) for key, value in plain.items()}
         line = lines.get(k) if form == "idf" else lines.get((kind, entry.name), lines.get((kind, "")))
-        item = IdfObject(kind, str(entry.name or ""), plain, defaults[kind], line, path.name)
+        item = IdfObject(kind, str(entry.name or ""), Fields(plain), defaults[kind], line, path.name)
+        if form == "epjson":
+            _only_known(schema, item)
         fault = wrong_number(schema, kind, plain)
         if fault is not None:
-            raise InputError(f"{item.where}: {fault}. EnergyPlus refuses it too: correct the field")
+            advice = (
+                "ParametricPreprocessor of EnergyPlus writes a file for each of its runs: convert one"
+                if re.search(r"found '\s*=", fault)
+                else "EnergyPlus refuses it too: correct the field"
+            )
+            raise InputError(f"{item.where}: {fault}. {advice}")
         items.append(item)
     return items
+
+
+def _only_known(schema: Any, item: IdfObject) -> None:
+    """Refuse fields that the class does not have, as EnergyPlus does."""
+    names = set((schema.get_inner_schema(item.kind) or {}).get("properties", {}))
+    names |= set(schema.get_all_field_names(item.kind))
+    for key in item.fields.unseen():
+        if names and key not in names and not key.startswith("idf_"):
+            raise item.error(
+                f"found the field '{key}'", "a field of this class", did_you_mean(key, names) or "Remove it"
+            )
 
 
 def _defaults(schema: Any, kind: str) -> dict[str, Any]:

@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
-import calendar
+import bisect
 import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from datetime import date, timedelta
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
 from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.dates import holidays, last_day, special_days, steps_per_hour, summer_time
 from mascarin.energyplus.model.field_checks import finite
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
-from mascarin.energyplus.model.year import DAYS, Day, Week, Year, combined, constant, plain, year_of
-from mascarin.tables.timezones import YEARS
+from mascarin.energyplus.model.year import (
+    DAYS,
+    Day,
+    Week,
+    Year,
+    ahead,
+    combined,
+    constant,
+    day_before,
+    plain,
+    year_of,
+)
 
 SCHEDULES: Final = (
     "Schedule:Compact",
@@ -26,20 +39,24 @@ SCHEDULES: Final = (
     "Schedule:File",
     "Schedule:File:Shading",
     "ExternalInterface:Schedule",
+    "ExternalInterface:FunctionalMockupUnitImport:To:Schedule",
+    "ExternalInterface:FunctionalMockupUnitExport:To:Schedule",
 )
 _WEEKS: Final = ("Schedule:Week:Daily", "Schedule:Week:Compact")
 _DAYS: Final = ("Schedule:Day:Hourly", "Schedule:Day:Interval", "Schedule:Day:List")
-_MONTHS: Final = {name.casefold(): k for k, name in enumerate(calendar.month_name) if name} | {
-    name.casefold(): k for k, name in enumerate(calendar.month_abbr) if name
-}
+#: Kinds of days that occur only where special days name them, and all kinds of a parsed week.
+_SPECIAL: Final = ("summerdesignday", "winterdesignday", "customday1", "customday2")
+_KINDS: Final = (*DAYS, *_SPECIAL)
+#: Words of kinds of days, each also as a part of a longer word, as EnergyPlus finds them.
 _GROUPS: Final = {
-    "alldays": DAYS,
-    "weekdays": ("monday", "tuesday", "wednesday", "thursday", "friday"),
-    "weekends": ("saturday", "sunday"),
-    "holidays": ("holiday",),
+    "alldays": _KINDS,
+    "weekday": ("monday", "tuesday", "wednesday", "thursday", "friday"),
+    "weekend": ("saturday", "sunday"),
     **{day: (day,) for day in DAYS},
-    **dict.fromkeys(("summerdesignday", "winterdesignday", "customday1", "customday2"), ()),
+    **{day.removesuffix("designday"): (day,) for day in _SPECIAL},
 }
+#: Words of EnergyPlus for the values of steps between the times of a schedule, the older ones included.
+_BETWEEN: Final = {"no": "no", "": "no", "yes": "average", "average": "average", "linear": "linear"}
 #: Set points that never act, in place of heating or cooling that is not available [degC].
 NEVER_HEATS, NEVER_COOLS = -50.0, 80.0
 
@@ -57,7 +74,15 @@ def year(context: Context, user: IdfObject, *keys: str, default: float = 1.0) ->
     if key is None:
         return constant(default)
     item = context.model.require(user, key, *SCHEDULES)
-    return _year(context, item)
+    held = context.years
+    if item.name.casefold() not in held:
+        summer = summer_time(context)
+        values = _year(context, item)
+        values = _with_special_days(context, values)
+        held[item.name.casefold()] = replace(
+            values if summer is None else ahead(values, *summer), name=item.name
+        )
+    return held[item.name.casefold()]
 
 
 def _year(context: Context, item: IdfObject) -> Year:
@@ -109,93 +134,35 @@ def temperature(context: Context, name: str, values: Year) -> str | float:
 def _entered(context: Context, name: str, values: Year, kind: str) -> str:
     """Name of a schedule with these values; one that is there already, if it is equal."""
     description = plain(values, kind, holidays(context))
-    held = context.section("schedules")
-    for existing_name, other in held.items():
-        if other == description:
-            return str(existing_name)
-    free = context.names.new("schedules", name)
-    held[free] = description
-    return free
+    key = repr(description)
+    if key not in context.shapes:
+        free = context.names.new("schedules", values.name or name)
+        if values.name:
+            context.names.original.setdefault("schedules", {}).setdefault(values.name, free)
+        context.section("schedules")[free] = description
+        context.shapes[key] = free
+    return context.shapes[key]
 
 
-# --- the year that is simulated -----------------------------------------------------------------------------
-
-
-@reads("RunPeriod")
-def calendar_year(context: Context) -> int:
-    """Year without a 29 February whose days of the week are those of the run period."""
-    item = context.model.one("RunPeriod")
-    if item is None:
-        return 2017
-    begin_year = item.number("begin_year")
-    if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
-        raise item.error(
-            f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"
-        )
-    if begin_year is not None and not calendar.isleap(int(begin_year)):
-        return int(begin_year)
-    month, day = int(item.number("begin_month") or 1), int(item.number("begin_day_of_month") or 1)
-    names = [name.casefold() for name in calendar.day_name]
-    word = item.word("day_of_week_for_start_day")
-    weekday = names.index(word) if word in names else 6
-    if begin_year is not None and word not in names:
-        weekday = day_of(item, int(begin_year), month, day).weekday()
-    years = [2017, 2018, 2019, 2014, 2015, 2010, 2011]
-    return next(candidate for candidate in years if day_of(item, candidate, month, day).weekday() == weekday)
-
-
-def day_of(item: IdfObject, in_year: int, month: int, day: int) -> date:
-    """A day of a year; 29 February counts as the 28th.
-
-    Raises
-    ------
-    InputError
-        There is no such day.
-    """
-    try:
-        return date(in_year, month, 28 if (month, day) == (2, 29) else day)
-    except (ValueError, OverflowError):
-        raise item.error(f"found the day {month}/{day}", "a day of the year", "Correct the date") from None
-
-
-@reads("RunPeriodControl:SpecialDays")
-def holidays(context: Context) -> list[str]:
-    """Holidays of the file, as ``MM-DD``, in order."""
-    dates: set[str] = set()
-    for item in context.model.of("RunPeriodControl:SpecialDays"):
-        if item.word("special_day_type") not in ("holiday", ""):
-            continue
-        first = _date(item, item.text("start_date"), calendar_year(context))
-        for k in range(int(item.number("duration") or 1)):
-            dates.add(f"{first + timedelta(days=k):%m-%d}")
-    return sorted(dates)
-
-
-def _date(item: IdfObject, text: str, in_year: int) -> date:
-    """A date such as 12/25, December 25, 25 Dec, 4th Thursday in November, Last Monday in May."""
-    words = re.findall(r"[a-z]+|\d+", text.casefold())
-    numbers = [int(word) if len(word) < 9 else 0 for word in words if word.isdigit()]  # no day is 0
-    months = [_MONTHS[word] for word in words if word in _MONTHS]
-    weekday = next((k for k, name in enumerate(calendar.day_name) if name.casefold() in words), None)
-    try:
-        if weekday is not None and months:
-            days = [
-                date(in_year, months[0], d)
-                for d in range(1, calendar.monthrange(in_year, months[0])[1] + 1)
-                if date(in_year, months[0], d).weekday() == weekday
-            ]
-            return days[-1] if "last" in words else days[numbers[0] - 1]
-        if months:
-            return date(in_year, months[0], numbers[0])
-        return date(in_year, numbers[0], numbers[1])
-    except (IndexError, ValueError):
-        raise item.error(f"found a date '{text}'", "a day such as 12/25", "Correct the date") from None
-
-
-def _end(item: IdfObject, text: str) -> str:
-    """A last day as ``MM-DD``; 29 February counts as the 28th."""
-    cleaned = re.sub(r"\b0?2/29\b", "2/28", text)
-    return f"{_date(item, cleaned, 2017):%m-%d}"
+def _with_special_days(context: Context, values: Year) -> Year:
+    """A year of weeks with all kinds of days as one of the usual kinds: special days are seasons."""
+    if len(values.seasons[0][1]) == len(DAYS):
+        return values
+    special = {
+        f"{first + timedelta(days=k):%m-%d}": _KINDS.index(kind)
+        for first, duration, kind in special_days(context)
+        if kind in _SPECIAL
+        for k in range(duration)
+    }
+    ends = {until for until, _ in values.seasons}
+    for day in special:
+        ends |= {day, day_before(day)}
+    seasons = []
+    for until in sorted(ends - {""}):
+        week = values.week_at(until)
+        kind = special.get(until)
+        seasons.append((until, week[: len(DAYS)] if kind is None else (week[kind],) * len(DAYS)))
+    return year_of(seasons)
 
 
 # --- classes of schedules -----------------------------------------------------------------------------------
@@ -204,9 +171,9 @@ def _end(item: IdfObject, text: str) -> str:
 def _compact(context: Context, item: IdfObject) -> Year:
     words = [str(row.get("field", "")).strip() for row in item.rows("data")]
     if not words:
-        words = [str(value).strip() for key, value in item.fields.items() if key.startswith("field")]
+        words = [str(value).strip() for value in item.fields.starting("field")]
     seasons: list[tuple[str, Week]] = []
-    for end, days in _throughs(item, words):
+    for end, days in _throughs(context, item, words):
         seasons.append((end, _week(context, item, days)))
     if not seasons or seasons[-1][0] != "12-31":
         last = seasons[-1][0] if seasons else "no day"
@@ -214,9 +181,11 @@ def _compact(context: Context, item: IdfObject) -> Year:
     return year_of(seasons)
 
 
-def _throughs(item: IdfObject, words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
+def _throughs(
+    context: Context, item: IdfObject, words: Sequence[str]
+) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
     """Seasons of a compact schedule: last day, and days with the words that say which they are."""
-    end, who = "", ""
+    end, who, between = "", "", "no"
     days: list[tuple[str, Day]] = []
     points: list[tuple[int, float]] = []
     last: int | None = None
@@ -225,20 +194,28 @@ def _throughs(item: IdfObject, words: Sequence[str]) -> Iterator[tuple[str, list
         low = head.casefold().strip()
         if low.startswith("through"):
             if end:
-                yield end, _closed(item, days, who, points)
+                yield end, [*days, (who, _closed(context, item, who, points, between))]
             text = tail.strip() or low.removeprefix("through").strip()
-            end, days, who, points = _end(item, text), [], "", []
+            end, days, who, points = last_day(item, text), [], "", []
         elif low.startswith("for"):
-            days = _closed(item, days, who, points) if who else days
-            who, points = (low.removeprefix("for") + " " + tail.casefold()).strip(), []
+            if who:
+                days = [*days, (who, _closed(context, item, who, points, between))]
+            who, points, between = (low.removeprefix("for") + " " + tail.casefold()).strip(), [], "no"
         elif low.startswith("interpolate"):
-            continue
+            between = _between(item, tail or low.removeprefix("interpolate"))
         elif low.startswith("until"):
             last = _minute(item, (low.removeprefix("until") + ":" + tail).strip(": "))
         elif word:
             points.append((last or 0, _value(item, word)))
     if end:
-        yield end, _closed(item, days, who, points)
+        yield end, [*days, (who, _closed(context, item, who, points, between))]
+
+
+def _between(item: IdfObject, text: str) -> str:
+    word = text.strip().casefold()
+    if word not in _BETWEEN:
+        raise item.error(f"interpolate: found '{word}'", "No, Average or Linear", "Correct the schedule")
+    return _BETWEEN[word]
 
 
 def _value(item: IdfObject, word: str) -> float:
@@ -256,41 +233,78 @@ def _minute(item: IdfObject, text: str) -> int:
 
 
 def _closed(
-    item: IdfObject, days: list[tuple[str, Day]], who: str, points: list[tuple[int, float]]
-) -> list[tuple[str, Day]]:
-    """Days with the one that has just ended; its points hold the minute *until* which a value is valid."""
+    context: Context, item: IdfObject, who: str, points: list[tuple[int, float]], between: str
+) -> Day:
+    """A day from points that hold the minute *until* which a value is valid."""
     ends = [minute for minute, _ in points]
-    if not points or ends != sorted(set(ends)) or ends[-1] != 1440:
+    if not points or ends != sorted(ends) or ends[-1] != 1440:
         raise item.error(
             f"times until {', '.join(f'{m // 60}:{m % 60:02d}' for m in ends) or 'nothing'} for '{who}'",
             "rising times until 24:00",
             "Correct the schedule",
         )
+    for first, second in pairwise(ends):
+        if first == second:
+            context.findings.no_effect(
+                [item], f"two values until {first // 60}:{first % 60:02d}", "the first is used"
+            )
+            break
+    # A value until the time of the one before it is never valid.
+    lasting = [point for k, point in enumerate(points) if k == 0 or point[0] > points[k - 1][0]]
+    return _by_steps(context, lasting, between)
+
+
+def _by_steps(context: Context, points: list[tuple[int, float]], between: str) -> Day:
+    """A day from its points, as EnergyPlus takes it in time steps.
+
+    A step has the value of its end, or the mean over the step (``average``), or between the points at its
+    end (``linear``); before the first point it is that of the first.
+    """
+    step = 60 // steps_per_hour(context)
+    ends = [minute for minute, _ in points]
     starts = [0, *ends[:-1]]
-    return [*days, (who, tuple(zip(starts, (value for _, value in points), strict=True)))]
+    if between != "linear" and all(minute % step == 0 for minute in ends):
+        return tuple(zip(starts, (value for _, value in points), strict=True))
+    values = [value for _, value in points]
+    day = []
+    for end in range(step, 1441, step):
+        k = bisect.bisect_left(ends, end)
+        if between == "linear":
+            share = 1.0 if k == 0 else (end - starts[k]) / (ends[k] - starts[k])
+            value = values[k] - (1.0 - share) * (values[k] - values[k - 1])
+        elif between == "average":
+            parts = zip(starts, ends, values, strict=True)
+            value = sum(max(min(e, end) - max(s, end - step), 0) * v for s, e, v in parts) / step
+        else:
+            value = values[k]
+        day.append((end - step, value))
+    return tuple(day)
 
 
 def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) -> Week:
     """A day of each kind; the first entry that names it counts."""
     day_of_kind: dict[str, Day] = {}
     for who, day in days:
-        words = re.findall(r"[a-z0-9]+", who)
-        for word in words:
-            if word == "allotherdays":
-                names: Sequence[str] = DAYS
-            elif word in _GROUPS or f"{word}s" in _GROUPS:
-                names = _GROUPS.get(word, _GROUPS.get(f"{word}s", ()))
-            else:
+        names: list[str] = []
+        for word in re.findall(r"[a-z0-9]+", who):
+            groups = [group for group in _GROUPS if group in word]
+            if "allotherdays" in word or "alldays" in word:
+                names += _KINDS
+            elif groups:
+                names += [name for group in groups for name in _GROUPS[group]]
+            elif word not in ("day", "days", "designday", "design", "and"):
                 raise item.error(
                     f"found '{word}'", f"a kind of day such as {', '.join(_GROUPS)}", "Correct it"
                 )
-            for name in names:
-                day_of_kind.setdefault(name, day)
-    missing = [name for name in DAYS[:7] if name not in day_of_kind]
+        for name in names:
+            day_of_kind.setdefault(name, day)
+    used = {name for *_, name in special_days(context)}
+    missing = [name for name in _KINDS if name not in day_of_kind and (name in DAYS or name in used)]
     if missing:
-        raise item.error(f"no values for {', '.join(missing)}", "values for every day", "Add AllOtherDays")
-    day_of_kind.setdefault("holiday", day_of_kind["sunday"])
-    return tuple(day_of_kind[name] for name in DAYS)
+        context.findings.approximated(
+            item, f"no values for {', '.join(missing)}", "0 on these days, as in EnergyPlus"
+        )
+    return tuple(day_of_kind.get(name, ((0, 0.0),)) for name in _KINDS)
 
 
 @reads(*_WEEKS)
@@ -308,30 +322,36 @@ def _weeks(context: Context, item: IdfObject) -> Year:
 @reads(*_DAYS)
 def _week_of(context: Context, item: IdfObject) -> Week:
     if item.kind == "Schedule:Week:Daily":
-        keys = [f"{name}_schedule_day_name" for name in DAYS]
-        return tuple(_day(context.model.require(item, key, *_DAYS)) for key in keys)
+        keys = [f"{name}_schedule_day_name" for name in _KINDS]
+        return tuple(_day(context, context.model.require(item, key, *_DAYS)) for key in keys)
     days = []
     for row in item.rows("data"):
         who = re.sub(r"^for:?", "", str(row.get("daytype_list", "")).strip().casefold())
         day_schedule = context.model.require(
             item, "schedule_day_name", *_DAYS, name=str(row.get("schedule_day_name"))
         )
-        days.append((who, _day(day_schedule)))
+        days.append((who, _day(context, day_schedule)))
     return _week(context, item, days)
 
 
-def _day(item: IdfObject) -> Day:
+def _day(context: Context, item: IdfObject) -> Day:
     if item.kind == "Schedule:Day:Hourly":
         return tuple((60 * k, item.number(f"hour_{k + 1}") or 0.0) for k in range(24))
+    between = _between(item, item.text("interpolate_to_timestep"))
     if item.kind == "Schedule:Day:List":
         minutes = int(item.number("minutes_per_item") or 60)
         values = [_value(item, str(next(iter(row.values())))) for row in item.rows("extensions")]
-        return tuple((minutes * k, value) for k, value in enumerate(values[: 1440 // minutes]))
+        count = 1440 // minutes
+        if len(values) != count:
+            raise item.error(f"{len(values)} values", f"{count}: a day by {minutes} minutes", "Correct it")
+        return _closed(
+            context, item, item.name, [(minutes * (k + 1), v) for k, v in enumerate(values)], between
+        )
     pairs = []
     for row in item.rows("data"):
         text = str(row.get("time", "24:00")).casefold().removeprefix("until").strip(": ")
         pairs.append((_minute(item, text), _value(item, str(row.get("value_until_time", 0.0)))))
-    return _closed(item, [], item.name, pairs)[0][1]
+    return _closed(context, item, item.name, pairs, between)
 
 
 def _file(context: Context, item: IdfObject) -> Year:
@@ -346,10 +366,15 @@ def _file(context: Context, item: IdfObject) -> Year:
             f"{len(values)} values", f"{365 * count}: a year by {minutes} minutes", "Correct file or rows"
         )
     first = date(2017, 1, 1)
+    between = _between(item, item.text("interpolate_to_timestep"))
     seasons = []
     for k in range(365):
-        day = tuple((minutes * j, value) for j, value in enumerate(values[k * count : (k + 1) * count]))
-        seasons.append((f"{first + timedelta(days=k):%m-%d}", (day,) * len(DAYS)))
+        day = _by_steps(
+            context,
+            [(minutes * (j + 1), value) for j, value in enumerate(values[k * count : (k + 1) * count])],
+            between,
+        )
+        seasons.append((f"{first + timedelta(days=k):%m-%d}", (day,) * len(_KINDS)))
     return year_of(seasons)
 
 

@@ -30,6 +30,8 @@ _MONTHS: Final = (
     "november", "december",
 )  # fmt: skip
 _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
+#: Differences of latitude, longitude [deg], altitude [m] and time zone [h] of one place.
+_SAME_PLACE: Final = (1.0, 1.0, 100.0, 0.0)
 #: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
 _GROUND: Final = 18.0
 
@@ -59,15 +61,22 @@ def describe_site(context: Context, weather: Path | None) -> None:
 @reads("Site:Location")
 def _location(context: Context, weather: Path | None) -> dict[str, Any]:
     item = context.model.one("Site:Location")
-    if item is not None:
-        values = [item.number(key) or 0.0 for key in ("latitude", "longitude", "elevation", "time_zone")]
-    elif weather is not None:
-        values = _of_weather(weather)
-    else:
+    if item is None and weather is None:
         raise InputError(
             f"{context.model.file}: found no Site:Location; expected the place of the building. Add the "
             "object, or name the weather file with --weather"
         )
+    keys = ("latitude", "longitude", "elevation", "time_zone")
+    values = [] if item is None else [item.number(key) or 0.0 for key in keys]
+    if weather is not None:
+        stated, values = values, _of_weather(weather)
+        pairs = zip(stated, values, _SAME_PLACE, strict=False)
+        if item is not None and any(abs(first - second) > limit for first, second, limit in pairs):
+            context.findings.approximated(
+                item,
+                "another place than that of the weather file",
+                f"{values[0]:g} deg, {values[1]:g} deg, {values[2]:g} m, as in EnergyPlus",
+            )
     latitude, longitude, altitude, zone = values
     hours, minutes = divmod(round(abs(zone) * 60.0), 60)
     offset = f"UTC{'-' if zone < 0.0 else '+'}{hours}" + (f":{minutes:02d}" if minutes else "")
@@ -113,7 +122,9 @@ def _sky(context: Context, site: dict[str, Any]) -> None:
     if not items:
         return
     word = items[0].word("calculation_type")
-    if word in _SKIES:
+    if items[0].word("use_weather_file_horizontal_ir") != "no":
+        context.findings.no_effect(items, f"sky by {word}", "the weather file states it, and is used")
+    elif word in _SKIES:
         site["sky"] = _SKIES[word]
         context.findings.approximated(
             items[0], f"sky by {word}", f"the model '{_SKIES[word]}' with its clouds"

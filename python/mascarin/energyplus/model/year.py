@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from datetime import date, timedelta
 from typing import Any, Final
 
 #: Days of the week in the order of EnergyPlus, then holidays.
@@ -25,9 +26,12 @@ class Year:
     ----------
     seasons : tuple of (str, Week)
         Last day as ``MM-DD``, and the week that repeats until then.
+    name : str
+        Name of the only schedule that these values come from; empty without one.
     """
 
     seasons: tuple[tuple[str, Week], ...]
+    name: str = field(default="", compare=False)
 
     @property
     def values(self) -> set[float]:
@@ -75,7 +79,50 @@ def combined(rule: Callable[..., float], *years: Year) -> Year:
     for end in ends:
         weeks = [year.week_at(end) for year in years]
         seasons.append((end, tuple(_combined_day(rule, days) for days in zip(*weeks, strict=True))))
-    return _merged(Year(tuple(seasons)))
+    sources = {year.name for year in years if year.constant is None}
+    return _merged(Year(tuple(seasons), sources.pop() if len(sources) == 1 else ""))
+
+
+def ahead(year: Year, first: str, last: str) -> Year:
+    """The values an hour earlier from one day to another, as clocks of daylight saving time show them.
+
+    Parameters
+    ----------
+    year : Year
+        Values by the clock.
+    first, last : str
+        First and last day of daylight saving time as ``MM-DD``; the first may be after the last.
+    """
+    spans = [(first, last)] if first <= last else [("01-01", last), (first, "12-31")]
+    ends = {until for until, _ in year.seasons}
+    for start, end in spans:
+        ends |= {end, day_before(start)} - {""}
+    seasons = []
+    for until in sorted(ends):
+        week = year.week_at(until)
+        summer = any(start <= until <= end for start, end in spans)
+        seasons.append((until, _hour_earlier(week) if summer else week))
+    return replace(_merged(Year(tuple(seasons))), name=year.name)
+
+
+def day_before(day: str) -> str:
+    """The day before a day ``MM-DD``; empty before the first of the year."""
+    if day == "01-01":
+        return ""
+    return f"{date(2017, int(day[:2]), int(day[3:])) - timedelta(days=1):%m-%d}"
+
+
+def _hour_earlier(week: Week) -> Week:
+    """Each day an hour earlier; its last hour is the first one of the day after it."""
+    shifted = []
+    for k, day in enumerate(week):
+        following = week[(k + 1) % 7] if k < 7 else day
+        points = [(max(minute - 60, 0), value) for minute, value in day]
+        # Of what is before midnight, only the last value remains.
+        points = [(minute, dict(points)[minute]) for minute in sorted({minute for minute, _ in points})]
+        points += [(minute + 1380, value) for minute, value in following if minute < 60]
+        shifted.append(_without_repeats(points))
+    return tuple(shifted)
 
 
 def _combined_day(rule: Callable[..., float], days: Sequence[Day]) -> Day:
@@ -102,7 +149,7 @@ def _merged(year: Year) -> Year:
         if seasons and seasons[-1][1] == week:
             seasons.pop()
         seasons.append((until, week))
-    return Year(tuple(seasons))
+    return Year(tuple(seasons), year.name)
 
 
 def year_of(seasons: Sequence[tuple[str, Week]]) -> Year:

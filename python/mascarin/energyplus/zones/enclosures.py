@@ -19,6 +19,10 @@ from mascarin.errors import InputError
 
 #: Surfaces whose directions differ by less do not see each other [deg].
 _SAME_DIRECTION: Final = 10.0
+#: Area of a surface over that of all which it sees, above which it sees itself [-].
+_LARGE: Final = 0.99
+#: Endings of the names of shades that are reveals.
+_REVEALS: Final = tuple(f"reveal_{k}" for k in range(1, 5))
 _NO_CORNERS: Final = "surfaces without corners"
 
 
@@ -38,8 +42,15 @@ def describe_enclosures(context: Context, building: Building, zones: dict[str, Z
     main = context.model.one("Building")
     word = main.word("solar_distribution") if main is not None else ""
     traced = word.startswith("fullinterior")
-    if word.startswith("minimal"):
+    if main is not None and word.startswith("minimal"):
         context.section("site")["self_shading"] = False
+        # Only the reveals of windows, which stand out of the plane of their wall here, shade them.
+        shades = context.section("shades")
+        for name in [name for name in shades if not name.endswith(_REVEALS)]:
+            del shades[name]
+            context.findings.no_effect(
+                [main], "minimal shadowing", "nothing but reveals shades, as in EnergyPlus"
+            )
     for zone in zones.values():
         zone_surfaces = building.connections.of(zone.name)
         held = context.section("zones")[zone.name]
@@ -93,7 +104,12 @@ def by_areas(zone_surfaces: Sequence[ZoneSurface]) -> dict[str, dict[str, float]
         View factors by the names of the surfaces. [-]
     """
     areas = np.array([float(item.area) for item in zone_surfaces])
-    exchange = np.outer(areas, areas) * _visible(zone_surfaces)
+    visible = _visible(zone_surfaces)
+    largest = int(np.argmax(areas))
+    # What faces less area than it has must see itself too; EnergyPlus does the same.
+    if areas[largest] > _LARGE * float(areas @ visible[largest]):
+        visible[largest, largest] = 1.0
+    exchange = np.outer(areas, areas) * visible
     factors = np.ones(len(zone_surfaces))
     for _ in range(2000):
         rows = exchange @ factors

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from mascarin.energyplus.model.context import Context
@@ -87,26 +87,45 @@ def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, floa
 
 
 def _zones(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zone]:
-    named = (zones.get(zone.name.casefold()) for zone in context.zones_of(item, *_ZONE_KEYS))
-    return [zone for zone in named if zone is not None]
+    """Zones of an object; a zone with the floor area of the space, where the object names a space."""
+    held = []
+    for zone_item, space in context.places_of(item, *_ZONE_KEYS):
+        zone = zones.get(zone_item.name.casefold())
+        if zone is None:
+            continue
+        if space is not None:
+            entered_area = space.number("floor_area")
+            area = entered_area or zone.spaces.get(space.name.casefold())
+            zone = zone if area is None else replace(zone, floor=area)
+        held.append(zone)
+    return held
 
 
 def people_in(context: Context, zone: Zone, zones: dict[str, Zone]) -> float:
     """Number of people in a zone at a schedule of 1."""
     return sum(
-        _number_of_people(item, zone)
+        _number_of_people(context, item, zone)
         for item in context.model.of("People")
-        if zone in _zones(context, item, zones)
+        if any(other.name == zone.name for other in _zones(context, item, zones))
     )
 
 
-def _number_of_people(item: IdfObject, zone: Zone) -> float:
+def _number_of_people(context: Context, item: IdfObject, zone: Zone) -> float:
     method = item.word("number_of_people_calculation_method")
     if method.startswith("people/"):
-        return item.needed("people_per_floor_area", "people_per_zone_floor_area") * zone.floor
+        return zone.floor * _level(context, item, "people_per_floor_area", "people_per_zone_floor_area")
     if method.startswith("area/"):
-        return zone.floor / max(item.needed("floor_area_per_person", "zone_floor_area_per_person"), 1e-9)
-    return item.needed("number_of_people")
+        area = _level(context, item, "floor_area_per_person", "zone_floor_area_per_person")
+        return zone.floor / area if area > 0.0 else 0.0
+    return _level(context, item, "number_of_people")
+
+
+def _level(context: Context, item: IdfObject, *keys: str) -> float:
+    """Size of a gain; 0 where the file leaves it blank, as in EnergyPlus."""
+    level = item.number(*keys)
+    if level is None:
+        context.findings.approximated(item, f"no value of {keys[0]}", "0 is used, as in EnergyPlus")
+    return level or 0.0
 
 
 def sensible(activity: float, air: float) -> float:
@@ -124,7 +143,7 @@ def sensible(activity: float, air: float) -> float:
 
 
 def _people(context: Context, item: IdfObject, zone: Zone, air: float) -> Heat:
-    count = _number_of_people(item, zone)
+    count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
@@ -145,16 +164,20 @@ def _design_level(context: Context, item: IdfObject, zone: Zone, zones: dict[str
     method = item.word("design_level_calculation_method")
     if method in ("watts/area", "power/area"):
         keys = ("watts_per_floor_area", "watts_per_zone_floor_area", "power_per_floor_area")
-        return item.needed(*keys, "power_per_zone_floor_area") * zone.floor
+        return _level(context, item, *keys, "power_per_zone_floor_area") * zone.floor
     if method in ("watts/person", "power/person"):
-        return item.needed("watts_per_person", "power_per_person") * people_in(context, zone, zones)
-    return item.needed("design_level", "lighting_level")
+        level = _level(context, item, "watts_per_person", "power_per_person")
+        return level * people_in(context, zone, zones)
+    return _level(context, item, "design_level", "lighting_level")
 
 
 def _lights(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
     level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
     taken = item.number("return_air_fraction") or 0.0
     radiant, visible = (item.number(f"fraction_{part}") or 0.0 for part in ("radiant", "visible"))
+    if taken > 0.0 and _still_return(context, zone):
+        # Without flow in the return air, this heat stays in the zone.
+        taken = 0.0
     if taken > 0.0:
         context.findings.approximated(
             item, f"{taken:.0%} of its heat in the return air", "this part does not enter the zone"
@@ -166,6 +189,16 @@ def _lights(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone
     remaining_share = max(1.0 - taken, 1e-9)
     power = combined(lambda share: level * share * remaining_share, on)
     return Heat(item, item.name, power, min((radiant + visible) / remaining_share, 1.0))
+
+
+@reads("ZoneHVAC:EquipmentConnections", "HVACTemplate:Zone:IdealLoadsAirSystem")
+def _still_return(context: Context, zone: Zone) -> bool:
+    """Whether a zone is conditioned, and no air loop of the file draws return air."""
+    if context.model.has("AirLoopHVAC"):
+        return False
+    name = zone.item.name.casefold()
+    connections = context.model.of("ZoneHVAC:EquipmentConnections", "HVACTemplate:Zone:IdealLoadsAirSystem")
+    return any(item.word("zone_name") == name for item in connections)
 
 
 def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> Heat:
@@ -181,16 +214,14 @@ def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Z
 
 
 def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
-    """Gains of a zone; heat that is taken away is subtracted from the others."""
-    if any(min(heat.power.values) < 0.0 for heat in heats):
-        heats = _netted(context, zone, heats)
+    """Gains of a zone; a negative one takes heat away."""
     gains: dict[str, dict[str, object]] = {}
-    for heat in heats:
+    for heat in [part for net in heats for part in _of_one_sign(net)]:
         schedule, most = fraction(context, f"{heat.name} power", _relative(heat.power))
         power = most * _peak(heat.power)
         if power == 0.0:
             continue
-        name = context.names.of(f"gains of {zone.name}", heat.name)
+        name = context.names.of(f"gains of {zone.name}", heat.name, heat.item.kind)
         gains[name] = {"power": round(power, 6)}
         if heat.radiative > 0.0:
             gains[name]["radiative"] = round(heat.radiative, 6)
@@ -200,36 +231,24 @@ def _enter(context: Context, zone: Zone, heats: list[Heat]) -> None:
         context.section("zones")[zone.name]["gains"] = gains
 
 
+def _of_one_sign(heat: Heat) -> list[Heat]:
+    """A gain; one that also takes heat away in two parts, since fractions are not negative."""
+    if min(heat.power.values) >= 0.0 or max(heat.power.values) <= 0.0:
+        return [heat]
+    return [
+        replace(heat, power=combined(lambda value: max(value, 0.0), heat.power)),
+        replace(heat, name=f"{heat.name} taken", power=combined(lambda value: min(value, 0.0), heat.power)),
+    ]
+
+
 def _peak(power: Year) -> float:
-    return max(power.values)
+    """The largest power, with its sign. [W]"""
+    return max(power.values, key=abs)
 
 
 def _relative(power: Year) -> Year:
     """A power over its largest value; 1 where it is constant."""
     peak = _peak(power)
-    if power.constant is not None or peak <= 0.0:
+    if power.constant is not None or peak == 0.0:
         return constant(1.0)
     return combined(lambda value: value / peak, power)
-
-
-def _netted(context: Context, zone: Zone, heats: list[Heat]) -> list[Heat]:
-    """Sums of the convective and of the radiative heat of a zone, where both stay above zero."""
-    first = heats[0]
-    sums = []
-    for radiative, word in ((0.0, "convective"), (1.0, "radiative")):
-        shares = [heat.radiative if radiative else 1.0 - heat.radiative for heat in heats]
-        total = combined(
-            lambda *powers, shares=shares: sum(p * s for p, s in zip(powers, shares, strict=True)),
-            *(heat.power for heat in heats),
-        )
-        total = combined(lambda value: 0.0 if abs(value) < 1e-9 else value, total)
-        sums.append(Heat(first.item, f"net {word}", total, radiative))
-    if all(min(net_heat.power.values) >= 0.0 for net_heat in sums):
-        return sums
-    positive_heats = [heat for heat in heats if min(heat.power.values) >= 0.0]
-    for heat in heats:
-        if heat not in positive_heats:
-            context.findings.left_out(
-                heat.item, f"heat taken from zone '{zone.item.name}'", "the zone is warmer by this heat"
-            )
-    return positive_heats

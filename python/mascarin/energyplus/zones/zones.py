@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mascarin.building.parts.site import Wind, wind_factor
-from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area
+from mascarin.energyplus.envelope.idf_surfaces import IdfSurface, floor_area, turned
 from mascarin.energyplus.model import geometry as g
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
@@ -16,6 +16,8 @@ from mascarin.errors import InputError
 
 #: Height of a zone of which neither volume nor closed surfaces are known [m].
 _USUAL_HEIGHT = 2.5
+#: Sum of the vector areas of closed surfaces over the sum of their areas, at most [-].
+_CLOSED = 0.01
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class Zone:
         Areas facing outdoors: all, and walls alone. [m2]
     wind : float
         Wind at the middle of the zone over that at the mast. [-]
+    spaces : dict of str to float
+        Floor area of its spaces by name in small letters, as far as they have floors. [m2]
     """
 
     item: IdfObject
@@ -43,6 +47,7 @@ class Zone:
     outdoors: float
     walls: float
     wind: float
+    spaces: dict[str, float] = field(default_factory=dict, compare=False)
 
 
 def describe_zones(context: Context, surfaces: list[IdfSurface]) -> dict[str, Zone]:
@@ -63,15 +68,22 @@ def describe_zones(context: Context, surfaces: list[IdfSurface]) -> dict[str, Zo
         raise InputError(f"{context.model.file}: found no Zone; expected at least one")
     wind = Wind(**context.sections["site"]["wind"])
     zones = {}
+    by_zone: dict[str, list[IdfSurface]] = {}
+    facing: dict[str, list[IdfSurface]] = {}
+    for surface in surfaces:
+        by_zone.setdefault(surface.zone.name.casefold(), []).append(surface)
+        if surface.boundary == "zone":
+            facing.setdefault(surface.beyond.casefold(), []).append(surface)
+    with_masses = {
+        zone.name.casefold()
+        for mass in context.model.of("InternalMass")
+        for zone in _zones_of_mass(context, mass)
+    }
     for item in items:
-        zone_surfaces = [surface for surface in surfaces if surface.zone is item]
-        facing = [
-            surface
-            for surface in surfaces
-            if surface.boundary == "zone" and surface.beyond.casefold() == item.name.casefold()
-        ]
-        masses = [mass for mass in context.model.of("InternalMass") if item in _zones_of_mass(context, mass)]
-        if not zone_surfaces and not facing and not masses:
+        zone_surfaces = list(by_zone.get(item.name.casefold(), []))
+        # EnergyPlus makes the other side of a surface that names a zone: it is one of the zone's own.
+        zone_surfaces += [turned(surface, item) for surface in facing.get(item.name.casefold(), [])]
+        if not zone_surfaces and item.name.casefold() not in with_masses:
             context.findings.left_out(item, "a zone without surfaces", "it has no counterpart here")
             continue
         if (item.number("multiplier") or 1.0) > 1.0:
@@ -97,11 +109,7 @@ def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], w
     volume = item.number("volume") or 0.0
     ceiling = item.number("ceiling_height") or 0.0
     if volume <= 0.0:
-        volume = (
-            floor * ceiling
-            if ceiling > 0.0
-            else abs(g.signed_volume([surface.points for surface in zone_surfaces]))
-        )
+        volume = floor * ceiling if ceiling > 0.0 else _enclosed(floor, zone_surfaces)
     if volume <= 0.01:
         volume = floor * _USUAL_HEIGHT
         if volume <= 0.0:
@@ -124,7 +132,37 @@ def _sizes(context: Context, item: IdfObject, zone_surfaces: list[IdfSurface], w
         outdoors=sum(g.area_of(surface.points) for surface in outer),
         walls=sum(g.area_of(surface.points) for surface in outer if surface.shape == "wall"),
         wind=wind_factor(wind, middle),
+        spaces=_spaces(zone_surfaces),
     )
+
+
+def _spaces(surfaces: list[IdfSurface]) -> dict[str, float]:
+    """Floor areas of the spaces that surfaces name. [m2]"""
+    areas: dict[str, float] = {}
+    for surface in surfaces:
+        space = surface.item.word("space_name")
+        if space and surface.shape == "floor":
+            areas[space] = areas.get(space, 0.0) + g.area_of(surface.points)
+    return areas
+
+
+def _enclosed(floor: float, surfaces: list[IdfSurface]) -> float:
+    """Volume between the surfaces of a zone; by floor and height where they do not enclose it. [m3]"""
+    outlines = [surface.points for surface in surfaces]
+    if not outlines:
+        return 0.0
+    gap = np.linalg.norm(np.sum([g.normal_of(points) for points in outlines], axis=0))
+    if floor <= 0.0 or gap <= _CLOSED * sum(g.area_of(points) for points in outlines):
+        return abs(g.signed_volume(outlines))
+    heights = {}
+    for kind, shapes in (("floor", ("floor",)), ("ceiling", ("roof", "ceiling"))):
+        levels = [(g.area_of(s.points), float(s.points[:, 2].mean())) for s in surfaces if s.shape in shapes]
+        area = sum(part for part, _ in levels)
+        if area > 0.0:
+            heights[kind] = sum(part * level for part, level in levels) / area
+    corners = np.concatenate(outlines)[:, 2]
+    top, bottom = heights.get("ceiling", float(corners.max())), heights.get("floor", float(corners.min()))
+    return floor * max(top - bottom, 0.0)
 
 
 @reads("ZoneCapacitanceMultiplier:ResearchSpecial")
