@@ -324,6 +324,8 @@ fn minimum_times() {
         zone: 0,
         indoor: None,
         outdoor: Some(outdoor),
+        indoor_below: None,
+        outdoor_below: None,
         difference: None,
         wind: Some(wind),
         rain: None,
