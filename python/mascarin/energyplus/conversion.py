@@ -106,7 +106,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
     describe_gains(context, zones, usual_temperatures(context, zones))
-    describe_air(context, zones)
+    describe_air(context, zones, all_surfaces, inside)
     describe_conditioning(context, zones)
     describe_enclosures(context, _built(context), zones)
     version = _version(context)

@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.zones.draughts import Draught, conditioned, density_of, enter_draughts
 from mascarin.energyplus.zones.mixing import describe_mixing, design_flow, zones_of
+from mascarin.energyplus.zones.network import describe_network
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import GRAVITY
 
@@ -28,7 +30,9 @@ _DISCHARGE, _CW = 0.65, 0.3
 
 
 @reads(*SIMPLE)
-def describe_air(context: Context, zones: dict[str, Zone]) -> None:
+def describe_air(
+    context: Context, zones: dict[str, Zone], surfaces: list[IdfSurface], openings: list[IdfOpening]
+) -> None:
     """Enter infiltration, ventilation and mixing.
 
     Raises
@@ -37,6 +41,7 @@ def describe_air(context: Context, zones: dict[str, Zone]) -> None:
         A zone or schedule that does not exist.
     """
     if _network(context):
+        describe_network(context, zones, surfaces, openings)
         return
     draughts: dict[str, list[Draught]] = {key: [] for key in zones}
     for kind, of_object in _DRAUGHTS.items():
@@ -57,11 +62,10 @@ def _network(context: Context) -> bool:
     control = item.word("airflownetwork_control")
     if control in ("nomultizoneordistribution", ""):
         return False
-    context.findings.left_out(
-        item,
-        "an air flow network",
-        "no outdoor air enters and none passes between zones: zones are warmer, or colder at night",
-    )
+    if control.startswith("multizonewithdistribution"):
+        context.findings.left_out(
+            item, "ducts in the network", "rooms, cracks and windows alone: no flow by fans and ducts"
+        )
     replaced = context.model.of(*SIMPLE)
     context.findings.no_effect(replaced, "simple air flow", "EnergyPlus replaces it by the air flow network")
     return True
