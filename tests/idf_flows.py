@@ -1,6 +1,6 @@
 """A room for EnergyPlus with one kind of air flow, glazing or heating each: written for the tests.
 
-``bench/energyplus_flows.py`` writes them as files, and makes the table of results of EnergyPlus from its runs.
+``bench/energyplus_flows.py`` writes them as files, and makes the table of results from runs of EnergyPlus.
 """
 
 from __future__ import annotations
