@@ -71,7 +71,7 @@ def simple_glazing(context: Context, item: IdfObject) -> Section:
         resistance = _LEAST_RESISTANCE
     through = min(max(_transmittance(u, gain), 1e-4), 0.99)
     absorbed = min(max((gain - through) / _inward(u, gain - through, resistance), 0.0), 1.0 - through)
-    rows = [_at(math.cos(math.radians(angle)), u, gain, (through, absorbed)) for angle in _ANGLES]
+    rows = [_optics_at(math.cos(math.radians(angle)), u, gain, (through, absorbed)) for angle in _ANGLES]
     thickness = 0.002 if resistance < 1.0 / 7.0 else 0.05914 - 0.00714 / resistance
     return {
         "kind": "panes",
@@ -109,16 +109,18 @@ def _transmittance(u: float, gain: float) -> float:
     return _between(u, low, high)
 
 
-def _inward(u: float, rest: float, resistance: float) -> float:
+def _inward(u: float, absorbed_gain: float, resistance: float) -> float:
     """Part of what the pane absorbs that enters the room, with the films in summer. [-]"""
-    high = 29.436546 * rest**3 - 21.943415 * rest**2 + 9.945872 * rest + 7.426151
-    low = 199.8208128 * rest**3 - 90.639733 * rest**2 + 19.737055 * rest + 6.766575
+    high = 29.436546 * absorbed_gain**3 - 21.943415 * absorbed_gain**2 + 9.945872 * absorbed_gain + 7.426151
+    low = 199.8208128 * absorbed_gain**3 - 90.639733 * absorbed_gain**2 + 19.737055 * absorbed_gain + 6.766575
     inside = _between(u, 1.0 / low, 1.0 / high)
-    outside = _between(u, 1.0 / (5.763355 * rest + 20.541528), 1.0 / (2.225824 * rest + 20.577080))
+    outside = _between(
+        u, 1.0 / (5.763355 * absorbed_gain + 20.541528), 1.0 / (2.225824 * absorbed_gain + 20.577080)
+    )
     return (outside + 0.5 * resistance) / (outside + resistance + inside)
 
 
-def _at(cosine: float, u: float, gain: float, normal: tuple[float, float]) -> tuple[float, float]:
+def _optics_at(cosine: float, u: float, gain: float, normal: tuple[float, float]) -> tuple[float, float]:
     """Transmittance and absorptance at an angle of incidence, from those at normal incidence. [-]"""
     through, absorbed = normal
     if cosine > 1.0 - 1e-12:
@@ -138,12 +140,12 @@ def _mean(curves: Mapping[str, tuple[float, ...]], cosine: float, u: float, gain
         for name, factors in curves.items()
     }
 
-    def line(points: tuple[tuple[float, float], ...], at: float) -> float:
-        if at <= points[0][0]:
+    def line(points: tuple[tuple[float, float], ...], rating: float) -> float:
+        if rating <= points[0][0]:
             return points[0][1]
         for (low, first), (high, second) in pairwise(points):
-            if at <= high:
-                return first + (at - low) / (high - low) * (second - first)
+            if rating <= high:
+                return first + (rating - low) / (high - low) * (second - first)
         return points[-1][1]
 
     rows = tuple(

@@ -42,7 +42,7 @@ def slats(width: float, separation: float, angle: float, front: float, back: flo
     strips = [(ends[k], ends[k + 1]) for k in range(_STRIPS)]
     # The front of the lower slat, the back of the upper one, the outer and the inner opening.
     lines = [*strips, *((a + up, b + up) for a, b in strips), (along, along + up), (up * 0.0, up)]
-    views = np.array([[_view(one, other) for other in lines] for one in lines])
+    views = np.array([[_view(line, other_line) for other_line in lines] for line in lines])
     np.fill_diagonal(views, 0.0)
     reflectance = np.array([front] * _STRIPS + [back] * _STRIPS)
     inner, outer = 2 * _STRIPS + 1, 2 * _STRIPS
@@ -62,8 +62,10 @@ def slats(width: float, separation: float, angle: float, front: float, back: flo
         facing = math.cos(tilt - height)
         open_share = max(1.0 - width * abs(facing) / (separation * math.cos(height)), 0.0)
         source = np.zeros(outer)
-        lit = min(separation * math.cos(height) / max(abs(facing), 1e-9), width)
-        shares = [min(max((lit - k * width / _STRIPS) / (width / _STRIPS), 0.0), 1.0) for k in range(_STRIPS)]
+        lit_width = min(separation * math.cos(height) / max(abs(facing), 1e-9), width)
+        shares = [
+            min(max((lit_width - k * width / _STRIPS) / (width / _STRIPS), 0.0), 1.0) for k in range(_STRIPS)
+        ]
         # The sun falls on the strips from the outer edge on.
         shares.reverse()
         first = 0 if facing > 0.0 else _STRIPS
@@ -76,9 +78,9 @@ def slats(width: float, separation: float, angle: float, front: float, back: flo
     return float(min(through, 1.0)), float(min(back_out, 1.0 - through))
 
 
-def _view(one: tuple[Array, Array], other: tuple[Array, Array]) -> float:
+def _view(line: tuple[Array, Array], other_line: tuple[Array, Array]) -> float:
     """View factor between two lines by crossed strings; 0 for lines that lie in one."""
-    (a, b), (c, d) = one, other
+    (a, b), (c, d) = line, other_line
     size = float(np.linalg.norm(b - a))
     crossed = float(np.linalg.norm(a - d) + np.linalg.norm(b - c))
     straight = float(np.linalg.norm(a - c) + np.linalg.norm(b - d))

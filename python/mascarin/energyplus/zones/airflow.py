@@ -48,8 +48,8 @@ def describe_air(
         for item in context.model.of(kind):
             for zone in zones_of(context, item, zones):
                 draughts[zone.item.name.casefold()] += of_object(context, item, zone, zones)
-    for key, found in draughts.items():
-        enter_draughts(context, zones[key], found)
+    for key, zone_draughts in draughts.items():
+        enter_draughts(context, zones[key], zone_draughts)
     describe_mixing(context, zones)
 
 

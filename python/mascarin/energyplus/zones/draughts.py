@@ -116,15 +116,15 @@ def conditioned(context: Context, zone: Zone, draught: Draught) -> Iterator[Drau
         context.findings.approximated(item, "limits that change in many steps", "their means are used")
         limits = [(key, constant(values.mean())) for key, values in limits]
         sets = [tuple(values.mean() for _, values in limits)]
-    for found in sets:
+    for limit_set in sets:
         active = combined(
-            lambda share, *now, found=found: share if tuple(now) == found else 0.0,
+            lambda share, *now, limit_set=limit_set: share if tuple(now) == limit_set else 0.0,
             draught.values,
             *(values for _, values in limits),
         )
         if active.constant == 0.0:
             continue
-        bands = {key: limit for (key, _), limit in zip(limits, found, strict=True)}
+        bands = {key: limit for (key, _), limit in zip(limits, limit_set, strict=True)}
         yield replace(draught, values=active, control=_control(context, zone, item, bands))
 
 

@@ -47,7 +47,7 @@ _PARTS: Final = 4
 
 
 @dataclass(frozen=True)
-class Place:
+class Joint:
     """Where a component of the network lies.
 
     Attributes
@@ -84,52 +84,55 @@ def describe_network(
     InputError
         An object that it names does not exist.
     """
-    places = dict(_places(zones, surfaces, openings))
-    lowest = min((float(place.points[:, 2].min()) for place in places.values()), default=0.0)
+    joints = dict(_joints(zones, surfaces, openings))
+    if not context.model.of("AirflowNetwork:MultiZone:Surface"):
+        for item in context.model.of("AirflowNetwork:SimulationControl"):
+            context.findings.left_out(item, "a network without surfaces", "no outdoor air enters any zone")
+    lowest = min((float(joint.points[:, 2].min()) for joint in joints.values()), default=0.0)
     for item in context.model.of("AirflowNetwork:MultiZone:Surface"):
-        place = places.get(item.word("surface_name"))
-        if place is None:
+        joint = joints.get(item.word("surface_name"))
+        if joint is None:
             context.findings.left_out(item, "a surface that joins no air", "no air passes here")
             continue
         component = context.model.require(item, "leakage_component_name", *_COMPONENTS)
         ends: Section = (
-            {"zone": place.ends[0].name}
-            if len(place.ends) == 1
-            else {"between": [end.name for end in place.ends]}
+            {"zone": joint.ends[0].name}
+            if len(joint.ends) == 1
+            else {"between": [end.name for end in joint.ends]}
         )
-        ends |= {"elevation": round(max(place.elevation, min(lowest, 0.0)), 6)}
-        if len(place.ends) == 1:
-            ends |= _wind(context, item, place)
+        ends |= {"elevation": round(max(joint.elevation, min(lowest, 0.0)), 6)}
+        if len(joint.ends) == 1:
+            ends |= _wind(context, item, joint)
         if component.kind in _CRACKS:
             _crack(context, item, ends, *_leak(component))
         elif component.kind in _OPENINGS:
-            _opening(context, item, place, component, ends)
+            _opening(context, item, joint, component, ends)
         else:
             context.findings.left_out(item, f"a {component.kind}", "no air passes here")
 
 
-def _places(
+def _joints(
     zones: dict[str, Zone], surfaces: list[IdfSurface], openings: list[IdfOpening]
-) -> Iterator[tuple[str, Place]]:
+) -> Iterator[tuple[str, Joint]]:
     by_name = {surface.item.name.casefold(): surface for surface in surfaces}
 
     def ends(surface: IdfSurface) -> tuple[Zone, ...] | None:
-        own = zones.get(surface.zone.name.casefold())
-        if own is None or surface.boundary == "outdoors":
-            return None if own is None else (own,)
+        own_zone = zones.get(surface.zone.name.casefold())
+        if own_zone is None or surface.boundary == "outdoors":
+            return None if own_zone is None else (own_zone,)
         other = by_name.get(surface.beyond.casefold())
         name = surface.beyond if surface.boundary == "zone" else "" if other is None else other.zone.name
         beyond = zones.get(name.casefold())
-        return None if beyond is None or beyond is own else (own, beyond)
+        return None if beyond is None or beyond is own_zone else (own_zone, beyond)
 
     for surface in surfaces:
         joined = ends(surface)
         if joined is not None:
-            yield surface.item.name.casefold(), Place(surface.item, joined, surface.points, surface)
+            yield surface.item.name.casefold(), Joint(surface.item, joined, surface.points, surface)
     for opening in openings:
         joined = ends(opening.base)
         if joined is not None:
-            yield opening.item.name.casefold(), Place(opening.item, joined, opening.points, opening.base)
+            yield opening.item.name.casefold(), Joint(opening.item, joined, opening.points, opening.base)
 
 
 def _leak(item: IdfObject) -> tuple[float, float]:
@@ -167,21 +170,21 @@ def _vent(context: Context, name: str, vent: Section) -> None:
     context.section("vents")[context.names.new("vents", name)] = vent
 
 
-def _opening(context: Context, item: IdfObject, place: Place, component: IdfObject, ends: Section) -> None:
+def _opening(context: Context, item: IdfObject, joint: Joint, component: IdfObject, ends: Section) -> None:
     """A window or door: a leak where it is closed, and what its control opens."""
-    height = float(np.ptp(place.points[:, 2]))
-    width = g.area_of(place.points) / max(height, 1e-9)
+    height = float(np.ptp(joint.points[:, 2]))
+    width = g.area_of(joint.points) / max(height, 1e-9)
     coefficient = component.number("air_mass_flow_coefficient_when_opening_is_closed") or 0.0
     exponent = component.number("air_mass_flow_exponent_when_opening_is_closed") or 0.65
     _crack(context, item, ends, coefficient, exponent, length=2.0 * (width + height))
     share = item.number("window_door_opening_factor_or_crack_factor")
     share = 1.0 if share is None else share
-    for part, values, control in _ventings(context, item, place):
+    for part, values, control in _ventings(context, item, joint):
         wide, high, discharge = _opened(context, component, share)
         area = width * wide * height * high * part
         if area < _LEAST_AREA or values.constant == 0.0:
             continue
-        schedule, most = fraction(context, f"{place.item.name} open", values)
+        schedule, most = fraction(context, f"{joint.item.name} open", values)
         vent = ends | {
             "area": round(area * min(most, 1.0), 9),
             "height": round(height * high, 6),
@@ -189,7 +192,7 @@ def _opening(context: Context, item: IdfObject, place: Place, component: IdfObje
         }
         vent |= {} if schedule is None else {"schedule": schedule}
         vent |= {} if control is None else {"control": control}
-        _vent(context, f"{place.item.name} opening", vent)
+        _vent(context, f"{joint.item.name} opening", vent)
 
 
 def _opened(context: Context, component: IdfObject, share: float) -> tuple[float, float, float]:
@@ -211,9 +214,9 @@ def _opened(context: Context, component: IdfObject, share: float) -> tuple[float
     return at("width_factor"), at("height_factor"), at("discharge_coefficient")
 
 
-def _ventings(context: Context, item: IdfObject, place: Place) -> Iterator[tuple[float, Year, str | None]]:
+def _ventings(context: Context, item: IdfObject, joint: Joint) -> Iterator[tuple[float, Year, str | None]]:
     """Parts of an opening, their schedules and controls."""
-    source, zone = item, place.ends[0]
+    source, zone = item, joint.ends[0]
     mode = item.word("ventilation_control_mode")
     if mode in ("", "zonelevel"):
         controlled = [
@@ -289,12 +292,12 @@ def _control(context: Context, zone: Zone, limits: dict[str, float]) -> str:
 
 
 @reads("AirflowNetwork:MultiZone:ExternalNode", "AirflowNetwork:SimulationControl")
-def _wind(context: Context, item: IdfObject, place: Place) -> dict[str, Any]:
+def _wind(context: Context, item: IdfObject, joint: Joint) -> dict[str, Any]:
     """Pressure of the wind on an opening."""
     control = context.model.one("AirflowNetwork:SimulationControl")
-    azimuth = g.azimuth_of(place.points) % 360.0
+    azimuth = g.azimuth_of(joint.points) % 360.0
     if control is None or control.word("wind_pressure_coefficient_type") != "input":
-        return _by_shape(context, item, control, place, azimuth)
+        return _by_shape(context, item, control, joint, azimuth)
     node = context.model.named(item.text("external_node_name"), "AirflowNetwork:MultiZone:ExternalNode")
     if node is None:
         context.findings.left_out(item, "no external node", "no wind reaches it")
@@ -311,25 +314,25 @@ def _wind(context: Context, item: IdfObject, place: Place) -> dict[str, Any]:
     asked = (grid + turn) % 360.0 if not relative else grid
     if symmetric:
         asked = np.minimum(asked, 360.0 - asked)
-    found = np.interp(asked, angles, values, period=None if symmetric else 360.0)
+    coefficients = np.interp(asked, angles, values, period=None if symmetric else 360.0)
     height = node.number("external_node_height") or 0.0
     if control.word("height_selection_for_local_wind_pressure_calculation") == "openingheight":
-        height = place.elevation
-    pressure: Section = {"kind": "table", "coefficients": [round(float(value), 6) for value in found]}
+        height = joint.elevation
+    pressure: Section = {"kind": "table", "coefficients": [round(float(value), 6) for value in coefficients]}
     if height > 0.0:
         pressure["height"] = height
     return {"azimuth": round(azimuth, 6), "pressure": pressure}
 
 
 def _by_shape(
-    context: Context, item: IdfObject, control: IdfObject | None, place: Place, azimuth: float
+    context: Context, item: IdfObject, control: IdfObject | None, joint: Joint, azimuth: float
 ) -> dict[str, Any]:
     """Coefficients of a rectangular building of walls."""
-    if place.wall.shape != "wall" or (control is not None and control.word("building_type") == "highrise"):
+    if joint.wall.shape != "wall" or (control is not None and control.word("building_type") == "highrise"):
         context.findings.approximated(
             item, "coefficients of roofs or high buildings", "those of the walls of low ones; none on roofs"
         )
-    if place.wall.shape != "wall":
+    if joint.wall.shape != "wall":
         return {"pressure": "none"}
     ratio = axis = None
     if control is not None:
@@ -360,12 +363,12 @@ def _coefficients(context: Context, node: IdfObject) -> tuple[list[float], list[
     array = context.model.one("AirflowNetwork:MultiZone:WindPressureCoefficientArray")
     if array is None:
         return None
-    angles, found = [], []
+    angles, coefficients = [], []
     for k in itertools.count(1):
         angle = array.number(f"wind_direction_{k}")
         value = values.number(f"wind_pressure_coefficient_value_{k}")
         if angle is None or value is None:
             break
         angles.append(angle)
-        found.append(value)
-    return (angles, found) if angles else None
+        coefficients.append(value)
+    return (angles, coefficients) if angles else None
