@@ -208,11 +208,11 @@ def test_infiltration_by_the_density_of_outdoor_air(tmp_path: Path) -> None:
     assert leaks.density is not None
     assert leaks.density.kind == "outdoors"
     for basis, kind in (("Indoor", "zone"), ("Standard", "constant")):
-        leaks = converted(tmp_path, text.replace("0.5,1,0,0,0;", f"0.5,1,0,0,0,{basis};"))
-        density = leaks.building.zones["Room"].infiltration.density
+        found = converted(tmp_path, text.replace("0.5,1,0,0,0;", f"0.5,1,0,0,0,{basis};"))
+        density = found.building.zones["Room"].infiltration.density
         assert density is not None
         assert density.kind == kind
-    altitude = float(leaks.building.site.altitude)
+    altitude = float(found.building.site.altitude)
     # 101325 Pa exp(-z/8434 m)/(287 J/(kg K) 293.15 K)
     expected = 1.2043 * math.exp(-altitude / 8434.0)
     assert float(density.constant) == pytest.approx(expected, rel=2e-3)

@@ -67,7 +67,7 @@ def _controlled(context: Context, item: IdfObject) -> Section | None:
         device_words, control_words = item.text("shading_type"), item.text("shading_control_type")
         context.findings.left_out(item, f"{device_words or 'a device'}, {control_words}", effect)
         return None
-    blind = {"position": "inside" if inside else "outside"} | device_values(context, device)
+    blind: Section = {"position": "inside" if inside else "outside"} | device_values(context, device)
     if kind in _BY_SUN:
         blind["radiation"] = item.number("setpoint") or 0.0
     if item.word("shading_control_is_scheduled") == "yes" or kind == "onifscheduleallows":
