@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import mascarin as mc
+from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.energyplus import Conversion, convert
 from mascarin.energyplus.envelope.constructions import inner_part
 from mascarin.energyplus.envelope.convection import combined as combined_film
@@ -212,6 +213,7 @@ def test_infiltration_by_the_density_of_outdoor_air(tmp_path: Path) -> None:
         density = found.building.zones["Room"].infiltration.density
         assert density is not None
         assert density.kind == kind
+    assert isinstance(density, ConstantDensity)
     altitude = float(found.building.site.altitude)
     # 101325 Pa exp(-z/8434 m)/(287 J/(kg K) 293.15 K)
     expected = 1.2043 * math.exp(-altitude / 8434.0)

@@ -11,11 +11,15 @@ from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined
 from mascarin.energyplus.zones.gains import people_in
 from mascarin.energyplus.zones.zones import Zone
+from mascarin.physics import AIR_SPECIFIC_HEAT
 
 _ZONE_KEYS: Final = (
     "zone_or_zonelist_or_space_or_spacelist_name", "zone_or_zonelist_name", "zone_or_space_name",
     "zone_name",
 )  # fmt: skip
+
+#: Density of air, for the size of an effect [kg/m3].
+_AIR_DENSITY: Final = 1.2
 
 
 def zones_of(context: Context, item: IdfObject, zones: dict[str, Zone]) -> list[Zone]:
@@ -68,8 +72,12 @@ def describe_mixing(context: Context, zones: dict[str, Zone]) -> None:
         back = one_way.get((origin, to), [])
         crossed = flows[0][0].kind == "ZoneCrossMixing"
         if not crossed and not _equal(flows, back):
-            context.findings.approximated(
-                flows[0][0], "air in one direction", "the same flow returns: the source zone feels it, too"
+            heat = sum(flow for _, flow, _ in flows) * AIR_SPECIFIC_HEAT * _AIR_DENSITY
+            context.findings.left_out(
+                flows[0][0],
+                "air in one direction, which nothing replaces in the zone that it comes from",
+                f"the same flow returns, and takes {heat:.0f} W for each kelvin between both zones from the "
+                "source: where gains differ, both are several kelvins colder or warmer",
             )
         _path(
             context,
