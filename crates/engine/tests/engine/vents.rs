@@ -260,6 +260,8 @@ fn ventilated() -> Plan {
         indoor,
         difference,
         outdoor: None,
+        indoor_below: None,
+        outdoor_below: None,
         wind: None,
         rain: None,
         minimum_open_time,
