@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import mascarin as mc
+from mascarin.building.parts.air.flow_density import ConstantDensity
 from mascarin.energyplus import Conversion, convert
 from mascarin.energyplus.envelope.constructions import inner_part
 from mascarin.energyplus.envelope.convection import combined as combined_film
@@ -201,11 +202,22 @@ def test_schedules_and_gains(tmp_path: Path) -> None:
 
 
 def test_infiltration_by_the_density_of_outdoor_air(tmp_path: Path) -> None:
-    """0.5 air changes of outdoor air at -9 degC carry 9 % more than at 15 degC into a room at 21 degC."""
+    """0.5 air changes, as volumes of outdoor air, of the air of the zone, and of air of 20 degC at 100 m."""
     text = box("ZoneInfiltration:DesignFlowRate,Leaks,Room,,AirChanges/Hour,,,,0.5,1,0,0,0;")
     leaks = converted(tmp_path, text).building.zones["Room"].infiltration
-    at_minus_nine = float(leaks.constant) + 30.0 * float(leaks.temperature)
-    assert at_minus_nine == pytest.approx(0.5 * 288.15 / 264.15, rel=1e-6)
+    assert float(leaks.constant) == 0.5
+    assert leaks.density is not None
+    assert leaks.density.kind == "outdoors"
+    for basis, kind in (("Indoor", "zone"), ("Standard", "constant")):
+        found = converted(tmp_path, text.replace("0.5,1,0,0,0;", f"0.5,1,0,0,0,{basis};"))
+        density = found.building.zones["Room"].infiltration.density
+        assert density is not None
+        assert density.kind == kind
+    assert isinstance(density, ConstantDensity)
+    altitude = float(found.building.site.altitude)
+    # 101325 Pa exp(-z/8434 m)/(287 J/(kg K) 293.15 K)
+    expected = 1.2043 * math.exp(-altitude / 8434.0)
+    assert float(density.constant) == pytest.approx(expected, rel=2e-3)
 
 
 def test_a_thermostat_by_its_control_type(tmp_path: Path) -> None:

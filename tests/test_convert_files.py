@@ -23,13 +23,13 @@ LEFT_OUT = {
     "1ZoneUncontrolled_win_1": {"Construction"},
     "4ZoneWithShading_Simple_1": set(),
     "5Zone_IdealLoadsAirSystems_ReturnPlenum": {"AirLoopHVAC"},
-    "AirflowNetwork3zVent": {"AirflowNetwork"},
+    "AirflowNetwork3zVent": set(),
     "CondFD1ZonePurchAirAutoSizeWithPCM": set(),
-    "GroundTempOSCCompactSched": {"ZoneVentilation"},
-    "PurchAirWindowBlind": {"WindowShadingControl"},
+    "GroundTempOSCCompactSched": set(),
+    "PurchAirWindowBlind": set(),
     "SolarShadingTest": {"Shading"},
-    "VentilationSimpleTest": {"ZoneVentilation"},
-    "WindowTestsSimple": {"Site", "WindowShadingControl"},
+    "VentilationSimpleTest": set(),
+    "WindowTestsSimple": {"Site"},
 }
 
 

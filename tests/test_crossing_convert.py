@@ -44,11 +44,23 @@ _BLIND = """
 WindowMaterial:Shade,Roller,0.1,0.6,0.1,0.6,0.9,0,0.003,0.1,0.05,0.5,0.5,0.5,0.5,0;
 WindowShadingControl,Noon,Room,1,ExteriorShade,,AlwaysOn,,,No,No,Roller,FixedSlatAngle,,,,,Sequential,Window;
 """
-_NETWORK = "AirflowNetwork:SimulationControl,Network,MultizoneWithoutDistribution;"
+_NETWORK = """
+AirflowNetwork:SimulationControl,Network,MultizoneWithoutDistribution,SurfaceAverageCalculation;
+AirflowNetwork:MultiZone:Zone,Room,Temperature,Warm,0,0,100,0,300000;
+AirflowNetwork:MultiZone:Surface:Crack,Crack,0.01,0.65;
+AirflowNetwork:MultiZone:Component:SimpleOpening,Casement,0.001,0.65,0.01,0.6;
+AirflowNetwork:MultiZone:Surface,East,Crack,,1;
+AirflowNetwork:MultiZone:Surface,Between,Crack,,1;
+AirflowNetwork:MultiZone:Surface,Window,Casement,,0.3;
+"""
 _INNER = (
     "FenestrationSurface:Detailed,Hatch,Window,Glass,Between,,autocalculate,,1,4, 3,5,2, 3,5,1, 1,5,1, 1,5,2;"
 )
-_STACK = "ZoneVentilation:WindandStackOpenArea,Slit,Store,0.1,Always,autocalculate,0,1,autocalculate;"
+#: The second one has another schedule than the first, which is the infiltration of the zone.
+_STACK = """
+ZoneVentilation:WindandStackOpenArea,Slit,Store,0.1,Always,autocalculate,0,1,autocalculate;
+ZoneVentilation:WindandStackOpenArea,Flap,Store,0.1,Used,autocalculate,0,1,autocalculate;
+"""
 _LOGGED = (
     "Schedule:File,Logged,Any,logged.csv,2,1,8760,Comma,No,60;\nLights,Lamp,Store,Logged,LightingLevel,50;"
 )
@@ -60,10 +72,17 @@ OBJECTS: Final[dict[str, Objects]] = {
     "hysteresis": Objects(
         _HYSTERESIS, lambda one: any(getattr(m, "hysteresis", None) for m in one.materials.values())
     ),
-    "vents": Objects(_NETWORK, None, "AirflowNetwork"),
-    "controls": Objects(_NETWORK, None, "AirflowNetwork"),
+    "vents": Objects(_NETWORK, lambda one: len(one.vents) == 4),
+    "controls": Objects(_NETWORK, lambda one: len(one.controls) == 1),
+    "boundaries and densities": Objects(
+        "", lambda one: getattr(one.zones["Room"].infiltration.density, "kind", "") == "outdoors"
+    ),
+    "laws as text": Objects(
+        "ZoneInfiltration:FlowCoefficient,Test,Store,Always,0.05,0.0784,0.67,0.128,0.5;",
+        lambda one: "abs(dT)^0.67" in getattr(one.zones["Store"].infiltration, "formula", ""),
+    ),
     "openings": Objects(_STACK, lambda one: bool(one.openings)),
-    "blinds": Objects(_BLIND, None, "WindowShadingControl"),
+    "blinds": Objects(_BLIND, lambda one: any(window.blind for window in one.windows.values())),
     "loads": Objects("", lambda one: any(zone.loads for zone in one.zones.values())),
     "interior windows": Objects(_INNER, lambda one: len(one.windows) == 2),
     "measured columns": Objects(_LOGGED, lambda one: "Lamp" in one.zones["Store"].gains),
@@ -72,13 +91,11 @@ OBJECTS: Final[dict[str, Objects]] = {
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {
-    "boundaries and densities": "keys that the conversion does not write yet",
     "products": "the catalogue belongs to Mascarin",
     "humidity": "the vapour of people and materials is part of other objects, whose findings name it",
     "thermal bridges": "EnergyPlus has no object for them",
     "supercooling": "hysteresis of EnergyPlus has two curves, and no nucleation",
     "sensors and ties": "outputs inside walls belong to nodes, and numbers are not tied",
-    "laws as text": "curves of coefficients are objects of their own, which the conversion names",
     "derived outputs": "what follows from outputs is not part of a model of EnergyPlus",
     "weather errors": "a weather file of EnergyPlus is taken to be right",
     "column errors": "a weather file of EnergyPlus is taken to be right",

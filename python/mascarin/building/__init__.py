@@ -41,6 +41,7 @@ from mascarin.building.parts.air.schedule import (
 from mascarin.building.parts.air.set_point import SetPoint
 from mascarin.building.parts.air.vent import (
     DifferenceBand,
+    LowBand,
     LowRise,
     NoWind,
     PressureTable,
@@ -194,6 +195,7 @@ __all__ = [
     "LeakageLaw",
     "LinearLaw",
     "LinearWind",
+    "LowBand",
     "LowRise",
     "Measured",
     "Mowitt",

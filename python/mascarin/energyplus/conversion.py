@@ -120,7 +120,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     air = usual_temperatures(context, zones)
     describe_gains(context, zones, air)
     describe_water(context, zones, air)
-    describe_air(context, zones)
+    describe_air(context, zones, all_surfaces, inside)
     describe_conditioning(context, zones)
     describe_enclosures(context, _built(context), zones)
     version = _version(context)

@@ -143,8 +143,6 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "*_supply_air_temperature": "of a supply without a limit",
         "*humidi*": "moisture: listed with the system",
     },
-    "windowshadingcontrol": {"*": "listed with the control"},
-    "airflownetwork": {"*": "listed with the network"},
     "zoneinfiltration:designflowrate": {"*flow*": _METHOD, "air_changes_per_hour": _METHOD},
     "zoneventilation:designflowrate": {
         "*flow*": _METHOD,

@@ -179,7 +179,7 @@ walk!(Angular { transmittance_scale, absorptance_scale }
 walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, heating, cooling }
     plain { name, view_weights });
 walk!(Mixing { air_changes } plain { schedule });
-walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain {});
+walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain { schedule, control });
 walk!(FlowDensity by variant {
     Outdoors {} plain {},
     Zone {} plain {},
@@ -200,7 +200,7 @@ walk!(ZoneSun by variant {
 });
 walk!(SunShares { faces, lost } plain {});
 walk!(Gain { power, radiative } plain { name, schedule });
-walk!(Ventilation { air_changes, flow, density } plain { name, schedule });
+walk!(Ventilation { air_changes, flow, density } plain { name, schedule, control });
 walk!(IdealLoad { setpoint, capacity, radiative } plain { schedule });
 walk!(SetPoint by variant {
     Constant { temperature } plain {},
@@ -219,8 +219,8 @@ walk!(WindPressure by variant {
     LowRise { side_ratio } plain {},
     Table {} plain { coefficients },
 });
-walk!(VentControl { indoor, outdoor, difference, wind, rain, minimum_open_time, minimum_closed_time }
-    plain { name, zone });
+walk!(VentControl { indoor, outdoor, indoor_below, outdoor_below, difference, wind, rain, minimum_open_time,
+    minimum_closed_time } plain { name, zone });
 walk!(Band { open, close } plain {});
 walk!(ChannelBand { band } plain { channel });
 

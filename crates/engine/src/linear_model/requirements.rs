@@ -106,10 +106,14 @@ fn require_linear_zones(
                 "keep only its constant part",
             );
         }
-        if zone.infiltrated_capacity.as_ref().is_some_and(|capacity| capacity.whole().is_none()) {
+        let varies = zone.infiltrated_capacity.as_ref().is_some_and(|capacity| capacity.whole().is_none());
+        if varies || zone.infiltration_control.is_some() {
             return refuse(
-                &format!("infiltration of zone {}, whose density varies", definition.name),
-                "write `density: site`, or a number",
+                &format!(
+                    "infiltration of zone {}, that a density, a schedule or a control changes",
+                    definition.name
+                ),
+                "write `density: site`, or a number, and remove schedule and control",
             );
         }
         if definition.heating.is_some() || definition.cooling.is_some() {
@@ -119,10 +123,12 @@ fn require_linear_zones(
             );
         }
         let flows = zone.ventilation.iter().zip(&definition.ventilation);
-        if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
+        if let Some((_, flow)) =
+            flows.into_iter().find(|(flow, given)| flow.whole().is_none() || given.control.is_some())
+        {
             return refuse(
                 &format!("ventilation {} of zone {}", flow.name, definition.name),
-                "remove its schedule, and a density that varies",
+                "remove its schedule and its control, and a density that varies",
             );
         }
     }

@@ -14,8 +14,10 @@ pub struct ZoneConditions<S> {
     pub convective: S,
     /// Gains radiated to the surfaces [W].
     pub radiant: S,
-    /// Heat carried by ventilation per degree [W/K].
+    /// Heat carried per degree by the ventilation that is not controlled [W/K].
     pub ventilation: S,
+    /// The same of each flow that a control opens and closes [W/K].
+    controlled: Vec<S>,
     /// Heat capacity of the zone's volume of the air that infiltrates [J/K]; none: at the density of the site.
     infiltrated_capacity: Option<S>,
     /// Air that moves within the zone [1/h]; none: no fan moves any.
@@ -33,6 +35,7 @@ impl<S: Real> ZoneConditions<S> {
             convective: zero,
             radiant: zero,
             ventilation: zero,
+            controlled: vec![zero; zone.ventilation_controls.iter().flatten().count()],
             infiltrated_capacity: zone.infiltrated_capacity.as_ref().map(|_| zero),
             mixing: zone.mixing.as_ref().map(|_| zero),
             open: vec![zero; zone.openings.len()],
@@ -47,6 +50,10 @@ impl<S: Real> ZoneConditions<S> {
         self.convective = line(first.convective, second.convective);
         self.radiant = line(first.radiant, second.radiant);
         self.ventilation = line(first.ventilation, second.ventilation).max(S::zero());
+        for (at, (&a, &b)) in self.controlled.iter_mut().zip(first.controlled.iter().zip(&second.controlled))
+        {
+            *at = line(a, b).max(S::zero());
+        }
         if let (Some(at), Some(a), Some(b)) =
             (&mut self.infiltrated_capacity, first.infiltrated_capacity, second.infiltrated_capacity)
         {
@@ -70,8 +77,12 @@ impl<S: Real> ZoneConditions<S> {
             self.radiant += radiant;
         }
         self.ventilation = S::zero();
-        for flow in &zone.ventilation {
-            self.ventilation += flow.at(row, densities);
+        let mut controlled = self.controlled.iter_mut();
+        for (flow, control) in zone.ventilation.iter().zip(&zone.ventilation_controls) {
+            match control.and_then(|_| controlled.next()) {
+                Some(at) => *at = flow.at(row, densities),
+                None => self.ventilation += flow.at(row, densities),
+            }
         }
         if let Some(capacity) = &zone.infiltrated_capacity {
             self.infiltrated_capacity = Some(capacity.at(row, densities));
@@ -84,8 +95,14 @@ impl<S: Real> ZoneConditions<S> {
         }
     }
 
-    /// Closes the openings that controls have closed.
+    /// Closes the openings and stops the flows that controls have closed.
     pub(crate) fn control(&mut self, zone: &ZoneCoefficients<S>, opened: &[S]) {
+        for (at, &control) in self.controlled.iter_mut().zip(zone.ventilation_controls.iter().flatten()) {
+            *at = *at * opened[control];
+        }
+        if let (Some(at), Some(control)) = (&mut self.infiltrated_capacity, zone.infiltration_control) {
+            *at = *at * opened[control];
+        }
         for (open, opening) in self.open.iter_mut().zip(&zone.openings) {
             if let Some(control) = opening.control {
                 *open = *open * opened[control];
@@ -95,7 +112,8 @@ impl<S: Real> ZoneConditions<S> {
 
     #[inline(always)]
     fn intake<'a>(&'a self, zone: &'a ZoneCoefficients<S>) -> Intake<'a, S> {
-        Intake { ventilation: self.ventilation, openings: &zone.openings, open: &self.open }
+        let ventilation = self.controlled.iter().fold(self.ventilation, |sum, &flow| sum + flow);
+        Intake { ventilation, openings: &zone.openings, open: &self.open }
     }
 
     /// Heat that ventilation and openings bring into the zone, as its tangent in `T_outdoor - T_air`.
@@ -164,6 +182,7 @@ mod tests {
             flow: None,
             schedule: Some(0),
             density: None,
+            control: None,
         }];
         description.channels = vec![name];
         let plan = Plan::new(description).unwrap();

@@ -31,8 +31,14 @@ fn rooms(power: f64) -> Description {
     let mut d = b.describe();
     d.channels.push("window".to_owned());
     let air_changes = Some(number(&mut d, "window.air_changes", 60.0));
-    let window =
-        Ventilation { name: "window".to_owned(), air_changes, flow: None, schedule: Some(0), density: None };
+    let window = Ventilation {
+        name: "window".to_owned(),
+        air_changes,
+        flow: None,
+        schedule: Some(0),
+        control: None,
+        density: None,
+    };
     d.zones[0].ventilation.push(window);
     let (power, radiative) = (number(&mut d, "gain.power", power), number(&mut d, "gain.radiative", 0.0));
     d.zones[0].gains.push(Gain { name: "lamp".to_owned(), power, radiative, schedule: None });

@@ -149,16 +149,19 @@ def _in_zones(building: Description) -> Iterator[str]:
             yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
         for key, air in zone.ventilation.items():
             flow = float(air.flow or 0.0) + float(air.air_changes or 0.0) * float(zone.volume or 0.0) / 3600.0
-            words = f"{flow * heat:.2f} W/K{_of_air(air)}{_scheduled(air.schedule)}"
+            steered = _scheduled(air.schedule) + _controlled(air.control)
+            words = f"{flow * heat:.2f} W/K{_of_air(air)}{steered}"
             yield f"zone {name}: ventilation {key} of {words}"
         for which, loads in zone.loads.items():
             target = loads.setpoint.words
             most = "without limit" if loads.capacity is None else f"at most {loads.capacity:g} W"
             yield f"zone {name}: {which} to {target}, {most}{_scheduled(loads.schedule)}"
         yield from _bridges(name, zone)
-        if zone.infiltration.density is not None:
-            yield f"zone {name}: infiltration{_of_air(zone.infiltration)}"
-        test = zone.infiltration.blower_door
+        leaks = zone.infiltration
+        if leaks.density is not None or leaks.schedule is not None or leaks.control is not None:
+            steered = _scheduled(leaks.schedule) + _controlled(leaks.control)
+            yield f"zone {name}: infiltration{_of_air(leaks)}{steered}"
+        test = leaks.blower_door
         if test is not None:
             yield f"zone {name}: infiltration of a pressure test, n50 {test.n50:g} 1/h ({test.kind})"
     for name, path in building.air_paths.items():

@@ -22,6 +22,8 @@ def schedule_uses(building: Description) -> Iterator[Use]:
             for key, part in getattr(zone, section).items():
                 if part.schedule is not None:
                     yield part.schedule, (*location, section, key, "schedule"), "fraction"
+        if zone.infiltration.schedule is not None:
+            yield zone.infiltration.schedule, (*location, "infiltration", "schedule"), "fraction"
         if zone.mixing_air_change is not None and zone.mixing_air_change.schedule is not None:
             yield zone.mixing_air_change.schedule, (*location, "mixing_air_change", "schedule"), "fraction"
         for which, loads in zone.loads.items():

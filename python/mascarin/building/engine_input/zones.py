@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.building.engine_input.air import density_of, driven, schedule_of, set_point
+from mascarin.building.engine_input.air import control_of, density_of, driven, schedule_of, set_point
 from mascarin.building.engine_input.ids import Ids, Json, Positions, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
 from mascarin.building.parts.air.zone import (
     FloorSun,
     GivenSun,
     IdealLoads,
+    Infiltration,
     SunShares,
     TextInfiltration,
     TracedSun,
@@ -39,6 +40,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
             **fields_of(part, ids, f"ventilation.{key}."),
             **schedule_of(part, positions),
             **density_of(part, ids, f"ventilation.{key}."),
+            **(control_of(building, part) if part.control is not None else {}),
         }
         for key, part in zone.ventilation.items()
     ]
@@ -51,7 +53,7 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         **loads,
         "volume": ids("volume"),
         "capacity_factor": ids("capacity_factor"),
-        "infiltration": _infiltration(zone, ids),
+        "infiltration": _infiltration(building, positions, zone.infiltration, deeper(ids, "infiltration")),
         "solar_to_air": None if zone.solar_to_air is None else ids("solar_to_air"),
         "longwave": fields_of(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
@@ -66,15 +68,17 @@ def _mixing(zone: Zone, positions: Positions, ids: Ids) -> Json:
     return {"mixing": written}
 
 
-def _infiltration(zone: Zone, ids: Ids) -> Json:
-    written = fields_of(zone.infiltration, ids, "infiltration.")
-    written |= density_of(zone.infiltration, ids, "infiltration.")
-    test = zone.infiltration.blower_door
-    if test is not None:
-        written["leakage"] = fields_of(test, ids, "infiltration.blower_door.")
-    if isinstance(zone.infiltration, TextInfiltration):
+def _infiltration(building: Description, positions: Positions, part: Infiltration, ids: Ids) -> Json:
+    written = {**fields_of(part, ids), **density_of(part, ids)}
+    if part.schedule is not None:
+        written |= schedule_of(part, positions)
+    if part.control is not None:
+        written |= control_of(building, part)
+    if part.blower_door is not None:
+        written["leakage"] = fields_of(part.blower_door, ids, "blower_door.")
+    if isinstance(part, TextInfiltration):
         written.pop("kind")
-        written["law"] = numbers_of(zone.infiltration, ids, "infiltration.")
+        written["law"] = numbers_of(part, ids, "")
     return written
 
 

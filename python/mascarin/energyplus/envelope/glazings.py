@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from mascarin.energyplus.envelope.materials import layers_of
+from mascarin.energyplus.envelope.simple_glazing import simple_glazing
 from mascarin.energyplus.envelope.window_data import DataFile, read_data_file
 from mascarin.energyplus.model.context import Context, Section
 from mascarin.energyplus.model.handlers import reads
@@ -15,8 +16,6 @@ from mascarin.energyplus.model.idf import IdfObject
 
 _SHADES: Final = ("shade", "blind", "screen", "drape", "complexshade")
 _GASES: Final = ("air", "argon", "krypton", "xenon")
-#: U value above which LBNL-2804E takes the resistance inside from another fit [W/(m2 K)].
-_SINGLE: Final = 5.85
 
 
 @dataclass(frozen=True)
@@ -94,7 +93,7 @@ def _glazing(context: Context, construction: IdfObject, layers: list[IdfObject])
     """A glazing by its layers; None where a layer has no counterpart."""
     simple = [item for item in layers if item.kind == "WindowMaterial:SimpleGlazingSystem"]
     if simple:
-        return _rated(context, simple[0])
+        return simple_glazing(context, simple[0])
     unshaded_layers = _without_shades(context, construction, layers)
     panes: list[Section] = []
     gaps: list[Section] = []
@@ -245,29 +244,6 @@ def _gap(context: Context, item: IdfObject) -> Section:
         item, f"a mixture with {share:.0%} of {gas}", f"{gas} alone: some percent of the gap's conductance"
     )
     return {"thickness": thickness, "gas": gas}
-
-
-def _rated(context: Context, item: IdfObject) -> Section:
-    """A glazing by U value and solar heat gain.
-
-    EnergyPlus replaces it by one pane: its conductance without the surface resistances of the rating, with
-    its own ones. Those are given here (LBNL-2804E, steps 1 and 2).
-    """
-    u, gain = item.needed("u_factor"), item.needed("solar_heat_gain_coefficient")
-    inside = 1.0 / (0.359073 * math.log(u) + 6.949915) if u < _SINGLE else 1.0 / (1.788041 * u - 2.886625)
-    outside = 1.0 / (0.025342 * u + 29.163853)
-    if u * (inside + outside) >= 0.995:
-        context.findings.approximated(
-            item, f"a U value of {u:g} W/(m2 K)", "a glazing of nearly no resistance of its own"
-        )
-        u = 0.995 / (inside + outside)
-    return {
-        "kind": "simple",
-        "u_value": round(u, 5),
-        "solar_heat_gain": min(gain, 0.95),
-        "outside_film": round(outside, 6),
-        "inside_film": round(inside, 6),
-    }
 
 
 CONSTRUCTIONS: Final = (

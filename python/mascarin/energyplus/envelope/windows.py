@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from mascarin.building.geometry import Polygon
+from mascarin.energyplus.envelope.blinds import describe_blinds
 from mascarin.energyplus.envelope.constructions import construction
 from mascarin.energyplus.envelope.convection import ConvectionCoefficients
 from mascarin.energyplus.envelope.glazings import construction_of, glazing
@@ -39,7 +40,6 @@ def describe_openings(
     InputError
         A construction that does not exist.
     """
-    _shading_controls(context)
     names = {opening.item.name.casefold() for opening in openings}
     doors: dict[str, list[g.Array]] = {}
     for opening in openings:
@@ -60,6 +60,7 @@ def describe_openings(
             context.findings.left_out(
                 opening.item, f"a {opening.shape}", "its wall is opaque there: no daylight and no sun enters"
             )
+    describe_blinds(context)
 
 
 def _window(
@@ -229,15 +230,3 @@ def _door(
         "vertices": g.rounded(points),
         **sides,
     }
-
-
-@reads("WindowShadingControl", "WindowProperty:ShadingControl")
-def _shading_controls(context: Context) -> None:
-    for item in context.model.of("WindowShadingControl", "WindowProperty:ShadingControl"):
-        device = item.text("shading_type") or "a device"
-        control = item.text("shading_control_type")
-        context.findings.left_out(
-            item,
-            f"{device}, {control}",
-            "the windows stay unshaded: more sun enters, and at night the glass alone insulates",
-        )

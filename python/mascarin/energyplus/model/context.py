@@ -16,6 +16,9 @@ Section = dict[str, Any]
 #: Sections of a description, in its order: that of the written file.
 SECTIONS: Final = tuple(name for name in Description.model_fields if name != "name")
 
+#: Sections whose parts have results.
+_WITH_RESULTS: Final = ("zones", "surfaces", "windows", "vents", "controls")
+
 
 @dataclass
 class Names:
@@ -55,8 +58,8 @@ class Names:
 
     def new(self, section: str, name: str) -> str:
         """A name like this one that no other part has."""
-        # Results of zones, surfaces, windows and sensors are named after them: one set of names.
-        room = "parts" if section in ("zones", "surfaces", "windows") else section
+        # Results are named after them: one set of names.
+        room = "parts" if section in _WITH_RESULTS else section
         plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
         if not plain.isidentifier():
             # Gains and the like are held by zone: the first word says what they are.

@@ -11,7 +11,8 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
 from mascarin.energyplus.model.year import Year, combined, constant
-from mascarin.energyplus.zones.airflow import ventilate
+from mascarin.energyplus.zones.draughts import Draught, density_of, ventilate
+from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import AIR_SPECIFIC_HEAT
@@ -65,16 +66,19 @@ def describe_conditioning(context: Context, zones: dict[str, Zone]) -> None:
     set_points = dict(_thermostats(context, zones))
     systems = _systems(context)
     for key, zone in zones.items():
-        points, system = set_points.get(key), systems.get(key)
-        if points is None and system is not None:
-            context.findings.no_effect([system], "a system without a thermostat", "it conditions nothing")
-            continue
-        if points is None:
-            continue
-        if system is None:
-            context.findings.no_effect([zone.item], "a thermostat without a system", "it conditions nothing")
-            continue
-        _condition(context, zone, points, system, zones)
+        points, zone_systems = set_points.get(key), systems.get(key, [])
+        if points is None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
+            context.findings.no_effect(zone_systems, "a system without a thermostat", "it conditions nothing")
+        elif points is not None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
+            _condition(context, zone, points, zone_systems[0], zones)
+        elif points is not None:
+            plants = replaced(context, zone, zone_systems)
+            if not plants:
+                context.findings.no_effect(
+                    [zone.item], "a thermostat without a system that heats or cools", "it conditions nothing"
+                )
+            else:
+                _hold(context, zone, points, plants)
 
 
 def usual_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, float]:
@@ -171,9 +175,9 @@ def _set_points(context: Context, item: IdfObject) -> SetPoints:
 
 
 @reads("ZoneHVAC:EquipmentConnections", "ZoneHVAC:EquipmentList", IDEAL, _TEMPLATE)
-def _systems(context: Context) -> dict[str, IdfObject]:
-    """System of each zone: its ideal loads, or else the first of what it has."""
-    system_of_zone: dict[str, IdfObject] = {}
+def _systems(context: Context) -> dict[str, list[IdfObject]]:
+    """What heats, cools and ventilates each zone: its ideal loads alone, where it has them."""
+    systems_of_zone: dict[str, list[IdfObject]] = {}
     for item in context.model.of("ZoneHVAC:EquipmentConnections"):
         equipment = context.model.named(
             item.text("zone_conditioning_equipment_list_name"), "ZoneHVAC:EquipmentList"
@@ -185,13 +189,12 @@ def _systems(context: Context) -> dict[str, IdfObject]:
             system = context.model.of_any_class(str(row.get("zone_equipment_name", "")), kind)
             systems += [] if system is None else [system]
         ideal = [system for system in systems if system.kind == IDEAL]
-        for system in ideal[:1] or systems[:1]:
-            for zone in context.zones_of(item, "zone_name"):
-                system_of_zone[zone.name.casefold()] = system
+        for zone in context.zones_of(item, "zone_name"):
+            systems_of_zone[zone.name.casefold()] = ideal[:1] or systems
     for item in context.model.of(_TEMPLATE):
         for zone in context.zones_of(item, "zone_name"):
-            system_of_zone[zone.name.casefold()] = item
-    return system_of_zone
+            systems_of_zone[zone.name.casefold()] = [item]
+    return systems_of_zone
 
 
 def _flat_equipment(item: IdfObject) -> list[dict[str, Any]]:
@@ -210,26 +213,26 @@ def _condition(
     context: Context, zone: Zone, points: SetPoints, system: IdfObject, zones: dict[str, Zone]
 ) -> None:
     """Heating and cooling of one zone by its system."""
-    ideal = system.kind in (IDEAL, _TEMPLATE)
-    if not ideal:
-        context.findings.left_out(
-            system,
-            f"the system of zone '{zone.item.name}'",
-            "ideal heating and cooling without limits replace it",
-        )
-    on = (
-        year(context, system, "availability_schedule_name", "system_availability_schedule_name")
-        if ideal
-        else constant(1.0)
-    )
+    on = year(context, system, "availability_schedule_name", "system_availability_schedule_name")
+    plants = {}
+    for which in ("heating", "cooling"):
+        allowed = year(context, system, f"{which}_availability_schedule_name")
+        available = combined(lambda first, second: float(first > 0.0 and second > 0.0), on, allowed)
+        plants[which] = Plant(available, _limit(context, system, which))
+    _hold(context, zone, points, plants)
+    _outdoor_air(context, zone, system, on, zones)
+
+
+def _hold(context: Context, zone: Zone, points: SetPoints, plants: dict[str, Plant]) -> None:
+    """Heating and cooling of a zone to its set points, by what there is of both."""
     values = {"heating": points.heating, "cooling": points.cooling}
     for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
-        allowed = year(context, system, f"{which}_availability_schedule_name") if ideal else constant(1.0)
+        plant = plants.get(which)
         values[which] = combined(
-            lambda set_point, first, second, never=never: (
-                min(max(set_point, NEVER_HEATS), NEVER_COOLS) if first > 0.0 and second > 0.0 else never
+            lambda set_point, available, never=never: (
+                min(max(set_point, NEVER_HEATS), NEVER_COOLS) if available > 0.0 else never
             ),
-            values[which], on, allowed,
+            values[which], constant(0.0) if plant is None else plant.available,
         )  # fmt: skip
     crossing = combined(lambda heat, cool: float(heat > cool), values["heating"], values["cooling"])
     if 1.0 in crossing.values:
@@ -247,11 +250,11 @@ def _condition(
         held[which] = {
             "setpoint": {"schedule": set_point_value} if isinstance(set_point_value, str) else set_point_value
         }
-        limit = _limit(context, system, which) if ideal else None
-        if limit is not None:
-            held[which]["capacity"] = round(limit, 3)
-    if ideal:
-        _outdoor_air(context, zone, system, on, zones)
+        plant = plants[which]
+        if plant.capacity is not None:
+            held[which]["capacity"] = round(plant.capacity, 3)
+        if plant.radiative > 0.0:
+            held[which]["radiative"] = round(plant.radiative, 6)
 
 
 def _limit(context: Context, system: IdfObject, which: str) -> float | None:
@@ -327,7 +330,11 @@ def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zone
         "of EnergyPlus but in 'Zone Ideal Loads Supply Air'; loads are sensible",
     )
     active = combined(lambda first, second: second if first > 0.0 else 0.0, on, values)
-    ventilate(context, zone, f"{system.name or zone.item.name} outdoor air", flow, active)
+    # The flow is a volume of standard air (EnergyPlus Engineering Reference, ideal loads).
+    air = Draught(
+        system, flow, (1.0, 0.0, 0.0, 0.0), active, density=density_of(context, system, usual="standard")
+    )
+    ventilate(context, zone, air, flow)
 
 
 def _outdoor_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:

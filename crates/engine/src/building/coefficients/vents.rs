@@ -113,6 +113,8 @@ pub(crate) struct Control<S> {
     indoor: Option<Limits<S>>,
     outdoor: Option<Limits<S>>,
     difference: Option<Limits<S>>,
+    indoor_below: Option<Limits<S>>,
+    outdoor_below: Option<Limits<S>>,
     wind: Option<Limits<S>>,
     rain: Option<(usize, Limits<S>)>,
     /// Times for which it stays open and closed [s].
@@ -130,6 +132,8 @@ impl<S: Real> Control<S> {
             indoor: of(&control.indoor),
             outdoor: of(&control.outdoor),
             difference: of(&control.difference),
+            indoor_below: of(&control.indoor_below),
+            outdoor_below: of(&control.outdoor_below),
             wind: of(&control.wind),
             rain: control.rain.as_ref().map(|rain| (CLIMATE_CHANNELS + rain.channel, band(&rain.band))),
             minimum_open: seconds(control.minimum_open_time),
@@ -150,11 +154,17 @@ impl<S: Real> Control<S> {
     ) -> S {
         let was_open = S::constant(0.5).lt(before);
         let mut warm = S::one();
+        let limit = |[opens, closes]: Limits<S>| S::select(was_open, closes, opens);
         let (indoor, outdoor) = (air[self.zone], S::constant(outdoor));
         let above = [(self.indoor, indoor), (self.outdoor, outdoor), (self.difference, indoor - outdoor)];
         for (limits, value) in above {
-            if let Some([opens, closes]) = limits {
-                warm = S::select(S::select(was_open, closes, opens).lt(value), warm, S::zero());
+            if let Some(limits) = limits {
+                warm = S::select(limit(limits).lt(value), warm, S::zero());
+            }
+        }
+        for (limits, value) in [(self.indoor_below, indoor), (self.outdoor_below, outdoor)] {
+            if let Some(limits) = limits {
+                warm = S::select(value.lt(limit(limits)), warm, S::zero());
             }
         }
         let stays =
@@ -162,9 +172,8 @@ impl<S: Real> Control<S> {
         let mut open = S::select(stays, before, warm);
         let rain = self.rain.map(|(channel, limits)| (limits, row[channel]));
         for (limits, value) in self.wind.map(|limits| (limits, wind)).into_iter().chain(rain) {
-            let [opens, closes] = limits;
             // At the limit itself it is open: no rain is 0.
-            open = S::select(S::select(was_open, closes, opens).lt(S::constant(value)), S::zero(), open);
+            open = S::select(limit(limits).lt(S::constant(value)), S::zero(), open);
         }
         open
     }
@@ -201,6 +210,8 @@ mod tests {
             indoor: Some([24.0, 22.0]),
             outdoor: None,
             difference: Some([2.0, 1.0]),
+            indoor_below: None,
+            outdoor_below: None,
             wind: Some([6.0, 8.0]),
             rain: Some((0, [0.0, 0.2])),
             minimum_open: 0.0,

@@ -30,6 +30,10 @@ pub struct ZoneCoefficients<S> {
     pub leakage: Option<Leakage<S>>,
     /// Heat capacity of the zone's volume of the air that infiltrates [J/K]; none: at the density of the site.
     pub(crate) infiltrated_capacity: Option<AirFlow<S>>,
+    /// Control that lets air infiltrate; none: not controlled.
+    pub(crate) infiltration_control: Option<usize>,
+    /// Control of each flow of ventilation.
+    pub(crate) ventilation_controls: Vec<Option<usize>>,
     /// Infiltration as text [1/h].
     pub(crate) infiltration_law: Option<Function<S>>,
     /// Part of the transmitted sun that the air gets at once [-].
@@ -88,12 +92,14 @@ impl<S: Real> ZoneCoefficients<S> {
             Vec::new()
         };
         let air_capacity = values.get(definition.volume) * site.heat;
-        let Infiltration { law, density, .. } = &definition.infiltration;
+        let Infiltration { law, density, schedule, control, .. } = &definition.infiltration;
         let (infiltration, driven_leakage) = leaks(&definition.infiltration, values);
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilated = |flow| air_flow::ventilation(flow, index, values, site, air_capacity);
+        // A schedule and a control multiply the air that infiltrates, whatever drives it.
+        let changing = density.is_some() || schedule.is_some() || control.is_some();
         let infiltrated =
-            |density| AirFlow::new(air_capacity, None, (Some(density), [index; 2]), values, site);
+            || AirFlow::new(air_capacity, *schedule, (density.as_ref(), [index; 2]), values, site);
         let ([heating, cooling], radiated_loads) = plants(definition, values);
         Self {
             radiated_loads,
@@ -108,7 +114,9 @@ impl<S: Real> ZoneCoefficients<S> {
             air_capacity,
             infiltration,
             leakage: driven_leakage,
-            infiltrated_capacity: density.as_ref().map(infiltrated),
+            infiltrated_capacity: changing.then(infiltrated),
+            infiltration_control: *control,
+            ventilation_controls: definition.ventilation.iter().map(|flow| flow.control).collect(),
             infiltration_law: law.as_ref().map(|law| Function::of("infiltration", law, values)),
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
             exchange_sums: sums_of_others(&exchange, zone_surfaces.len()),

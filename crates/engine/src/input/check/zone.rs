@@ -18,7 +18,11 @@ pub(super) fn check_zone(description: &Description, index: usize, zone: &Zone) -
             return refuse(place, "both or none of them", "either air changes or a flow");
         }
         check_schedule(description, &place, flow.schedule)?;
+        check_control(description, &place, flow.control)?;
     }
+    let leaks = format!("{place}, infiltration");
+    check_schedule(description, &leaks, zone.infiltration.schedule)?;
+    check_control(description, &leaks, zone.infiltration.control)?;
     if let Some(mixing) = &zone.mixing {
         check_schedule(description, format_args!("{place}, mixing"), mixing.schedule)?;
     }
@@ -111,8 +115,11 @@ pub(super) fn check_air_path(description: &Description, path: &AirPath) -> Check
 pub(super) fn check_opening(description: &Description, opening: &Opening) -> Checked {
     let place = format!("opening {}", opening.name);
     check_index(&place, "zone", opening.zone, description.zones.len())?;
-    if let Some(control) = opening.control {
-        check_index(&place, "control", control, description.controls.len())?;
-    }
+    check_control(description, &place, opening.control)?;
     check_schedule(description, &place, opening.schedule)
+}
+
+/// A control of the building.
+fn check_control(description: &Description, place: &str, control: Option<usize>) -> Checked {
+    control.map_or(Ok(()), |control| check_index(place, "control", control, description.controls.len()))
 }

@@ -89,6 +89,12 @@ pub struct VentControl {
     /// Temperature of the outdoor air above limits [degC].
     #[serde(default)]
     pub outdoor: Option<Band>,
+    /// Temperature of the zone below limits [degC].
+    #[serde(default)]
+    pub indoor_below: Option<Band>,
+    /// Temperature of the outdoor air below limits [degC].
+    #[serde(default)]
+    pub outdoor_below: Option<Band>,
     /// Temperature of the zone less that of the outdoor air, above limits [K].
     #[serde(default)]
     pub difference: Option<Band>,

@@ -71,6 +71,14 @@ pub struct Infiltration {
     #[serde(default)]
     pub law: Option<TextLaw>,
 
+    /// Index into [`Description::channels`](super::Description::channels): fraction of all of them [-]. None: always all.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+
+    /// Index into [`Description::controls`](super::Description::controls). None: not controlled.
+    #[serde(default)]
+    pub control: Option<usize>,
+
     /// Density of the air that air changes and flows are volumes of. None: that of the site.
     #[serde(default)]
     pub density: Option<FlowDensity>,
@@ -163,6 +171,9 @@ pub struct Ventilation {
     /// Density of the air that air changes and flows are volumes of. None: that of the site.
     #[serde(default)]
     pub density: Option<FlowDensity>,
+    /// Index into [`Description::controls`](super::Description::controls). None: not controlled.
+    #[serde(default)]
+    pub control: Option<usize>,
 }
 
 /// Air that moves within a zone; it acts on laws of convection that depend on it.

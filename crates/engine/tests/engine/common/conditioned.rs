@@ -44,6 +44,7 @@ pub fn conditioned(gamma: f64) -> Description {
         air_changes: Some(number(&mut d, "fan.air_changes", 2.0)),
         flow: None,
         schedule: Some(1),
+        control: None,
         density: None,
     };
     d.zones[0].ventilation.push(fan);

@@ -75,6 +75,7 @@ pub fn linear_cell() -> Description {
         air_changes: None,
         flow: Some(number(&mut d, "fan.flow", 0.004)),
         schedule: None,
+        control: None,
         density: None,
     };
     d.zones[1].ventilation.push(fan);

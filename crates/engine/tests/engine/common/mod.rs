@@ -203,6 +203,8 @@ impl Builder {
                 temperature: self.number(&format!("zones.{name}.infiltration.temperature"), 0.0),
                 wind: self.number(&format!("zones.{name}.infiltration.wind"), 0.0),
                 leakage: None,
+                schedule: None,
+                control: None,
                 density: None,
             },
             longwave,

@@ -777,6 +777,7 @@ impl Maker<'_> {
                 air_changes: by_volume.then_some(amount),
                 flow: (!by_volume).then_some(amount),
                 schedule,
+                control: None,
                 density: None,
             });
         }

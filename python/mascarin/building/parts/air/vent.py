@@ -19,6 +19,10 @@ SWAMI_CHANDRA: Final = (
 ORIFICE: Final = "ASHRAE Handbook of Fundamentals 2017, ch. 16 (flow through openings by pressure)"
 
 
+#: Conditions of a control, in the order in which they are shown.
+CONDITIONS: Final = ("indoor", "outdoor", "difference", "indoor_below", "outdoor_below", "wind", "rain")
+
+
 class _Wind(Part):
     """The wind that pressure coefficients refer to."""
 
@@ -207,6 +211,18 @@ class TemperatureBand(_Band):
     """
 
 
+class LowBand(_Band):
+    """Open below a temperature, closed above another one.
+
+    Examples
+    --------
+    >>> LowBand(open=26, close=28)
+    LowBand(open=26 degC, close=28 degC)
+    """
+
+    ABOVE: ClassVar = False
+
+
 class DifferenceBand(_Band):
     """Open above a temperature difference, closed below another one.
 
@@ -272,6 +288,8 @@ class VentControl(Part):
     difference: DifferenceBand | None = Field(
         None, description="Air temperature of the zone less that outdoors, above limits"
     )
+    indoor_below: LowBand | None = Field(None, description="Air temperature of the zone below limits")
+    outdoor_below: LowBand | None = Field(None, description="Outdoor air temperature below limits")
     wind: WindBand | None = Field(None, description="Wind speed at the mast below limits")
     rain: RainBand | None = Field(None, description="Rain below limits")
     minimum_open_time: q.MinimumTime | None = Field(
@@ -286,7 +304,7 @@ class VentControl(Part):
         if not list(self.conditions):
             raise problem(
                 "a control without conditions",
-                "at least one of indoor, outdoor, difference, wind and rain",
+                f"at least one of {', '.join(CONDITIONS)}",
                 "Add 'indoor: {open: 24, close: 22}', for example.",
             )
         return self
@@ -294,12 +312,12 @@ class VentControl(Part):
     @property
     def by_temperature(self) -> bool:
         """Whether a temperature is among its conditions."""
-        return any(band is not None for band in (self.indoor, self.outdoor, self.difference))
+        return any(name not in ("wind", "rain") for name, _ in self.conditions)
 
     @property
     def conditions(self) -> Iterator[tuple[str, _Band]]:
         """Its conditions by name."""
-        for name in ("indoor", "outdoor", "difference", "wind", "rain"):
+        for name in CONDITIONS:
             band = getattr(self, name)
             if band is not None:
                 yield name, band

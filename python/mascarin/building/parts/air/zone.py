@@ -41,6 +41,12 @@ class Infiltration(Part):
         None, description="Infiltration by a pressure test, in addition: n50 [1/h], or a part with its kind"
     )
     density: FlowDensity | None = Field(None, description=DENSITY)
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of all infiltration; none: always 1"
+    )
+    control: ControlName | None = Field(
+        None, description="Name of the control that lets air infiltrate; none: not controlled"
+    )
 
 
 class TextInfiltration(InfiltrationLaw, Infiltration):
@@ -116,6 +122,10 @@ class Ventilation(Part):
     density: FlowDensity | None = Field(None, description=DENSITY)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the flow; none: always 1"
+    )
+
+    control: ControlName | None = Field(
+        None, description="Name of the control that lets it flow; none: not controlled"
     )
 
     @model_validator(mode="after")
