@@ -154,6 +154,32 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "zonecrossmixing": {"*flow*": _METHOD, "air_changes_per_hour": _METHOD},
     "surfaceproperty:convectioncoefficients": {"*_name": "listed with the coefficient"},
     "heatbalancealgorithm": {"*": "a control of the solver"},
+    "airflownetwork:simulationcontrol": {
+        "*_tolerance": "a control of the solver",
+        "*_limit": "a control of the solver",
+        "initialization_*": "a control of the solver",
+        "maximum_number_of_iterations": "a control of the solver",
+    },
+    "airflownetwork:multizone:zone": {
+        "*venting*": _METHOD,
+        "*_temperature_difference_*": _METHOD,
+        "*_enthalpy_difference_*": _METHOD,
+        "facade_width": _METHOD,
+    },
+    "airflownetwork:multizone:windpressurecoefficientvalues": {
+        "airflownetwork_multizone_windpressurecoefficientarray_name": "of which there is one",
+    },
+    "windowmaterial:blind": {"slat_*": "listed with the blind", "*_slat_*": "listed with the blind"},
+    "windowmaterial:shade": {
+        "thickness": "listed with the control",
+        "conductivity": "listed with the control",
+    },
+    "windowmaterial:screen": {"angle_of_resolution_*": "a report"},
+    "windowshadingcontrol": {
+        "zone_name": "the windows are named",
+        "setpoint*": _METHOD,
+        "shading_control_sequence_number": "an order of controls",
+    },
     "shading:": {"base_surface_name": "its corners say where it is"},
 }
 #: Settings of which there is one, and objects that are named by others: unused, they have no effect.
@@ -161,7 +187,7 @@ _UNUSED: Final = (
     "surfaceconvectionalgorithm:", "schedule:", "material", "construction", "runperiod", "windowmaterial:",
     "windowproperty:frameanddivider", "windowgap", "thermostatsetpoint:", "zonelist",
     "space", "hvactemplate:thermostat", "externalinterface:", "surfaceproperty:othersidecoefficients",
-    "designspecification:", "site:watermains", "zonehvac:equipmentlist",
+    "designspecification:", "site:watermains", "zonehvac:equipmentlist", "airflownetwork:multizone:zone",
 )  # fmt: skip
 
 

@@ -155,9 +155,10 @@ def _angle(item: IdfObject) -> float:
 
 
 def _enter(context: Context, item: IdfObject, name: str, blind: Section) -> None:
-    entered = context.names.by_original.get(("windows", name.strip().casefold()))
+    entered = context.names.entered("windows", name)
     window = context.section("windows").get(entered) if entered is not None else None
     if window is None:
+        context.findings.left_out(item, f"a device of '{name}'", "no such window is carried over")
         return
     wall = context.section("surfaces")[window["surface"]]
     if not wall["outside"].get("outdoors"):

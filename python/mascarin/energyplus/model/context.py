@@ -56,6 +56,16 @@ class Names:
             held[original] = self.by_original[key]
         return self.by_original[key]
 
+    def entered(self, section: str, name: str) -> str | None:
+        """Name of a part that was described before; None where there is none.
+
+        Parameters
+        ----------
+        section, name : str
+            As for `of`, without a class.
+        """
+        return self.by_original.get((section, f"|{name.strip()}".casefold()))
+
     def new(self, section: str, name: str) -> str:
         """A name like this one that no other part has."""
         # Results are named after them: one set of names.

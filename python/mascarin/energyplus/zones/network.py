@@ -104,7 +104,7 @@ def describe_network(
         if len(joint.ends) == 1:
             ends |= _wind(context, item, joint)
         if component.kind in _CRACKS:
-            _crack(context, item, ends, *_leak(component))
+            _crack(context, item, ends, *_leak(context, component))
         elif component.kind in _OPENINGS:
             _opening(context, item, joint, component, ends)
         else:
@@ -135,9 +135,10 @@ def _joints(
             yield opening.item.name.casefold(), Joint(opening.item, joined, opening.points, opening.base)
 
 
-def _leak(item: IdfObject) -> tuple[float, float]:
+def _leak(context: Context, item: IdfObject) -> tuple[float, float]:
     """Mass flow at 1 Pa and exponent of a crack. [kg/s, -]"""
     if item.kind.endswith("Crack"):
+        _note_reference_air(context, item)
         flow = item.needed("air_mass_flow_coefficient_at_reference_conditions")
         return flow, item.number("air_mass_flow_exponent") or 0.65
     area, pressure = (
@@ -148,6 +149,42 @@ def _leak(item: IdfObject) -> tuple[float, float]:
     discharge = item.number("discharge_coefficient") or 1.0
     flow = area * discharge * math.sqrt(2.0 * _REFERENCE_DENSITY) * pressure ** (0.5 - exponent)
     return flow, exponent
+
+
+#: Temperature [degC] and pressure [Pa] of the air for which EnergyPlus takes the coefficient of a crack.
+_REFERENCE_AIR: Final = (20.0, 101325.0)
+#: Difference of density below which air passes one way only, that is not worth a word. [kg/m3]
+_SMALL_DIFFERENCE: Final = 1e-3
+
+
+def _note_reference_air(context: Context, component: IdfObject) -> None:
+    """The coefficient of a crack is for air of its own conditions, where an object states them."""
+    name = component.text("reference_crack_conditions")
+    item = context.model.named(name, "AirflowNetwork:MultiZone:ReferenceCrackConditions") if name else None
+    if item is None:
+        return
+    usual, pressure = _REFERENCE_AIR
+    stated = (
+        item.number("reference_temperature") or usual,
+        item.number("reference_barometric_pressure") or pressure,
+        item.number("reference_humidity_ratio") or 0.0,
+    )
+    if abs(stated[0] - usual) > 1.0 or abs(stated[1] / pressure - 1.0) > 0.01:
+        context.findings.approximated(
+            component,
+            f"a crack measured with air of {stated[0]:g} degC and {stated[1]:g} Pa",
+            "taken as measured at 20 degC and 101325 Pa: its flow changes with the ratio of the densities",
+        )
+
+
+def _note_two_ways(context: Context, component: IdfObject) -> None:
+    least = component.number("minimum_density_difference_for_two_way_flow") or 0.0
+    if least > _SMALL_DIFFERENCE:
+        context.findings.approximated(
+            component,
+            f"flow in both directions from a difference of {least:g} kg/m3 on",
+            f"from the least difference on here; the difference is that of {least / 1.2 * 293.0:.1f} K",
+        )
 
 
 def _crack(
@@ -198,6 +235,7 @@ def _opening(context: Context, item: IdfObject, joint: Joint, component: IdfObje
 def _opened(context: Context, component: IdfObject, share: float) -> tuple[float, float, float]:
     """Width and height factors and discharge coefficient at an opening factor, linear between given ones."""
     if component.kind.endswith("SimpleOpening"):
+        _note_two_ways(context, component)
         return share, 1.0, component.number("discharge_coefficient") or 1.0
     if component.word("type_of_rectangular_large_vertical_opening_lvo_").startswith("horizontallypivoted"):
         context.findings.approximated(component, "a pivoted window", "a window that is not pivoted")

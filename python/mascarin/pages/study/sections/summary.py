@@ -176,11 +176,11 @@ def _bounds(study: Mapping[str, Any]) -> list[str]:
     ]
     if not names:
         return []
-    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    verb = "are" if others else "is"
+    further = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    verb = "are" if further else "is"
     return [
-        f"{names[0]}{others} {verb} at the end of the stated range: measure it, state a wider range with its "
-        "source, or look for a cause outside of the parameters."
+        f"{names[0]}{further} {verb} at the end of the stated range: measure it, state a wider range with "
+        "its source, or look for a cause outside of the parameters."
     ]
 
 
@@ -197,10 +197,10 @@ def _largest_miss(study: Mapping[str, Any]) -> list[str]:
     worst = max(missed, key=ratio)
     value, limit = text.beside_limit(worst["value"], worst.get("limit"))
     unit = units.difference(str(worst.get("unit", "")))
-    place = f"{label_of(study, str(worst['sensor']))}, " if worst.get("sensor") else ""
+    sensor = f"{label_of(study, str(worst['sensor']))}, " if worst.get("sensor") else ""
     period = period_label(study, str(worst.get("period", ""))).lower()
     return [
-        f"Look first at {place}{period}: {worst.get('name', '')} is missed by most ({value} {unit}, limit "
+        f"Look first at {sensor}{period}: {worst.get('name', '')} is missed by most ({value} {unit}, limit "
         f"{limit} {unit})."
     ]
 
