@@ -21,7 +21,7 @@ from mascarin.study.results.document.header import header
 from mascarin.study.results.document.phase_change import phase_change
 from mascarin.study.results.document.sensitivity import importance
 from mascarin.study.steps.days import day_words, days_table
-from mascarin.study.steps.derived_quantities import derived_table
+from mascarin.study.steps.derived_quantities import conductance_table, derived_table
 from mascarin.study.steps.prediction_intervals import interval_table
 
 if TYPE_CHECKING:
@@ -71,6 +71,7 @@ def document(findings: Findings) -> dict[str, Any]:
             interval_table(study, findings.prediction_intervals),
             *error_tables(study, findings.combination),
             *([derived_table(findings.derived)] if findings.derived else []),
+            *(table for table in [conductance_table(fit)] if table is not None),
         ],
         "derived": [one.to_dict() for one in findings.derived],
         "residuals": {
