@@ -26,7 +26,7 @@ SECTIONS = (
     ("The study", description.StudyFile),
     ("`climate`", data_sources.ClimateSource),
     ("`climate.measured`", data_sources.MeasuredWeather),
-    ("`measurements`", data_sources.Table),
+    ("`measurements`", data_sources.MeasuredTable),
     ("Each of `sensors`", description.Sensor),
     ("`periods` of a sensor", description.SensorPeriods),
     ("`initial`", GivenStart),

@@ -28,7 +28,7 @@ from mascarin.study.file.inputs import (
 )
 from mascarin.study.file.locations import Faults, Places
 from mascarin.study.file.names import check_names
-from mascarin.study.file.patterns import tied_building, written_out
+from mascarin.study.file.patterns import tied_building, with_combined_outputs, written_out
 from mascarin.study.file.study_inputs import StudyInputs
 from mascarin.tables.quality import mask
 from mascarin.tables.quality.filled_values import filled_stretches
@@ -76,6 +76,7 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
     with places.blame("set"):
         building = as_described.replace(file.set)
     building = _with_weather(building, file, places)
+    file, building = with_combined_outputs(file, building, places)
     building = tied_building(file, building, places)
     file = written_out(file, building, places)
     check_names(file, building, places, faults)
@@ -147,7 +148,8 @@ def from_objects(
     except ValidationError as error:
         raise explained(error, plain, "study") from None
     places, faults = Places(), Faults()
-    building = tied_building(checked, _with_weather(building, checked, places), places)
+    checked, building = with_combined_outputs(checked, _with_weather(building, checked, places), places)
+    building = tied_building(checked, building, places)
     checked = written_out(checked, building, places)
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)
