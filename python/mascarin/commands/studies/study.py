@@ -287,6 +287,14 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
             ]
+    for house in results.transfer.values():
+        for sensor, spans in house["sensors"].items():
+            lines += [
+                f"{sensor:<16}{period:<16}{model:<10}{m[model]['rmse']:8.3f}{m[model]['sd']:8.3f}"
+                f"{m[model]['bias']:8.3f}{m[model]['max_error']:8.3f}  {house['building']}"
+                for period, m in spans.items()
+                for model in ("described", "calibrated")
+            ]
     lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
     if results.aims:
         reached = sum(aim.passed for aim in results.aims)

@@ -19,7 +19,7 @@ OF_THE_TABLE: Final = (
 )  # fmt: skip
 
 #: Keys of a study that name files.
-FILE_KEYS: Final = ("building", "epw", "tmy", "table")
+FILE_KEYS: Final = ("building", "epw", "tmy", "table", "study")
 
 
 class Table(Part):

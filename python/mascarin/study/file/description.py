@@ -412,6 +412,14 @@ class StudyPlan(Part):
         return self
 
 
+class Transfer(Part):
+    """Another house, season or phase, on which the calibrated building is validated."""
+
+    study: str = Field(
+        description="Study file of it; the estimates are put into its building, nothing of it is identified"
+    )
+
+
 class StudyFile(StudyPlan):
     """A study as a file: the plan, and the files of the building, the weather and the measurements."""
 
@@ -425,6 +433,11 @@ class StudyFile(StudyPlan):
         description="Table of measurements. Keys of the same table that are given for the weather need not "
         "be "
         "repeated, and the other way round; without an entry: the table of the weather"
+    )
+
+    transfer: dict[Name, Transfer] = Field(
+        default_factory=dict,
+        description="Name -> study of another house, season or phase, compared as described and calibrated",
     )
 
     @model_validator(mode="before")

@@ -67,7 +67,7 @@ def from_file(path: Path, *, allow_outside: bool = False) -> StudyInputs:
         return _from_file(path, beside)
 
 
-def _from_file(path: Path, beside: Beside) -> StudyInputs:
+def _from_file(path: Path, beside: Beside, *, alone: bool = False) -> StudyInputs:
     file = read_study(path)
     places, faults = Places(path), Faults()
     with places.blame("building"):
@@ -99,7 +99,16 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
-    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path)
+    others: dict[str, StudyInputs] = {}
+    for name, entry in ({} if alone else file.transfer).items():
+        with places.blame("transfer", name, "study"):
+            other = find(entry.study, beside)
+        if other.resolve() == path.resolve():
+            continue  # one that extends a study has its entries, and may be one of them
+        # What another study transfers to is its own affair.
+        others[name] = _from_file(other, Beside(other.parent, beside.allow_outside), alone=True)
+        hashes["study"] = _digest([hashes["study"], others[name].hashes])
+    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path, others)
 
 
 def _with_weather(building: Building, plan: StudyPlan, places: Places) -> Building:
