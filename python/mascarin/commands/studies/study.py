@@ -43,7 +43,7 @@ def study(
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house, twin-house-n2.
     out : Path
         Folder for study.json, tables, figures, the report and intermediate results.
     figures : bool
