@@ -56,7 +56,9 @@ def _compared(other: StudyContext, fit: Calibration, calibrated: Building) -> di
             missing.append(path)
             del estimates[path]
     building = other.building.with_values(estimates).replace({"posterior": calibrated.posterior})
-    moved = StudyContext(replace(other.inputs, building=building))
+    # Ranges of factors hold for the building as described: of this one they may leave what is possible.
+    plan = other.plan.model_copy(update={"identification": None, "sensitivity": None})
+    moved = StudyContext(replace(other.inputs, plan=plan, building=building))
     run = nominal(moved)
     bands, words = bands_of(moved, run)
     held = {} if bands is None else bands.entries(moved.observation, moved.used)
