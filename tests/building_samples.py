@@ -352,7 +352,7 @@ IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
     ("room", "infiltration"): {"blower_door": {"kind": "factor", "n50": 2}},
     ("attic", "infiltration"): {"blower_door": {"kind": "stack_wind", "n50": 2}},
     ("room", "thermal_bridges"): {
-        "edge": {"psi": 0.05, "length": 10},
+        "edge": {"psi": 0.05, "length": 10, "dimensions": "any"},
         "post": {"chi": 0.1, "zone": "attic"},
         "soil": {"psi": 0.1, "length": 4, "ground": {"mean": 10, "amplitude": 3}},
         "yard": {"chi": 0.2, "measured": ["T_out"]},

@@ -162,7 +162,13 @@ def _loads(tree: Json) -> None:
 
 
 def _bridges(tree: Json) -> None:
-    tree["zones"]["room"]["thermal_bridges"] = {"edge": {"psi": 0.1, "length": 12}}
+    tree["dimensions"] = {"areas": "external", "bridges": "external"}
+    wall = next(name for name, part in tree["surfaces"].items() if "outdoors" in part["outside"])
+    tree["zones"]["room"]["thermal_bridges"] = {
+        "edge": {"psi": 0.1, "length": 12},
+        "corner": {"psi": 0.1, "length": 3, "dimensions": "internal", "excess": {wall: 0.2}},
+        "glass": {"psi": 0.05, "length": 6, "dimensions": "any"},
+    }
 
 
 def _interior_windows(tree: Json) -> None:

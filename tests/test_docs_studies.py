@@ -26,7 +26,7 @@ SECTIONS = (
     ("The study", description.StudyFile),
     ("`climate`", data_sources.ClimateSource),
     ("`climate.measured`", data_sources.MeasuredWeather),
-    ("`measurements`", data_sources.Table),
+    ("`measurements`", data_sources.MeasuredTable),
     ("Each of `sensors`", description.Sensor),
     ("`periods` of a sensor", description.SensorPeriods),
     ("`initial`", GivenStart),
@@ -38,6 +38,7 @@ SECTIONS = (
     ("`identification.discrepancy`", description.DiscrepancyPlan),
     ("Each of `identification.parameters`", description.Free),
     ("Each of `variants`", description.Variant),
+    ("Each of `transfer`", description.Transfer),
     ("Each form of each of `alternatives`", description.Alternative),
     ("`reference`", description.Reference),
     ("Each of `reference.influential`", description.Influential),
@@ -127,7 +128,8 @@ def test_every_kind_of_section_is_on_the_page() -> None:
         and issubclass(kind, BaseModel)
         and kind.__module__.startswith("mascarin.study.")
     }
-    assert kinds | {GivenStart} == {kind for _, kind in SECTIONS} | {description.StudyPlan}
+    bases = {description.StudyPlan, data_sources.Table}
+    assert kinds | {GivenStart} == {kind for _, kind in SECTIONS} | bases
     for kind in kinds:
         for name, field in kind.model_fields.items():
             assert field.description, f"{kind.__name__}.{name}"

@@ -115,4 +115,4 @@ def test_the_rooms_of_the_twin_house_stand_as_they_do_there() -> None:
     assert y["child"] < y["bath"] < y["bedroom"]
     assert y["living"] < min(y["kitchen"], y["doorway"])
     # A side that faces the mean of two columns says so.
-    assert "mean of O5_attic_east_AT and O5_attic_west_AT" in {one["outside"] for one in building["surfaces"]}
+    assert "mean of attic_east_AT and attic_west_AT" in {one["outside"] for one in building["surfaces"]}

@@ -38,6 +38,7 @@ __all__ = [
     "imposed_temperature",
     "interrupt",
     "law_table",
+    "leakage_air_changes",
     "liquid_fraction",
     "melting_reach",
     "moist_air",
@@ -126,6 +127,9 @@ def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
 
 def imposed_temperature(kind: str, numbers: list[tuple[str, float]], day: float, outdoor_air: float) -> float:
     """Temperature of a law of what a side is in contact with. [degC]"""
+
+def leakage_air_changes(kind: str, numbers: list[tuple[str, float]], wind: float, difference: float) -> float:
+    """Air changes of a law of infiltration by a pressure test. [1/h]"""
 
 def law_table() -> str:
     """The table of published laws, JSON lists of rows by what they are laws of."""

@@ -41,6 +41,7 @@ __all__ = [
     "humidity_ratio",
     "imposed_temperature",
     "law_titles",
+    "leakage_air_changes",
     "moist_air",
     "ratio_of_vapour",
     "relative_humidity",
@@ -387,6 +388,31 @@ def imposed_temperature(kind: str, numbers: Mapping[str, float], day: float, out
         return _engine.imposed_temperature(kind, list(numbers.items()), day, outdoor_air)
     except _engine.EngineInputError as error:
         raise InputError(f"imposed temperature: {error}") from None
+
+
+def leakage_air_changes(kind: str, numbers: Mapping[str, float], wind: float, difference: float) -> float:
+    """Air changes of infiltration by a pressure test, by a law of the engine. [1/h]
+
+    Parameters
+    ----------
+    kind : str
+        The law, such as ``factor``.
+    numbers : mapping of str to float
+        Its numbers, in their units.
+    wind : float
+        Wind speed at the mast. [m/s]
+    difference : float
+        Air of the zone minus outdoor air. [K]
+
+    Examples
+    --------
+    >>> round(leakage_air_changes("factor", {"n50": 2.0, "factor": 0.07}, 4.0, 10.0), 6)
+    0.14
+    """
+    try:
+        return _engine.leakage_air_changes(kind, list(numbers.items()), wind, -difference)
+    except _engine.EngineInputError as error:
+        raise InputError(f"pressure test: {error}") from None
 
 
 def law_titles(family: str) -> dict[str, str]:

@@ -42,7 +42,7 @@ pub mod laws {
         Alternative, Choice, CloudKind, Default, LawEntry, LawParameter, LawRange, LawRow, Limits, Sides,
         Tilt,
     };
-    pub use crate::physics::leakage::table as leakage;
+    pub use crate::physics::leakage::{air_changes_of as leakage_air_changes, table as leakage};
     pub use crate::physics::longwave::sky::table as sky;
     pub use crate::physics::sorption::table as sorption;
 }

@@ -120,6 +120,15 @@ fn imposed_temperature(kind: &str, numbers: Vec<(String, f64)>, day: f64, outdoo
         .map_err(EngineInputError::new_err)
 }
 
+/// Air changes [1/h] of a law of `physics/leakage` at a wind [m/s] and a difference between outdoors and the zone [K].
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
+fn leakage_air_changes(kind: &str, numbers: Vec<(String, f64)>, wind: f64, difference: f64) -> PyResult<f64> {
+    let numbers: Vec<_> = numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    mascarin_engine::laws::leakage_air_changes(kind, &numbers, wind, difference)
+        .map_err(EngineInputError::new_err)
+}
+
 /// A curve (JSON, as in descriptions) whose parameters are positions in `values`.
 fn melting_curve(curve: &str, values: &[f64]) -> PyResult<LiquidFraction> {
     let curve: MeltingCurve = serde_json::from_str(curve)
@@ -174,6 +183,7 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(standard_density, module)?)?;
     module.add_function(wrap_pyfunction!(moist_air, module)?)?;
     module.add_function(wrap_pyfunction!(imposed_temperature, module)?)?;
+    module.add_function(wrap_pyfunction!(leakage_air_changes, module)?)?;
     module.add_function(wrap_pyfunction!(liquid_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(melting_reach, module)?)?;
     CONSTANTS.iter().try_for_each(|&(name, value)| module.add(name, value))

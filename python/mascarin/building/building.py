@@ -21,6 +21,7 @@ from mascarin.building.base.part import Part, insist, plain_value
 from mascarin.building.base.replacement import piece_at, put, replaced_at, without_parts
 from mascarin.building.checks import summary
 from mascarin.building.checks.consistency import faults, faults_of_values
+from mascarin.building.checks.dimensions import with_converted_bridges
 from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription, describe
 from mascarin.building.files.defaults import require_building, with_defaults
@@ -95,6 +96,7 @@ class Building(Description):
         insist(*faults(building))
         for section, derive in DERIVED.items():
             building._fill(**{section: derive(building)})
+        building._fill(zones=with_converted_bridges(building))
         insist(*faults_of_values(building))
         return building
 
@@ -486,8 +488,6 @@ class Building(Description):
         'site.altitude'
         """
         return describe(self, step_seconds, spread_ranges(self, ranges or {}))
-
-    # --- how it is shown ------------------------------------------------------------------------------------
 
     def __repr__(self) -> str:
         return display.text(f"Building '{self.name}'", summary.rows(self, self.parameters()))

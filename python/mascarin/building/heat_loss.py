@@ -2,26 +2,21 @@
 
 The zones have one temperature and all else that they lose heat to another. Surface resistances are those that
 are described (see `mascarin.building.checks.u_values`): laws by wind at 4 m/s, correlations as in ISO 6946.
-Infiltration is taken at the same wind and a temperature difference of 10 K.
+Infiltration, with that of pressure tests, is taken at the same wind and a temperature difference of 10 K.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from mascarin.building.checks.u_values import (
-    described_films,
-    described_u_value,
-    described_window_u_value,
-    layer_resistance,
-)
+from mascarin.building.checks.conductances import infiltration_rate, opaque_area, window_conductance
+from mascarin.building.checks.u_values import described_films, described_u_value, layer_resistance
 from mascarin.building.engine_input.ratings import window_ratings
-from mascarin.building.parts.air.zone import TextInfiltration
 from mascarin.building.parts.materials.material import Resistance
 from mascarin.building.parts.materials.phases import phase
-from mascarin.physics import AIR_SPECIFIC_HEAT, standard_density
+from mascarin.building.parts.site_air import heat_capacity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,10 +24,6 @@ if TYPE_CHECKING:
     from mascarin.building.engine_input.ratings import WindowRating
     from mascarin.building.parts.description import Description
     from mascarin.building.parts.envelope.surface import Surface
-
-#: Wind [m/s] and temperature difference [K] at which infiltration is taken.
-WIND: Final = 4.0
-DIFFERENCE: Final = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +71,7 @@ def heat_loss(building: Description, ratings: Mapping[str, WindowRating] | None 
     Parameters
     ----------
     building : Building
-        The building. Pressure tests, ventilation and openings are left out: they depend on the weather.
+        The building. Ventilation and openings are left out.
     ratings : mapping of str to WindowRating, optional
         Rated values of the glass of its windows, where they are known already.
 
@@ -104,25 +95,19 @@ def heat_loss(building: Description, ratings: Mapping[str, WindowRating] | None 
     u_values: dict[str, float] = {}
     capacity = 0.0
     for name, surface in building.surfaces.items():
-        windows = building.connections.windows_in(name)
-        glazed = sum(float(building.windows[window].area or 0.0) for window in windows)
-        opaque = max(float(surface.area or 0.0) - glazed, 0.0)
+        opaque = opaque_area(building, name)
         capacity += opaque * _areal_capacity(building, surface) / 3600.0
         destination = _destination(surface)
         if destination is None:
             continue
         u_values[name] = described_u_value(building, surface)
         destinations[destination] += u_values[name] * opaque
-        for window in windows:
-            destinations[destination] += _window(building, window)
-    air = _air(building)
+        for window in building.connections.windows_in(name).values():
+            destinations[destination] += window_conductance(building, window)
+    air = heat_capacity(building.site)
     for zone in building.zones.values():
-        leak = zone.infiltration
-        rate = float(leak.constant) + float(leak.wind) * WIND + float(leak.temperature) * DIFFERENCE
-        if isinstance(leak, TextInfiltration):
-            rate += float(leak.value(DIFFERENCE, WIND))
         volume = float(zone.volume or 0.0)
-        destinations["infiltration"] += air * volume * rate / 3600.0
+        destinations["infiltration"] += air * volume * infiltration_rate(zone) / 3600.0
         capacity += air * volume * float(zone.capacity_factor) / 3600.0
         for bridge in zone.thermal_bridges.values():
             if bridge.zone is None:
@@ -146,22 +131,9 @@ def _apertures(
         side = surface.outside
         if not (side.outdoors and side.sunlit) or side.absorptance is None:
             continue
-        windows = building.connections.windows_in(name)
-        glazed = sum(float(building.windows[window].area or 0.0) for window in windows)
-        opaque = max(float(surface.area or 0.0) - glazed, 0.0)
         film, _ = described_films(building, surface)
-        apertures["opaque"] += float(side.absorptance) * u_value * film * opaque
+        apertures["opaque"] += float(side.absorptance) * u_value * film * opaque_area(building, name)
     return {part: value for part, value in apertures.items() if value > 0.0}
-
-
-def _window(building: Description, name: str) -> float:
-    """Heat per degree through a window with its frame. [W/K]"""
-    window = building.windows[name]
-    glass, area = described_window_u_value(building, window), float(window.area or 0.0)
-    if window.frame is None:
-        return glass * area
-    share = float(window.frame.fraction)
-    return ((1.0 - share) * glass + share * float(window.frame.u_value)) * area
 
 
 def _destination(surface: Surface) -> str | None:
@@ -172,14 +144,6 @@ def _destination(surface: Surface) -> str | None:
     if faces == "imposed":
         return "ground"
     return faces if faces in ("outdoors", "ground") else "measured"
-
-
-def _air(building: Description) -> float:
-    """Heat capacity of air. [J/(m3 K)]"""
-    site = building.site
-    density = site.air_density if site.air_density is not None else standard_density(float(site.altitude))
-    heat = site.air_specific_heat if site.air_specific_heat is not None else AIR_SPECIFIC_HEAT
-    return float(density) * float(heat)
 
 
 def _areal_capacity(building: Description, surface: Surface) -> float:

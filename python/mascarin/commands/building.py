@@ -30,6 +30,7 @@ def check(
         Description of a building.
     """
     from mascarin.building import check as findings
+    from mascarin.building.checks.conductances import conductances
 
     described = read_building(building, settings)
     with lines_named(building):
@@ -44,7 +45,8 @@ def check(
             sorted_lines[kind].append(text)
         else:
             sorted_lines["summary"].append(line)
-    print_json(sorted_lines)
+    table = [entry.to_dict() for entry in conductances(described)]
+    print_json({**sorted_lines, "conductances": table})
 
 
 def parameters(

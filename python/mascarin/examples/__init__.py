@@ -30,6 +30,7 @@ STUDIES: Final = {
     "wall-bench": FOLDER / "wall_bench" / "study.yaml",
     "lgi": FOLDER / "lgi" / "study.yaml",
     "twin-house": FOLDER / "twin_house" / "study.yaml",
+    "twin-house-n2": FOLDER / "twin_house" / "study_n2.yaml",
 }
 
 #: Example design studies by name.

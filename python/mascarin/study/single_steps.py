@@ -10,12 +10,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from mascarin._io import atomic
-from mascarin.calibration.errors.posterior_checks import NOT_STATED, Contradiction
 from mascarin.sensitivity.files import save_all
-from mascarin.study.carried.bands import carried_bands
 from mascarin.study.carried.calibrated_building import FILE
 from mascarin.study.carried.validation import Validation
 from mascarin.study.context.storage import Workspace
@@ -39,16 +35,14 @@ from mascarin.study.steps.calibration_result import building_with_posterior, cal
 from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_table, interval_words
 from mascarin.study.steps.predictive_checks import statements
-from mascarin.study.steps.residuals import DRIVERS
+from mascarin.study.transfer.bands import bands_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
-    from mascarin.study.carried.bands import Bands
     from mascarin.study.context.context import StudyContext
-    from mascarin.study.steps.findings import ModelRun
 
 
 def sensitivity(
@@ -187,7 +181,7 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
-    bands, words = _carried(study, run)
+    bands, words = bands_of(study, run)
     content = {
         "contradictions": [one.to_dict() for one in (*words, *statements(study))],
         **header(study, "validate"),
@@ -199,30 +193,6 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
         content["band"] = bands.entries(study.observation, study.used)
         series = bands.beside(series, study.observation.names, units)
     return Validation(content, series), tables
-
-
-def _carried(study: StudyContext, run: ModelRun) -> tuple[Bands | None, list[Contradiction]]:
-    """Bands of the posterior that the building has from another study, and where it extrapolates."""
-    posterior = study.building.posterior
-    if posterior is None:
-        return None, []
-    if not posterior.stated:
-        text = f"no bands: those of the study '{posterior.study}' are {NOT_STATED}"
-        return None, [Contradiction("period", "posterior", text)]
-    observation, outputs, stated = study.observation, [], []
-    for s, (name, sensor) in enumerate(study.plan.sensors.items()):
-        output = study.building.output(sensor.output)
-        sizes = sensor.stated_uncertainty(output.unit, name)
-        measured = np.abs(observation.measured[:, s])
-        size = float(np.mean(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
-        outputs.append(output.name)
-        stated.append(float(np.hypot(sizes.absolute, sizes.relative * size)))
-    weather = {
-        channel: observation.sampled(run.results.index, run.simulation.weather(channel))
-        for channel in DRIVERS.values()
-    }
-    bands = carried_bands(run.simulation, observation, posterior, outputs, stated, weather)
-    return bands, [Contradiction("period", "posterior", text) for text in bands.words]
 
 
 def _write(

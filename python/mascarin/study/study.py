@@ -31,6 +31,7 @@ from mascarin.study.steps.derived_quantities import derived_quantities, latent_h
 from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_words, slopes
 from mascarin.study.steps.residuals import error_sources, examined, too_few
+from mascarin.study.transfer.comparison import transferred
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
@@ -426,6 +427,7 @@ def all_steps(context: StudyContext, workspace: Workspace, progress: ProgressOpt
         seconds=time.monotonic() - began,
         combination=found.combination,
         contradictions=found.contradictions,
+        transfer=kept(workspace, ("transfer", at), lambda: transferred(context, found)),
         derived=kept(
             workspace,
             ("derived", at),

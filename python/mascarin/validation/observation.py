@@ -172,8 +172,10 @@ def observe(
 def _measured(
     measurements: Measurements, sensor: SensorLike, times: pd.DatetimeIndex, interval: float
 ) -> Array:
-    """Mean of the columns of a sensor over those that have a value."""
+    """Sum of the columns of a sensor, or their mean over those that have a value."""
     parts = np.stack([measurements.at(column, times, interval) for column in sensor.columns])
+    if sensor.adds:
+        return np.asarray(parts.sum(axis=0))
     finite = np.isfinite(parts)
     count = finite.sum(axis=0)
     total = np.where(finite, parts, 0.0).sum(axis=0)

@@ -27,11 +27,16 @@ DEFAULT_EXPANDED: Final = {"degC": 0.5}
 
 
 class SensorLike(Protocol):
-    """A measured quantity: columns of a table whose mean one model output is compared with."""
+    """A measured quantity: columns of a table whose mean or sum one model output is compared with."""
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of the measured table."""
+        ...
+
+    @property
+    def adds(self) -> bool:
+        """Whether the columns are added, not averaged."""
         ...
 
 
@@ -191,6 +196,11 @@ class Sensor:
     def columns(self) -> tuple[str, ...]:
         """Columns of the measured table whose mean is taken."""
         return (self.column,) if isinstance(self.column, str) else tuple(self.column)
+
+    @property
+    def adds(self) -> bool:
+        """Never: the mean is taken."""
+        return False
 
     def uncertainty(self, unit: str, where: str = "") -> SensorUncertainty:
         """Return the standard uncertainty of the measured values.

@@ -52,10 +52,11 @@ def matching(pattern: str, paths: Iterable[str], *, parts: bool = False) -> list
 
 
 def _fits(steps: list[str], pattern_steps: list[str]) -> bool:
-    return len(steps) == len(pattern_steps) and all(map(_same, steps, pattern_steps))
+    return len(steps) == len(pattern_steps) and all(map(fits, steps, pattern_steps))
 
 
-def _same(step: str, pattern_step: str) -> bool:
+def fits(step: str, pattern_step: str) -> bool:
+    """Whether a name between two dots is one that a step of a pattern stands for."""
     # Names of layers and materials may have brackets, which fnmatch would read as a choice of letters.
     return fnmatchcase(step, pattern_step.replace("[", "[[]"))
 
@@ -64,7 +65,7 @@ def _nearest(pattern_steps: list[str], all_steps: list[list[str]]) -> set[str]:
     """All paths with the stars of a pattern where they have the names that these stand for."""
     return {
         ".".join(
-            star if is_pattern(star) and _same(step, star) else step
+            star if is_pattern(star) and fits(step, star) else step
             for step, star in zip(steps, [*pattern_steps, *[""] * len(steps)], strict=False)
         )
         for steps in all_steps

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from mascarin._io.memory import uncollected
+from mascarin.building.checks.conductances import conductance_lines, infiltration_rate, window_conductance
+from mascarin.building.checks.dimensions import dimension_lines
 from mascarin.building.checks.forced_convection import forced_convection_lines
 from mascarin.building.checks.humidity import humidity_lines
 from mascarin.building.checks.plausibility import warnings
@@ -23,7 +25,7 @@ from mascarin.building.engine_input.ratings import WindowRating, require_accepte
 from mascarin.building.parameters.parameter import parameters
 from mascarin.building.parameters.unused_parameters import sides as every_side
 from mascarin.building.parts.air.ventilation import VentilationUnit
-from mascarin.building.parts.air.zone import AirPath, TextInfiltration, Zone
+from mascarin.building.parts.air.zone import AirPath, Zone
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.measured_values import Driven
 from mascarin.building.parts.envelope.surface import Side
@@ -32,7 +34,7 @@ from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.building.parts.materials.phase_change import FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.parts.measured_sun import measured_lines
 from mascarin.building.parts.openings.glazing import Glazing, SimpleGlazing
-from mascarin.building.parts.openings.window import Window, WindowOutside
+from mascarin.building.parts.openings.window import WindowOutside
 from mascarin.building.parts.self_shading import in_words
 from mascarin.building.parts.site import wind_factor
 from mascarin.building.parts.site_air import density, heat_capacity
@@ -76,12 +78,14 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     return [
         f"{building.name}: {_count(len(building.zones), 'zone')}, "
         f"{_count(len(building.surfaces), 'surface')}, {_count(len(parameters(building)), 'parameter')}",
+        *dimension_lines(building),
         *_zones(building),
         *_in_zones(building),
         *_surfaces(building),
         *_windows(building, ratings),
         *_blinds(building, ratings),
         *_constructions(building, mesh, step_seconds),
+        *conductance_lines(building),
         *_winds(building),
         *humidity_lines(building),
         *_melting(building),
@@ -110,9 +114,9 @@ def _zones(building: Description) -> Iterator[str]:
         glazed = [pane for wall in names for pane in building.connections.windows_in(wall).values()]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
         meant = sum(net_area * described_u_value(building, surface) for net_area, surface in shell)
-        meant += sum(_described_ua(building, window) for window in glazed)
+        meant += sum(window_conductance(building, window) for window in glazed)
         heavy = density(building.site)
-        air = _air_changes(zone) * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
+        air = infiltration_rate(zone) * float(zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
         yield (
             f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'surface')} of {area:.2f} m2, "
             f"UA {total:.2f} W/K by the U values below{_other_ua(total, meant)}, "
@@ -120,24 +124,9 @@ def _zones(building: Description) -> Iterator[str]:
         )
 
 
-def _air_changes(zone: Zone) -> float:
-    """Constant part of infiltration, with a formula in calm air at 10 K. [1/h]"""
-    leak = zone.infiltration
-    by_law = float(leak.value(10.0)) if isinstance(leak, TextInfiltration) else 0.0
-    return float(leak.constant) + by_law
-
-
 def _other_ua(by_iso: float, described: float) -> str:
     same = math.isclose(by_iso, described, rel_tol=5e-4)
     return "" if same else f" ({described:.2f} W/K with the coefficients described)"
-
-
-def _described_ua(building: Description, window: Window) -> float:
-    area, glass = float(window.area or 0.0), described_window_u_value(building, window)
-    if window.frame is None:
-        return area * glass
-    share = float(window.frame.fraction)
-    return area * ((1.0 - share) * glass + share * float(window.frame.u_value))
 
 
 def _in_zones(building: Description) -> Iterator[str]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 
 from mascarin.building.checks.consistency import shaded
+from mascarin.building.checks.dimensions import dimension_warnings
 from mascarin.building.checks.humidity import humidity_warnings
 from mascarin.building.geometry import volume as enclosed_volume
 from mascarin.building.parts.defaults import drawn_areas, enclosure
@@ -31,6 +32,7 @@ def warnings(building: Description, mesh: Iterable[str]) -> Iterator[str]:
     yield from _implausible_volumes(building)
     yield from _implausible_enclosures(building)
     yield from _implausible_areas(building)
+    yield from dimension_warnings(building)
     yield from _unlimited_radiation(building)
     yield from _unshaded(building)
     yield from humidity_warnings(building)

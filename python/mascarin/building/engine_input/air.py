@@ -109,15 +109,19 @@ def describe_opening(
 def describe_bridges(building: Description, positions: Positions, ids: Mapping[str, int]) -> list[Json]:
     """Describe the thermal bridges of all zones."""
     return [
-        _bridge(building, positions, (zone, name), bridge, below(ids, f"zones.{zone}.thermal_bridges.{name}"))
+        written
         for zone, part in building.zones.items()
         for name, bridge in part.thermal_bridges.items()
+        for written in _bridge(
+            building, positions, (zone, name), bridge, below(ids, f"zones.{zone}.thermal_bridges.{name}")
+        )
     ]
 
 
 def _bridge(
     building: Description, positions: Positions, names: tuple[str, str], bridge: ThermalBridge, ids: Ids
-) -> Json:
+) -> list[Json]:
+    """Describe a bridge, and what its conversion to the dimensions of the areas adds to it."""
     zones = list(building.zones)
     to: Json = {"kind": bridge.faces}
     if bridge.zone is not None:
@@ -127,11 +131,16 @@ def _bridge(
         to = {"kind": "imposed", "law": law}
     elif bridge.measured is not None:
         to["channel"] = positions[temperature_course(bridge.measured).name]
-    linear = bridge.psi is not None
-    return {
-        "name": ".".join(names),
-        "zone": zones.index(names[0]),
-        "coefficient": ids("psi" if linear else "chi"),
-        "size": ids("length" if linear else "number"),
-        "to": to,
-    }
+    factors = [("psi", "length") if bridge.psi is not None else ("chi", "number")]
+    if bridge.converted is not None:
+        factors.append(("converted", "number"))
+    return [
+        {
+            "name": ".".join(names),
+            "zone": zones.index(names[0]),
+            "coefficient": ids(coefficient),
+            "size": ids(size),
+            "to": to,
+        }
+        for coefficient, size in factors
+    ]

@@ -8,11 +8,12 @@ of one parameter. With ``factor`` it multiplies the values of the building, and 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
-from mascarin.building.base.part import fault
-from mascarin.building.base.wildcards import is_pattern, matching
+from mascarin.building.base.leaves import steps
+from mascarin.building.base.part import Part, fault
+from mascarin.building.base.wildcards import fits, is_pattern, matching
 from mascarin.building.parameters.parameter import Parameter
 from mascarin.errors import InputError
 
@@ -154,10 +155,26 @@ def spread(building: Building, values: Mapping[str, Any]) -> dict[str, Any]:
                 values_by_path[member] = building.parameter(member).value * value if by_factor else value
         elif is_pattern(str(path)):
             paths = [p.path for p in building.parameters() if not p.members]
+            paths += _keys(building, path.split("."))  # words, and what is not given so far
             values_by_path |= dict.fromkeys(matching(path, paths, parts=True), value)
         else:
             values_by_path[path] = value
     return values_by_path
+
+
+def _keys(part: Any, pattern: Sequence[str], above: tuple[str, ...] = ()) -> list[str]:
+    """Paths of keys of a description that a pattern stands for; its last step is the name of the key."""
+    first, below = pattern[0], pattern[1:]
+    if not below and is_pattern(first):
+        return []  # a star at the end stands for numbers alone
+    keys: Iterable[str] = (
+        type(part).model_fields if isinstance(part, Part) and not below else [key for key, _ in steps(part)]
+    )
+    fitting = [key for key in keys if fits(key, first)]
+    if not below:
+        return [".".join((*above, key)) for key in fitting]
+    pieces = dict(steps(part))
+    return [path for key in fitting for path in _keys(pieces[key], below, (*above, key))]
 
 
 def spread_ranges(

@@ -7,8 +7,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, WithJsonSchema
 
+from mascarin.building.base.dimensions import Dimensions
 from mascarin.building.base.names import Name
-from mascarin.building.base.part import Part
+from mascarin.building.base.part import Part, Shorthand
 from mascarin.building.parts.air.humidity import Humidity
 from mascarin.building.parts.air.schedule import Schedule
 from mascarin.building.parts.air.vent import Vent, VentControl
@@ -32,6 +33,10 @@ class Description(Part):
     site: Site = Field(description="Site of the building")
     weather: Weather | None = Field(
         None, description="Gain, offset and clock of columns of the weather; none: as it was read"
+    )
+    dimensions: Annotated[Dimensions, Shorthand(word="areas")] | None = Field(
+        None,
+        description="Dimensions of the areas (a word) and of the thermal bridges; none: not stated",
     )
     materials: dict[Name, Material] = Field(default_factory=dict, description="Materials by name")
     constructions: dict[Name, Construction] = Field(

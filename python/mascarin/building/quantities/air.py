@@ -157,6 +157,15 @@ PointTransmittance = Annotated[
         Limits(at_least=-100, at_most=1e4),
     ),
 ]
+ConvertedTransmittance = Annotated[
+    Number,
+    Quantity(
+        "W/K",
+        "What the conversion to the dimensions of the areas adds to a bridge",
+        OnlyGiven("follows from U values and areas: it varies only if a range is given"),
+        Limits(at_least=-1e4, at_most=1e4),
+    ),
+]
 BridgeNumber = Annotated[
     Number,
     Quantity(

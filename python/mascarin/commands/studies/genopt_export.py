@@ -33,7 +33,7 @@ def genopt(
     Parameters
     ----------
     study : str
-        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house, twin-house-n2.
     out : Path
         Folder for the project.
     algorithm : str

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
@@ -17,6 +17,7 @@ from mascarin.commands.options.output import number, print_json, print_table
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.study import Study, StudyResults
+    from mascarin.tables.quality import Stretch
 
 
 _SHOWN: Final = 10
@@ -42,7 +43,7 @@ def study(
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house, twin-house-n2.
     out : Path
         Folder for study.json, tables, figures, the report and intermediate results.
     figures : bool
@@ -198,14 +199,29 @@ def _open(file: str, allow_outside: bool) -> Study:
     lines = [note for note in said if ": warning: " in note]
     if opened.quality:
         lines.append("suspicious periods in the measurements:")
-        lines += [
-            f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}"
-            f"{'; left out of all comparisons' if opened.context.inputs.leaves_out(s) else ''}"
-            for s in opened.quality
-        ]
+        lines += [f"  {line}" for line in _suspicious(opened)]
     if lines:
         print("\n".join(lines), file=sys.stderr)
     return opened
+
+
+def _suspicious(opened: Study) -> Iterator[str]:
+    """Suspicious periods in words: one line for those of one column and kind."""
+    groups: dict[tuple[str, str, bool], list[Stretch]] = {}
+    for stretch in opened.quality:
+        left_out = opened.context.inputs.leaves_out(stretch)
+        groups.setdefault((stretch.channel, stretch.kind, left_out), []).append(stretch)
+    for (channel, kind, left_out), stretches in groups.items():
+        first, end = stretches[0], "; left out of all comparisons" if left_out else ""
+        if len(stretches) == 1:
+            yield f"{channel}: {kind} from {first.start:%Y-%m-%d %H:%M}, {first.detail}{end}"
+            continue
+        last, longest = stretches[-1], max(stretches, key=lambda stretch: stretch.count)
+        yield (
+            f"{channel}: {kind} {len(stretches)} times from {first.start:%Y-%m-%d %H:%M} to "
+            f"{last.end:%Y-%m-%d %H:%M}, {sum(stretch.count for stretch in stretches)} values; the longest "
+            f"from {longest.start:%Y-%m-%d %H:%M}, {longest.detail}{end}"
+        )
 
 
 def _with_interval(estimate: Mapping[str, Any]) -> tuple[str, str, str]:
@@ -270,6 +286,14 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
             lines += [
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
+            ]
+    for house in results.transfer.values():
+        for sensor, spans in house["sensors"].items():
+            lines += [
+                f"{sensor:<16}{period:<16}{model:<10}{m[model]['rmse']:8.3f}{m[model]['sd']:8.3f}"
+                f"{m[model]['bias']:8.3f}{m[model]['max_error']:8.3f}  {house['building']}"
+                for period, m in spans.items()
+                for model in ("described", "calibrated")
             ]
     lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
     if results.aims:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mascarin import __version__
 from mascarin._io import atomic
 from mascarin.building import check
+from mascarin.building.checks.conductances import BASIS, SUM, TITLE, by_destination, conductances
 from mascarin.figures import text
 from mascarin.figures.colors import PALETTE
 from mascarin.pages.frame.template import Library, environment, frame
@@ -80,6 +81,7 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
             ("warnings", "Warnings", warnings),
             ("zones", "Zones", shown["zones"]),
             ("surfaces", "Surfaces, windows and shades", shown["parts"]),
+            ("conductances", TITLE, _conductances(building)),
             ("constructions", "Constructions", built),
             ("assumed", "Assumed values", assumed),
         )
@@ -111,6 +113,20 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
             most=_MAX_OPEN_ROWS,
         )
     )
+
+
+def _conductances(building: Building) -> dict[str, Any]:
+    rows = [
+        {
+            "destination": entry.destination,
+            "element": entry.element,
+            "kind": "" if entry.element == SUM else entry.kind,
+            "zone": "" if entry.element == SUM else entry.zone,
+            "value": text.fixed(entry.value, 2),
+        }
+        for entry in by_destination(conductances(building))
+    ]
+    return {"rows": rows, "basis": BASIS} if rows else {}
 
 
 def _facts(building: Building, warnings: list[str]) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
+from mascarin.building.checks.conductances import infiltration_rate
 from mascarin.building.checks.u_values import described_u_value, resistance_words, u_value, window_u_value
 from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.figures import text
@@ -275,7 +276,7 @@ def _zones(building: Building, walls: Mapping[str, Array]) -> list[dict[str, Any
                 "place": _rounded(np.mean(middles, axis=0)[None, :])[0] if middles else None,
                 "heating": _loads(zone.heating),
                 "cooling": _loads(zone.cooling),
-                "infiltration": text.with_unit(float(zone.infiltration.constant), "1/h"),
+                "infiltration": text.with_unit(infiltration_rate(zone), "1/h"),
             }
         )
     return rows

@@ -108,15 +108,22 @@ def with_posterior(
     stated : bool
         Whether bands are to be stated.
     """
+    building = fit.building
+    # A factor of tied numbers is one of the calibrated building: its estimate is in their values already.
+    factors = [building.ties.get(path) == "factor" for path in fit.problem.paths]
+    scale = np.where(factors, fit.x, 1.0)
     intervals = {
         path: (_short(x), _short(low), _short(high))
         for path, x, low, high in zip(
-            fit.problem.paths, fit.x.tolist(), fit.low.tolist(), fit.high.tolist(), strict=True
+            fit.problem.paths,
+            (fit.x / scale).tolist(),
+            (fit.low / scale).tolist(),
+            (fit.high / scale).tolist(),
+            strict=True,
         )
     }
-    building = fit.building
     positions = _positions(fit, joint)
-    sample = as_reported(fit, positions)
+    sample = as_reported(fit, positions) / scale
     others: dict[str, float] = {}
     if joint is not None and numbers is not None:
         others, columns = _others(building, joint, numbers, positions)

@@ -19,7 +19,7 @@ OF_THE_TABLE: Final = (
 )  # fmt: skip
 
 #: Keys of a study that name files.
-FILE_KEYS: Final = ("building", "epw", "tmy", "table")
+FILE_KEYS: Final = ("building", "epw", "tmy", "table", "study")
 
 
 class Table(Part):
@@ -84,6 +84,45 @@ class Table(Part):
             "shift",
         )
         return {key: getattr(self, key) for key in keys}
+
+
+class MeasuredTable(Table):
+    """A table of measurements, whose columns may have other names in the study and in the building."""
+
+    columns: dict[str, str | dict[str, Any]] = Field(
+        default_factory=dict,
+        description="Name in the study and in the building -> column of the table; a * in both stands for "
+        "the same text, and the longest pattern counts. By default names are those of the table",
+    )
+
+    @model_validator(mode="after")
+    def _stars(self) -> Self:
+        for name, entry in self.columns.items():
+            column = entry if isinstance(entry, str) else str(entry.get("column", ""))
+            if name.count("*") > 1 or name.count("*") != column.count("*"):
+                insist(
+                    fault(
+                        ("columns", name),
+                        f"'{name}' for '{column}'",
+                        "at most one *, in both or in none",
+                        "Write 'house_*: N2_*', or one name for one column.",
+                    )
+                )
+        return self
+
+    def column_of(self, name: str) -> str | dict[str, Any]:
+        """Column of the table for a name of the study, with its unit and more where these are stated."""
+        if name in self.columns:
+            return self.columns[name]
+        for pattern in sorted(self.columns, key=len, reverse=True):
+            first, star, last = pattern.partition("*")
+            if star and len(name) >= len(first + last) and name.startswith(first) and name.endswith(last):
+                text = name[len(first) : len(name) - len(last)]
+                entry = self.columns[pattern]
+                if isinstance(entry, str):
+                    return entry.replace("*", text)
+                return {**entry, "column": str(entry["column"]).replace("*", text)}
+        return name
 
 
 class MeasuredWeather(Table):

@@ -15,7 +15,7 @@ from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
-from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
+from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, MeasuredTable, with_shared_table
 from mascarin.study.file.field_types import (
     Duration,
     Hours,
@@ -412,6 +412,14 @@ class StudyPlan(Part):
         return self
 
 
+class Transfer(Part):
+    """Another house, season or phase, on which the calibrated building is validated."""
+
+    study: str = Field(
+        description="Study file of it; the estimates are put into its building, nothing of it is identified"
+    )
+
+
 class StudyFile(StudyPlan):
     """A study as a file: the plan, and the files of the building, the weather and the measurements."""
 
@@ -421,10 +429,15 @@ class StudyFile(StudyPlan):
         default_factory=dict, description="Path -> value that replaces the one of the building file"
     )
     climate: ClimateSource = Field(description="Weather data")
-    measurements: Table = Field(
+    measurements: MeasuredTable = Field(
         description="Table of measurements. Keys of the same table that are given for the weather need not "
         "be "
         "repeated, and the other way round; without an entry: the table of the weather"
+    )
+
+    transfer: dict[Name, Transfer] = Field(
+        default_factory=dict,
+        description="Name -> study of another house, season or phase, compared as described and calibrated",
     )
 
     @model_validator(mode="before")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ from mascarin.weather.reading.shipped import PREFIX
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.building.parts.site import Site
-    from mascarin.study.file.data_sources import ClimateSource, MeasuredWeather, Table
+    from mascarin.study.file.data_sources import ClimateSource, MeasuredTable, MeasuredWeather
     from mascarin.study.file.description import StudyFile
 
 #: Prefix of a known data set.
@@ -199,7 +199,7 @@ def open_measurements(
     InputError
         A file, column or time zone is missing, or a value cannot be used.
     """
-    table: Table = study.measurements
+    table: MeasuredTable = study.measurements
     with places.blame("measurements", "table"):
         path = find(table.table, beside)
     boundaries = measured_columns(building)
@@ -211,15 +211,18 @@ def open_measurements(
         needed[name] = f"{line or of_building.file}: measured column"
     for sensor, entry in study.sensors.items():
         needed |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
-    others = () if table.inspect else _other_columns(path, table, needed)
+    chosen = {name: table.column_of(name) for name in needed}
+    taken = {column if isinstance(column, str) else str(column["column"]) for column in chosen.values()}
+    if not table.inspect:
+        chosen |= {name: name for name in _other_columns(path, table, taken) if name not in chosen}
     try:
-        return Measurements.from_table(path, columns=[*needed, *others], **table.options)
+        return Measurements.from_table(path, columns=chosen, **table.options)
     except InputError as error:
         _explain(path, table, needed, places)
         raise InputError(f"{places.at('measurements', 'mean')}: {error}") from None
 
 
-def _other_columns(path: Path, table: Table, needed: Mapping[str, str]) -> list[str]:
+def _other_columns(path: Path, table: MeasuredTable, needed: Collection[str]) -> list[str]:
     """Further columns of numbers; their quality is checked too."""
     options = {key: value for key, value in table.options.items() if key not in ("stamps", "mean")}
     try:
@@ -235,7 +238,7 @@ def _other_columns(path: Path, table: Table, needed: Mapping[str, str]) -> list[
     return others
 
 
-def _explain(path: Path, table: Table, needed: Mapping[str, str], places: Places) -> None:
+def _explain(path: Path, table: MeasuredTable, needed: Mapping[str, str], places: Places) -> None:
     """Raise the error of the whole table, else of every column with the entry that needs it."""
     plain, faults = {**table.options, "mean": ()}, Faults()
     with places.blame("measurements"):
@@ -243,7 +246,7 @@ def _explain(path: Path, table: Table, needed: Mapping[str, str], places: Places
     for column, place in needed.items():
         with faults.kept():
             try:
-                Measurements.from_table(path, columns=[column], **plain)
+                Measurements.from_table(path, columns={column: table.column_of(column)}, **plain)
             except InputError as error:
                 raise InputError(f"{place}: {error}") from None
     faults.raise_all(places.file)

@@ -28,7 +28,7 @@ from mascarin.study.file.inputs import (
 )
 from mascarin.study.file.locations import Faults, Places
 from mascarin.study.file.names import check_names
-from mascarin.study.file.patterns import tied_building, written_out
+from mascarin.study.file.patterns import tied_building, with_combined_outputs, written_out
 from mascarin.study.file.study_inputs import StudyInputs
 from mascarin.tables.quality import mask
 from mascarin.tables.quality.filled_values import filled_stretches
@@ -67,7 +67,7 @@ def from_file(path: Path, *, allow_outside: bool = False) -> StudyInputs:
         return _from_file(path, beside)
 
 
-def _from_file(path: Path, beside: Beside) -> StudyInputs:
+def _from_file(path: Path, beside: Beside, *, alone: bool = False) -> StudyInputs:
     file = read_study(path)
     places, faults = Places(path), Faults()
     with places.blame("building"):
@@ -76,6 +76,7 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
     with places.blame("set"):
         building = as_described.replace(file.set)
     building = _with_weather(building, file, places)
+    file, building = with_combined_outputs(file, building, places)
     building = tied_building(file, building, places)
     file = written_out(file, building, places)
     check_names(file, building, places, faults)
@@ -98,7 +99,16 @@ def _from_file(path: Path, beside: Beside) -> StudyInputs:
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
-    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path)
+    others: dict[str, StudyInputs] = {}
+    for name, entry in ({} if alone else file.transfer).items():
+        with places.blame("transfer", name, "study"):
+            other = find(entry.study, beside)
+        if other.resolve() == path.resolve():
+            continue  # one that extends a study has its entries, and may be one of them
+        # What another study transfers to is its own affair.
+        others[name] = _from_file(other, Beside(other.parent, beside.allow_outside), alone=True)
+        hashes["study"] = _digest([hashes["study"], others[name].hashes])
+    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path, others)
 
 
 def _with_weather(building: Building, plan: StudyPlan, places: Places) -> Building:
@@ -147,7 +157,8 @@ def from_objects(
     except ValidationError as error:
         raise explained(error, plain, "study") from None
     places, faults = Places(), Faults()
-    building = tied_building(checked, _with_weather(building, checked, places), places)
+    checked, building = with_combined_outputs(checked, _with_weather(building, checked, places), places)
+    building = tied_building(checked, building, places)
     checked = written_out(checked, building, places)
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)

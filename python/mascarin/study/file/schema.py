@@ -9,7 +9,7 @@ from mascarin.study.file.data_sources import OF_THE_TABLE
 from mascarin.study.file.description import StudyFile
 
 #: Classes whose keys `with_shared_table` takes from the weather or the measurements.
-_TABLES: Final = ("Table", "MeasuredWeather")
+_TABLES: Final = ("MeasuredTable", "MeasuredWeather")
 
 
 def study_schema() -> dict[str, Any]:
@@ -27,7 +27,7 @@ def study_schema() -> dict[str, Any]:
     """
     schema = schema_of(StudyFile)
     parts = schema["$defs"]
-    shared = [key for key in parts["Table"]["required"] if key in OF_THE_TABLE]
+    shared = [key for key in parts["MeasuredTable"]["required"] if key in OF_THE_TABLE]
     for name in _TABLES:
         parts[name]["required"] = [key for key in parts[name]["required"] if key not in shared]
     measurements = schema["properties"]["measurements"]

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Final, Literal, Self
 
-from pydantic import AliasChoices, Field
+from pydantic import AliasChoices, Field, model_validator
 
-from mascarin.building.base.part import Part
+from mascarin.building.base.part import Part, fault, insist
 from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.calibration.errors.stated_errors import shared_errors
 from mascarin.study.file.field_types import Duration, Hours, Spans, Stretch
 from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
+
+#: First part of the name of an output that a sensor combines from others.
+DERIVED: Final = "sensor_"
 
 
 class SensorPeriods(Part):
@@ -35,9 +38,17 @@ class Sensor(Part):
     """A measured series and the model output that it is compared with."""
 
     column: str | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
-        description="Column, or several columns, of which the mean is used"
+        description="Column, or several columns, of which the mean is used; with `sum`, their sum"
     )
-    output: str = Field(description="Output of the model")
+    output: str = Field("", description="Output of the model; none with `sum` or `mean`")
+    sum: tuple[str, ...] | None = Field(
+        None,
+        min_length=2,
+        description="Outputs of the model whose sum is compared with the sum of the columns",
+    )
+    mean: tuple[str, ...] | None = Field(
+        None, min_length=2, description="Outputs of the model whose mean is compared with the columns"
+    )
     expanded_uncertainty: float | None = Field(
         None,
         gt=0,
@@ -97,6 +108,38 @@ class Sensor(Part):
     periods: SensorPeriods | None = Field(
         None, description="Its own periods, where they differ from those of the study"
     )
+
+    @model_validator(mode="after")
+    def _one_quantity(self) -> Self:
+        stated = [key for key in ("output", "sum", "mean") if getattr(self, key)]
+        combined = self.combined
+        if combined is not None and stated[0] == "output" and self.output.startswith(DERIVED):
+            return self  # what a study has made of it
+        if len(stated) != 1:
+            insist(
+                fault(
+                    (),
+                    " and ".join(stated) or "no output",
+                    "one of output, sum and mean",
+                    "Name one output of the model, or the outputs whose sum or mean is measured.",
+                )
+            )
+        if combined is not None and len(set(combined[1])) < len(combined[1]):
+            twice = next(name for name in combined[1] if combined[1].count(name) > 1)
+            insist(fault((combined[0],), f"'{twice}' twice", "each output once", f"Name '{twice}' once."))
+        return self
+
+    @property
+    def combined(self) -> tuple[Literal["sum", "mean"], tuple[str, ...]] | None:
+        """How outputs are combined, and which; None for a single output."""
+        if self.sum is not None:
+            return "sum", self.sum
+        return None if self.mean is None else ("mean", self.mean)
+
+    @property
+    def adds(self) -> bool:
+        """Whether its columns are added, not averaged."""
+        return self.sum is not None
 
     @property
     def columns(self) -> tuple[str, ...]:

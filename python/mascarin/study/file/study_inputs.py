@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
 from mascarin.study.file.description import StudyFile
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from mascarin.building import Building
@@ -42,6 +43,8 @@ class StudyInputs:
         SHA-256 of the study, the building, the measurements and the weather.
     path : Path or None
         The study file; None for a study made of objects.
+    transfer : mapping of str to StudyInputs
+        Other houses, seasons and phases, on which the calibrated building is validated.
     """
 
     plan: StudyPlan
@@ -53,6 +56,7 @@ class StudyInputs:
     places: Places
     hashes: dict[str, str]
     path: Path | None = None
+    transfer: Mapping[str, StudyInputs] = field(default_factory=dict)
 
     @property
     def source_file(self) -> Path:

@@ -84,6 +84,9 @@ def write_study(inputs: StudyInputs, path: Path) -> str:
 def _content(inputs: StudyInputs) -> dict[str, Any]:
     """The keys of the study file."""
     plan = inputs.plan.model_dump(mode="json", exclude_unset=True)
+    for name, sensor in inputs.plan.sensors.items():
+        if sensor.combined is not None:
+            plan["sensors"][name].pop("output", None)  # it follows from the sum or the mean
     if isinstance(inputs.plan, StudyFile):
         return plan
     measured = inputs.driving

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.study.context.context import StudyContext
+    from mascarin.study.context.periods import Span
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
@@ -53,6 +54,33 @@ def check(study: StudyContext) -> None:
     _working(study)
     _runs(study)
     _plausible(study)
+    _elsewhere(study)
+
+
+def _elsewhere(study: StudyContext) -> None:
+    """Refuse to validate on what is identified, or twice on the same: one table and common times."""
+    records = [("this study", study)]
+    for name, inputs in study.inputs.transfer.items():
+        other = type(study)(inputs)
+        with study.places.blame("transfer", name, "study"):
+            check(other)
+            for before, earlier in records:
+                if earlier.inputs.hashes["measurements"] != inputs.hashes["measurements"]:
+                    continue
+                for span in _compared(other):
+                    for known in _compared(earlier):
+                        if span.overlaps(known):
+                            raise InputError(
+                                f"found {span.words} of the table that {before} compares from "
+                                f"{known.words}, expected another table, or times that the two do not share: "
+                                "correct 'measurements' or 'periods' of one of them"
+                            )
+        records.append((f"'{name}'", other))
+
+
+def _compared(study: StudyContext) -> list[Span]:
+    timeline = study.periods.timeline
+    return [*timeline.every("identification"), *timeline.every("corroboration")]
 
 
 def _periods(study: StudyContext) -> None:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.building.checks.conductances import BASIS, SUM, by_destination, conductances
+from mascarin.building.checks.conductances import TITLE as CONDUCTANCES
 from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.heat_loss import heat_loss
 from mascarin.errors import InputError
@@ -184,17 +186,63 @@ def latent_heat_used(
     return quantities
 
 
+def conductance_table(fit: Calibration) -> dict[str, Any] | None:
+    """Conductances by destination, as described and calibrated, as a table of the report.
+
+    Parameters
+    ----------
+    fit : Calibration
+        Of a building.
+
+    Returns
+    -------
+    dict or None
+        None without a building or without any conductance.
+    """
+    building = fit.nominal_building
+    if building is None:
+        return None
+    values = dict(zip(fit.problem.paths, fit.x.tolist(), strict=True))
+    described, calibrated = (
+        by_destination(conductances(each)) for each in (building, building.replace(values))
+    )
+    after = {(one.destination, one.kind, one.element, one.zone): one.value for one in calibrated}
+    rows = [
+        [
+            one.destination,
+            one.element,
+            "" if one.element == SUM else one.kind,
+            "" if one.element == SUM else one.zone,
+            one.value,
+            after.get((one.destination, one.kind, one.element, one.zone)),
+        ]
+        for one in described
+    ]
+    return (
+        {
+            "title": CONDUCTANCES,
+            "caption": BASIS,
+            "columns": ["to", "element", "kind", "zone", "described [W/K]", "calibrated [W/K]"],
+            "rows": rows,
+            "section": "parameters",
+            "significant": ["described [W/K]", "calibrated [W/K]"],
+        }
+        if rows
+        else None
+    )
+
+
 def derived_table(found: list[DerivedQuantity]) -> dict[str, Any]:
     """The same as a table of the report."""
     return {
         "title": TITLE,
         "caption": (
             "From the description with the estimates: laws by wind at 4 m/s, correlations of surfaces as in "
-            "ISO 6946, infiltration at 4 m/s and 10 K; pressure tests, ventilation and latent heat are left "
-            "out. Solar apertures are those of windows at normal incidence and of opaque outer surfaces, "
-            "without shading; latent heat is the daily range of the liquid fraction, mean of all days. The "
-            "intervals are those of the calibration with the correlations of its parameters; numbers "
-            "that are not calibrated count as known."
+            "ISO 6946, infiltration, with that of pressure tests, at 4 m/s and 10 K; ventilation and latent "
+            "heat are left out. Solar apertures are those of windows at normal incidence and of opaque outer "
+            "surfaces, without shading; latent heat is the daily range of the liquid fraction, mean of all "
+            "days. The intervals are those of the calibration with the correlations of its parameters; "
+            "numbers that are not calibrated count as known."
         ),
         "columns": ["quantity", "value", "95 % low", "95 % high", "unit"],
         "rows": [[one.name, one.value, one.low, one.high, one.unit] for one in found],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -225,6 +225,8 @@ class Findings:
         By what the calibrated model contradicts its own data or what is known; read them first.
     derived : list of DerivedQuantity
         Heat loss, capacity, time constant and U values of the calibrated building, with intervals.
+    transfer : dict
+        Other houses, seasons and phases with the estimates; see `mascarin.study.transfer.comparison`.
     """
 
     context: StudyContext
@@ -247,6 +249,7 @@ class Findings:
     combination: Combination | None = None
     contradictions: list[Contradiction] = field(default_factory=list)
     derived: list[DerivedQuantity] = field(default_factory=list)
+    transfer: dict[str, Any] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:

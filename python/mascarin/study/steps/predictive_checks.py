@@ -195,6 +195,8 @@ def _twins(study: StudyContext) -> Iterator[Contradiction]:
     """Columns of one sensor, of which the mean is used, that differ by more than is stated."""
     observation = study.observation
     for name, sensor in study.plan.sensors.items():
+        if sensor.adds:
+            continue  # its columns are parts of it
         unit = study.building.output(sensor.output).unit
         allowed = math.sqrt(2.0) * sensor.stated_uncertainty(unit, name).absolute
         read = [study.measurements.at(c, observation.times, observation.interval) for c in sensor.columns]

@@ -67,6 +67,13 @@ FILES: Final = (
         "one table",
     ),
     DataFile(
+        "twinhouse/twinhouse_N2_exp1.csv",
+        "e20c9a96fcac166ad053e34bb4a1d86e4e9c62faca711954e84ac9b8e67dc565",
+        "Twin House N2 at Holzkirchen (Germany), August and September 2013, 10 min; Fraunhofer IBP, "
+        "doi:10.15129/8a86bbbb-7be8-4a87-be76-0372985ea228, carried by open-ideas/IDEAS (BSD-3-Clause), as "
+        "one table",
+    ),
+    DataFile(
         "weather/gillot_2023_meteo_france.csv",
         "4bc1d1e3dace763a92590536ecc5c39e27362187139d58153eaea5a360b56f8c",
         "Gillot airport (Reunion Island), hourly, 2023; Meteo-France open data",

@@ -98,6 +98,27 @@ impl<S: Real> Leakage<S> {
     }
 }
 
+/// Air changes [1/h] of a law by the names of its numbers, at a wind [m/s] and a difference between outdoors and the zone [K].
+///
+/// # Errors
+/// What was found and what was expected, for a kind or numbers that are none.
+pub fn air_changes_of(
+    kind: &str,
+    numbers: &[(&str, f64)],
+    wind: f64,
+    difference: f64,
+) -> Result<f64, String> {
+    use crate::input::description::ParamId;
+    use crate::physics::law_row::unknown_kind;
+
+    let ids: Vec<_> = (0..).zip(numbers).map(|(k, (name, _))| (*name, ParamId(k))).collect();
+    let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+    let law = PublishedLaw::new(kind, &ids);
+    row(&law).ok_or_else(|| unknown_kind(&law))?.check(&law)?;
+    let (constant, leakage) = Leakage::of(&law, &Values::new(&values));
+    Ok(constant.unwrap_or(0.0) + leakage.map_or(0.0, |law| law.air_changes(wind, difference)))
+}
+
 #[cfg(test)]
 pub(crate) mod testing {
     use super::Leakage;

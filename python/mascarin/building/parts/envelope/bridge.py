@@ -8,7 +8,8 @@ from typing import ClassVar, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
-from mascarin.building.base.names import ZoneName
+from mascarin.building.base.dimensions import System
+from mascarin.building.base.names import Name, ZoneName
 from mascarin.building.base.number import Number, Remark, problem, quantity_of
 from mascarin.building.base.part import Part
 from mascarin.building.base.time_series import Columns
@@ -45,6 +46,18 @@ class ThermalBridge(Part):
         None, description="Ends in air of this measured column, or of the mean of several"
     )
 
+    dimensions: System | Literal["any"] | None = Field(
+        None,
+        description="Dimensions that psi or chi belongs to: internal, overall_internal or external; any: the "
+        "same in all, as the edge of a glass; none: those of the building",
+    )
+    excess: dict[Name, float] = Field(
+        default_factory=dict,
+        description="Surface -> its area as described less its area in the dimensions of psi or chi, at this "
+        "bridge; it is converted by psi - sum U dA / l [m2]",
+    )
+    converted: q.ConvertedTransmittance | None = None
+
     @model_validator(mode="after")
     def _sound(self) -> ThermalBridge:
         if (self.psi is None) == (self.chi is None):
@@ -60,10 +73,11 @@ class ThermalBridge(Part):
                 "Add 'length:', or give the whole conductance as 'chi:' [W/K].",
             )
         stray = "number" if self.psi is not None else "length"
-        if getattr(self, stray) is not None:
+        size = getattr(self, stray)
+        if size is not None and not size.derived:
             coefficient = "psi" if self.psi is not None else "chi"
             raise problem(f"'{stray}' beside {coefficient}", "none", f"Remove '{stray}:'.")
-        if self.chi is not None and self.number is None:
+        if self.number is None and (self.chi is not None or self.excess):
             quantity = quantity_of(type(self).model_fields["number"])
             self._fill(number=Number(1.0, source=Remark("not given: one"), derived=True, quantity=quantity))
         ends = [key for key in _ENDS if getattr(self, key) is not None]
@@ -87,7 +101,12 @@ class ThermalBridge(Part):
 
     @property
     def conductance(self) -> float:
-        """Heat per degree. [W/K]"""
+        """Heat per degree, converted to the dimensions of the areas. [W/K]"""
+        return self.stated_conductance + float(self.converted or 0.0) * float(self.number or 0.0)
+
+    @property
+    def stated_conductance(self) -> float:
+        """Heat per degree in the dimensions of psi or chi. [W/K]"""
         if self.psi is not None:
             return float(self.psi) * float(self.length or 0.0)
         return float(self.chi or 0.0) * float(self.number or 0.0)

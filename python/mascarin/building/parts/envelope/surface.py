@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
+from mascarin.building.base.dimensions import System
 from mascarin.building.base.names import (
     ConstructionName,
     MaterialName,
@@ -421,6 +422,10 @@ class Surface(Part):
     azimuth: q.Azimuth | None = None
     outside: Side = Field(description="The outer side")
     inside: Side = Field(description="The inner side")
+    dimensions: System | None = Field(
+        None,
+        description="Dimensions of its area: internal, overall_internal or external; none: the building's",
+    )
     internal_mass: bool = Field(False, description="Whether both sides face the same zone, as for furniture")
 
     @property

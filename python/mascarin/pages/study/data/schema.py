@@ -366,6 +366,9 @@ class Study(TypedDict, total=False):
     spectra: dict[str, Spectrum]
     day_shares: dict[str, DayShares]
     residuals: dict[str, Residuals]
+    transfer: dict[str, dict[str, Any]]
+    """Other houses, seasons and phases: ``building``, ``words``, and ``sensors``: sensor -> period ->
+    ``described`` and ``calibrated`` metrics, ``held`` [-] and ``unit``."""
     start: str
     """Initial state of the run."""
     ledger: Ledger

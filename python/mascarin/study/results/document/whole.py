@@ -21,8 +21,10 @@ from mascarin.study.results.document.header import header
 from mascarin.study.results.document.phase_change import phase_change
 from mascarin.study.results.document.sensitivity import importance
 from mascarin.study.steps.days import day_words, days_table
-from mascarin.study.steps.derived_quantities import derived_table
+from mascarin.study.steps.derived_quantities import conductance_table, derived_table
 from mascarin.study.steps.prediction_intervals import interval_table
+from mascarin.study.transfer.comparison import TITLE as TRANSFER
+from mascarin.study.transfer.comparison import transfer_notes, transfer_table
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -70,8 +72,11 @@ def document(findings: Findings) -> dict[str, Any]:
         "tables": [
             interval_table(study, findings.prediction_intervals),
             *error_tables(study, findings.combination),
+            *([transfer_table(study, findings.transfer)] if findings.transfer else []),
             *([derived_table(findings.derived)] if findings.derived else []),
+            *(table for table in [conductance_table(fit)] if table is not None),
         ],
+        "transfer": findings.transfer,
         "derived": [one.to_dict() for one in findings.derived],
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
@@ -163,5 +168,6 @@ def _notes(findings: Findings) -> list[dict[str, str]]:
         ("Residuals", findings.notes),
         ("Choice of days", day_words(findings.days)),
         ("Aims that are not met", missed),
+        (TRANSFER, transfer_notes(findings.transfer)),
     )
     return [{"title": title, "text": text} for title, texts in titled for text in texts]

@@ -1,0 +1,1 @@
+"""The calibrated building in other houses, seasons and phases."""

@@ -1,0 +1,138 @@
+"""The calibrated building compared with other houses, seasons and phases, of which nothing is identified."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from mascarin.errors import InputError
+from mascarin.study.context.context import StudyContext
+from mascarin.study.steps.calibration_result import building_with_posterior
+from mascarin.study.steps.model_runs import nominal
+from mascarin.study.transfer.bands import bands_of
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.calibration import Calibration
+    from mascarin.study.steps.calibration_result import Calibrated
+    from mascarin.study.steps.findings import ModelRun
+
+#: Title of the table of the report.
+TITLE = "Transfer of the calibration"
+
+
+def transferred(study: StudyContext, found: Calibrated) -> dict[str, Any]:
+    """Compare every study of ``transfer`` before and after the estimates are put into its building.
+
+    Parameters
+    ----------
+    study : StudyContext
+        Names the other studies.
+    found : Calibrated
+        Its calibration. Tied factors act on the values of the other building.
+
+    Returns
+    -------
+    dict
+        Plain values, by name: ``building``, ``words``, and ``sensors``: sensor -> period -> ``described`` and
+        ``calibrated`` metrics, and ``held``, the part of the values inside of the bands.
+    """
+    if not study.inputs.transfer:
+        return {}
+    own = building_with_posterior(study, found.run, found.fit, found.intervals, found.combination)
+    return {
+        name: _compared(StudyContext(inputs), found.fit, own)
+        for name, inputs in study.inputs.transfer.items()
+    }
+
+
+def _compared(other: StudyContext, fit: Calibration, calibrated: Building) -> dict[str, Any]:
+    described = nominal(other)
+    estimates, missing = dict(fit.values), []
+    for path in fit.values:
+        try:
+            other.building.parameter(path)
+        except InputError:
+            missing.append(path)
+            del estimates[path]
+    building = other.building.with_values(estimates).replace({"posterior": calibrated.posterior})
+    # Ranges of factors hold for the building as described: of this one they may leave what is possible.
+    plan = other.plan.model_copy(update={"identification": None, "sensitivity": None})
+    moved = StudyContext(replace(other.inputs, plan=plan, building=building))
+    run = nominal(moved)
+    bands, words = bands_of(moved, run)
+    held = {} if bands is None else bands.entries(moved.observation, moved.used)
+    unknown = f"estimates of parameters that '{other.building.name}' does not have: {', '.join(missing)}"
+    lines = [unknown] if missing else []
+    return {
+        "building": other.building.name,
+        "words": [*lines, *(word.text for word in words)],
+        "sensors": {
+            sensor: {
+                period: {
+                    "described": described.scores[sensor][period].to_dict(),
+                    "calibrated": metrics.to_dict(),
+                    "held": held.get(sensor, {}).get("held", {}).get(period),
+                    "unit": _unit(run, number),
+                }
+                for period, metrics in periods.items()
+                if metrics.n
+            }
+            for number, (sensor, periods) in enumerate(run.scores.items())
+        },
+    }
+
+
+def _unit(run: ModelRun, number: int) -> str:
+    return run.results.outputs[number].unit.replace("degC", "K")
+
+
+def transfer_table(study: StudyContext, found: dict[str, Any]) -> dict[str, Any]:
+    """Errors before and after, and what the bands hold, as a table of the report."""
+    rows = []
+    for name, entry in found.items():
+        sensors = study.inputs.transfer[name].plan.sensors
+        for sensor, periods in entry["sensors"].items():
+            for period, scores in periods.items():
+                held = scores["held"]
+                rows.append(
+                    [
+                        entry["building"],
+                        sensors[sensor].label or sensor.replace("_", " "),
+                        period,
+                        scores["unit"],
+                        *(
+                            scores[model][key]
+                            for key in ("rmse", "bias")
+                            for model in ("described", "calibrated")
+                        ),
+                        None if held is None else 100.0 * held,
+                    ]
+                )
+    return {
+        "title": TITLE,
+        "caption": (
+            "Other houses, seasons and phases, of which nothing was identified: as described, and with the "
+            "estimates of this study in their building. Inside: part of the measured values in the bands of "
+            "the calibration. [%]"
+        ),
+        "columns": [
+            "building",
+            "sensor",
+            "period",
+            "unit",
+            "rmse described",
+            "rmse calibrated",
+            "bias described",
+            "bias calibrated",
+            "inside [%]",
+        ],
+        "rows": rows,
+        "section": "comparison",
+        "significant": ["rmse described", "rmse calibrated", "bias described", "bias calibrated"],
+    }
+
+
+def transfer_notes(found: dict[str, Any]) -> list[str]:
+    """Where the bands extrapolate, and what was not transferred, in sentences."""
+    return [f"{name}: {word}" for name, entry in found.items() for word in entry["words"]]
