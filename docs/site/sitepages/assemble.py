@@ -14,7 +14,7 @@ from typing import NamedTuple
 DOCS = Path(__file__).resolve().parents[2]
 ROOT = DOCS.parent
 #: Pages of the root that are pages of the site.
-FROM_ROOT = ("CHANGELOG.md", "CONTRIBUTING.md")
+FROM_ROOT = ("CHANGELOG.md", "CONTRIBUTING.md", "RELEASING.md", "SECURITY.md", "SUPPORT.md")
 #: Other files that pages link to.
 LINKED = ("LICENSE", "CITATION.cff")
 
