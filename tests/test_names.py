@@ -22,6 +22,7 @@ PACKAGES = (
     "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
     "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
     "_io", "building", "materials", "weather", "tables", "diagnosis", "templates",
+    "study/carried", "study/diagnosis", "study/results",
 )  # fmt: skip
 
 
