@@ -21,14 +21,20 @@ EMPTY_WORDS = frozenset([
 PACKAGES = (
     "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
     "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
-    "_io", "building", "materials",
+    "_io", "building", "materials", "weather", "tables", "diagnosis", "templates",
+    "study/carried", "study/diagnosis", "study/results",
 )  # fmt: skip
 
 
-#: Names that users or files have: a key of a record, a key of YAML.
+#: Names that users or files have: a key of a record, a key of YAML, a field or argument of a public class.
 PUBLIC = {
     ("simulation/checks/judgement.py", "place"), ("building/parts/air/schedule.py", "at"),
     ("building/gamma.py", "near"), ("building/parts/self_shading.py", "near"),
+    ("diagnosis/causes.py", "given"), ("diagnosis/causes.py", "told"), ("diagnosis/causes.py", "others"),
+    ("diagnosis/hypotheses.py", "known"), ("diagnosis/hypotheses.py", "told"),
+    ("diagnosis/step_changes.py", "whole"), ("tables/columns.py", "given"), ("tables/units.py", "place"),
+    ("templates/new_buildings.py", "place"), ("templates/room.py", "place"),
+    ("weather/reading/readers.py", "place"),
 }  # fmt: skip
 
 

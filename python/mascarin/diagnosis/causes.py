@@ -30,7 +30,7 @@ LEVEL: Final = 0.05
 #: Simulated records without any cause. [-]
 DRAWS: Final = 999
 #: What is wrong is told from all else with this probability; candidates are listed until they have the other.
-_TOLD: Final = 0.8
+_DISTINCT_PROBABILITY: Final = 0.8
 _LISTED: Final = 0.95
 #: With one form of the model an error of it that is no candidate is as probable as those that are. [-]
 _UNNAMED: Final = 0.5
@@ -122,10 +122,18 @@ def log_prior(candidates: Sequence[Candidate]) -> list[float]:
     >>> np.exp(log_prior([*data, Candidate("form", "form", ("sky",), ones)])).round(2).tolist()
     [0.25, 0.25, 0.5]
     """
-    later = [(one, one.later) for one in candidates if one.later]
+    later = [(candidate, candidate.later) for candidate in candidates if candidate.later]
     paths = [
-        ("data" if one.group == "data" else "model", one.group, what, (*one.subject, one.detail), k)
-        for k, (one, what) in enumerate([*((one, one.what) for one in candidates), *later])
+        (
+            "data" if candidate.group == "data" else "model",
+            candidate.group,
+            what,
+            (*candidate.subject, candidate.detail),
+            k,
+        )
+        for k, (candidate, what) in enumerate(
+            [*((candidate, candidate.what) for candidate in candidates), *later]
+        )
     ]
     children: dict[tuple[object, ...], set[object]] = defaultdict(set)
     for path in paths:
@@ -134,12 +142,12 @@ def log_prior(candidates: Sequence[Candidate]) -> list[float]:
     return [-sum(math.log(len(children[p[:level]])) for level in range(len(p))) for p in paths]
 
 
-def scores_of(given: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGaussian) -> Scores:
+def scores_of(inputs: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGaussian) -> Scores:
     """Compute what the residuals say of all candidates.
 
     Parameters
     ----------
-    given : DiagnosisInput
+    inputs : DiagnosisInput
         Residuals and candidates.
     hypotheses : Hypotheses
         The candidates with their beginnings.
@@ -150,20 +158,20 @@ def scores_of(given: DiagnosisInput, hypotheses: Hypotheses, gaussian: DayGaussi
     -------
     Scores
     """
-    residuals = np.where(gaussian.present, given.data.error, 0.0)
-    prior = log_prior(given.candidates)
+    residuals = np.where(gaussian.present, inputs.data.error, 0.0)
+    prior = log_prior(inputs.candidates)
     if len(hypotheses.families) == 0:
-        prior = prior[: len(given.candidates)]  # a record too short for a beginning
+        prior = prior[: len(inputs.candidates)]  # a record too short for a beginning
     return Scores(
         hypotheses.scores(gaussian.solve(residuals)[:, :, None])[:, 0],
         hypotheses.information(gaussian),
-        hypotheses.spread([one.mean for one in given.candidates]),
-        hypotheses.spread([one.sd for one in given.candidates]),
+        hypotheses.spread([candidate.mean for candidate in inputs.candidates]),
+        hypotheses.spread([candidate.sd for candidate in inputs.candidates]),
         hypotheses.spread(prior, times=True),
     )
 
 
-def covariance_of(given: DiagnosisInput) -> ErrorCovariance:
+def covariance_of(inputs: DiagnosisInput) -> ErrorCovariance:
     """Estimate the covariance of the errors beside faults of sensors.
 
     First beside those that a sensor may have over the whole record, then beside the most probable beginning
@@ -171,7 +179,7 @@ def covariance_of(given: DiagnosisInput) -> ErrorCovariance:
 
     Parameters
     ----------
-    given : DiagnosisInput
+    inputs : DiagnosisInput
         Residuals and candidates.
 
     Returns
@@ -179,24 +187,26 @@ def covariance_of(given: DiagnosisInput) -> ErrorCovariance:
     ErrorCovariance
     """
     broad = [
-        _BROAD_SIZE * one.sd * one.signature
-        for one in given.candidates
-        if one.what in _BROAD and one.group == "data" and one.mean == 0.0
+        _BROAD_SIZE * candidate.sd * candidate.signature
+        for candidate in inputs.candidates
+        if candidate.what in _BROAD and candidate.group == "data" and candidate.mean == 0.0
     ]
-    columns = np.stack(broad, axis=2) if broad else np.zeros((*given.data.error.shape, 0))
+    columns = np.stack(broad, axis=2) if broad else np.zeros((*inputs.data.error.shape, 0))
 
     def estimated(beside: Floats) -> ErrorCovariance:
-        return estimate_error_covariance(given.data, given.days, beside, scale=given.scale, limit=given.limit)
+        return estimate_error_covariance(
+            inputs.data, inputs.days, beside, scale=inputs.scale, limit=inputs.limit
+        )
 
     first = estimated(columns)
-    hypotheses = Hypotheses(given.candidates, given.data.grid, given.days)
+    hypotheses = Hypotheses(inputs.candidates, inputs.data.grid, inputs.days)
     if not hypotheses.families:
         return first
-    scores = scores_of(given, hypotheses, first.gaussian(given.data, given.days))
-    begun = np.arange(hypotheses.count) >= len(given.candidates)
+    scores = scores_of(inputs, hypotheses, first.gaussian(inputs.data, inputs.days))
+    begun = np.arange(hypotheses.count) >= len(inputs.candidates)
     best = int(np.argmax(np.where(begun, scores.log_bayes_factors(), -np.inf)))
-    one = hypotheses.candidate(best)
-    step = _BROAD_SIZE * (one.sd + abs(one.mean)) * one.signature
+    fault = hypotheses.candidate(best)
+    step = _BROAD_SIZE * (fault.sd + abs(fault.mean)) * fault.signature
     return estimated(np.concatenate([columns, step[:, :, None]], axis=2))
 
 
@@ -254,27 +264,29 @@ def diagnose(
         first_p = first_p if findings else p
         if p >= LEVEL:
             break
-        numbers, found = _finding(given, hypotheses, scores, p)
-        findings.append(found)
-        if not found.told and any(one.group == "data" for one in (found.candidate, *found.others)):
+        numbers, finding = _finding(given, hypotheses, scores, p)
+        findings.append(finding)
+        if not finding.told and any(
+            candidate.group == "data" for candidate in (finding.candidate, *finding.others)
+        ):
             break  # what is left depends on which of them it is
         # An error of the model that is not told may be any of these; a fault of a sensor has to remain
         # beside all of them.
         for k in numbers:
             signature = np.where(gaussian.present, hypotheses.candidate(k).signature, 0.0)
             scores = scores.given(k, hypotheses.scores(gaussian.solve(signature)[:, :, None])[:, 0])
-    findings.sort(key=lambda one: not one.told)
+    findings.sort(key=lambda cause: not cause.told)
     return Result(tuple(findings), first_p, hypotheses.count, draws, covariance)
 
 
 def _finding(
-    given: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float
+    inputs: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float
 ) -> tuple[list[int], Finding]:
     """The most probable candidate, what else it may be, and the numbers of all of them."""
     evidence = scores.evidence()
     share = np.exp(evidence - evidence.max())
     share /= share.sum()
-    key_of = [one.key for one in given.candidates]
+    key_of = [hypothesis.key for hypothesis in inputs.candidates]
     keys = [*key_of, *(key_of[k] for k, slots in hypotheses.families for _ in slots)]
     of_key: dict[tuple[str, ...], float] = defaultdict(float)
     best: dict[tuple[str, ...], int] = {}
@@ -293,14 +305,14 @@ def _finding(
     candidate = hypotheses.candidate(k)
     size, error = scores.estimate(k)
     probability = of_key[order[0]]
-    tells = candidate.group == "data" or given.forms > 1
+    tells = candidate.group == "data" or inputs.forms > 1
     return numbers, Finding(
         candidate,
         candidate.known + candidate.scale * size,
         abs(candidate.scale) * error,
         p,
-        min(probability * (1.0 - p), given.model_weight if tells else min(given.model_weight, _UNNAMED)),
+        min(probability * (1.0 - p), inputs.model_weight if tells else min(inputs.model_weight, _UNNAMED)),
         float(scores.log_bayes_factors()[k]),
-        probability >= _TOLD and tells,
+        probability >= _DISTINCT_PROBABILITY and tells,
         tuple(hypotheses.candidate(number) for number in numbers[1:]),
     )

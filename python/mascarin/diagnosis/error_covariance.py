@@ -111,8 +111,8 @@ class ErrorCovariance:
         root = np.linalg.cholesky(gaussian.blocks[0])
         size = gaussian.present.shape
         shared = gaussian.columns @ rng.standard_normal(gaussian.columns.shape[2])
-        drawn = rng.standard_normal(size) @ root.T + shared
-        return np.where(gaussian.present, drawn, 0.0)
+        residuals = rng.standard_normal(size) @ root.T + shared
+        return np.where(gaussian.present, residuals, 0.0)
 
 
 def estimate_error_covariance(
@@ -146,5 +146,5 @@ def estimate_error_covariance(
         options += [
             ErrorCovariance(sizes, share, length, freedom) for share in _SHARES for length in _PERSISTENCE
         ]
-    densities = [one.gaussian(beside, days).log_density(data.error) for one in options]
+    densities = [covariance.gaussian(beside, days).log_density(data.error) for covariance in options]
     return options[int(np.argmax(densities))]

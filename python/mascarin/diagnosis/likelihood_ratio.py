@@ -83,8 +83,8 @@ class Scores:
 
     def evidence(self, scores: Floats | None = None) -> Floats:
         """Return the Bayes factors times the prior probabilities, as logarithms. [-]"""
-        found = self.log_bayes_factors(scores)
-        return found + self.log_prior.reshape(-1, *(1,) * (found.ndim - 1))
+        log_factors = self.log_bayes_factors(scores)
+        return log_factors + self.log_prior.reshape(-1, *(1,) * (log_factors.ndim - 1))
 
     def estimate(self, k: int) -> tuple[float, float]:
         """Return the size of a candidate and its standard error. [-]"""
@@ -106,8 +106,8 @@ class Scores:
         column : ndarray, shape (K,)
             Its column of ``G' C^-1 G``, without any candidate. [-]
         """
-        for number, known in self.named:
-            column = column - known * self.gain(number, known) * column[number]
+        for number, named_column in self.named:
+            column = column - named_column * self.gain(number, named_column) * column[number]
         gain, score = self.gain(k, column), self.score - self.mean[k] * column
         return replace(
             self,
@@ -155,7 +155,7 @@ class Simulator:
         """
         root = np.linalg.cholesky(self.gaussian.blocks[0])
         present, columns = self.gaussian.present, self.gaussian.columns
-        found = np.empty(draws)
+        largest_evidence = np.empty(draws)
         for first in range(0, draws, _CHUNK):
             count = min(_CHUNK, draws - first)
             errors = np.einsum(
@@ -163,15 +163,15 @@ class Simulator:
             )
             errors += columns @ rng.standard_normal((columns.shape[2], count))
             weighted = self.gaussian.solve(np.where(present[:, :, None], errors, 0.0))
-            drawn = self.hypotheses.scores(weighted)
+            simulated = self.hypotheses.scores(weighted)
             for k, column in scores.named:
                 size = scores.sd[k] * rng.standard_normal(count)
-                drawn = drawn + column[:, None] * size
-                drawn -= column[:, None] * (scores.gain(k, column) * drawn[k])
+                simulated = simulated + column[:, None] * size
+                simulated -= column[:, None] * (scores.gain(k, column) * simulated[k])
             if np.isfinite(self.freedom):
-                drawn *= np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
-            found[first : first + count] = scores.evidence(drawn).max(axis=0)
-        return found
+                simulated *= np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
+            largest_evidence[first : first + count] = scores.evidence(simulated).max(axis=0)
+        return largest_evidence
 
 
 def p_value(observed: float, simulated: Floats) -> float:

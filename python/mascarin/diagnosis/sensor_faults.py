@@ -31,7 +31,7 @@ _LARGE: Final = 5.0
 _GAIN: Final = 0.1
 _DELAY: Final = 900.0
 _PART: Final = 0.3
-_KNOWN: Final = 0.1
+_KNOWN_SIZE: Final = 0.1
 #: Largest number of pairs of columns that may be exchanged: those whose simulated series differ least.
 _MOST_PAIRS: Final = 24
 #: Parts of the day of which the quietest quarter gives the white noise.
@@ -132,11 +132,11 @@ def sensor_candidates(series: Series) -> list[Candidate]:
     >>> sorted({one.what for one in sensor_candidates(stated)})
     ['clock', 'drift', 'gain', 'offset', 'scale']
     """
-    found: list[Candidate] = []
+    candidates: list[Candidate] = []
     for s in range(len(series.names)):
         if series.mask[:, s].sum() >= 3:
-            found += _of_sensor(series, s)
-    return [one for one in (*found, *_swaps(series)) if np.any(one.signature)]
+            candidates += _of_sensor(series, s)
+    return [candidate for candidate in (*candidates, *_swaps(series)) if np.any(candidate.signature)]
 
 
 def _of_sensor(series: Series, s: int) -> Iterator[Candidate]:
@@ -145,20 +145,20 @@ def _of_sensor(series: Series, s: int) -> Iterator[Candidate]:
     unit = series.units[s].replace("degC", "K")
     middle = np.linspace(-0.5, 0.5, m.size)
 
-    def one(what: What, column: Floats, sd: float, scale: float, of: str) -> Candidate:
+    def fault(what: What, column: Floats, sd: float, scale: float, of: str) -> Candidate:
         later: What | None = "step" if what == "offset" else None
         return Candidate("data", what, name, series.means({s: column}), 0.0, sd, scale, of, later=later)
 
-    yield one("offset", np.ones(m.size), _LARGE * u, 1.0, unit)
-    yield one("drift", middle, _LARGE * u, 1.0, unit)
+    yield fault("offset", np.ones(m.size), _LARGE * u, 1.0, unit)
+    yield fault("drift", middle, _LARGE * u, 1.0, unit)
     if np.ptp(m) > 0.0:
-        yield one("gain", m, _GAIN, 100.0, "%")
-        yield one("scale", m - m.mean(), _GAIN, 100.0, "%")
-        yield one("clock", -np.gradient(m, series.interval) * _DELAY, 1.0, _DELAY / 60.0, "min")
+        yield fault("gain", m, _GAIN, 100.0, "%")
+        yield fault("scale", m - m.mean(), _GAIN, 100.0, "%")
+        yield fault("clock", -np.gradient(m, series.interval) * _DELAY, 1.0, _DELAY / 60.0, "min")
         yield from _clocks(series, s, _HOURS)
-    for place, other in series.neighbours.get(s, {}).items():
+    for neighbour, other in series.neighbours.get(s, {}).items():
         signature = series.means({s: other - m})
-        yield Candidate("data", "place", name, signature, 0.0, _PART, 100.0, "%", f"part of {place}")
+        yield Candidate("data", "place", name, signature, 0.0, _PART, 100.0, "%", f"part of {neighbour}")
 
 
 def _clocks(series: Series, s: int, hours: tuple[float, ...]) -> Iterator[Candidate]:
@@ -174,7 +174,7 @@ def _clocks(series: Series, s: int, hours: tuple[float, ...]) -> Iterator[Candid
                 name,
                 signature,
                 1.0,
-                _KNOWN,
+                _KNOWN_SIZE,
                 60.0 * delay,
                 "min",
                 later=later,  # type: ignore[arg-type]
@@ -193,7 +193,7 @@ def _swaps(series: Series) -> Iterator[Candidate]:
     for _, i, j in sorted(pairs)[:_MOST_PAIRS]:
         signature = series.means({i: m[:, j] - m[:, i], j: m[:, i] - m[:, j]})
         names = (series.names[i], series.names[j])
-        yield Candidate("data", "swapped", names, signature, 1.0, _KNOWN, later="swap_step")
+        yield Candidate("data", "swapped", names, signature, 1.0, _KNOWN_SIZE, later="swap_step")
 
 
 def stated_errors(series: Series) -> Floats:

@@ -80,13 +80,13 @@ class Hypotheses:
     @cached_property
     def families(self) -> tuple[tuple[int, Integers], ...]:
         """Candidates that may begin within the record: their number, and the slots."""
-        found = []
-        for k, one in enumerate(self.whole):
-            if one.later and self._inside.size:
-                most = _MOST_TIMES if one.what == "offset" else _FEW_TIMES
-                every = math.ceil(self._inside.size / most)
-                found.append((k, self._inside[::every]))
-        return tuple(found)
+        families = []
+        for k, candidate in enumerate(self.whole):
+            if candidate.later and self._inside.size:
+                most = _MOST_TIMES if candidate.what == "offset" else _FEW_TIMES
+                stride = math.ceil(self._inside.size / most)
+                families.append((k, self._inside[::stride]))
+        return tuple(families)
 
     @cached_property
     def _first(self) -> Integers:
@@ -105,12 +105,17 @@ class Hypotheses:
             return self.whole[k]
         family = int(np.searchsorted(self._first, k, side="right")) - 1
         number, slots = self.families[family]
-        slot, one = int(slots[k - self._first[family]]), self.whole[number]
+        slot, candidate = int(slots[k - self._first[family]]), self.whole[number]
         after = np.arange(self._hours.size).reshape(self.grid.days, -1) >= slot
-        of_values = np.repeat(after, one.signature.shape[1] // self.grid.slots, axis=1)
-        assert one.later is not None  # noqa: S101 (families have one)
+        of_values = np.repeat(after, candidate.signature.shape[1] // self.grid.slots, axis=1)
+        assert candidate.later is not None  # noqa: S101 (families have one)
         start = float(self._hours[slot])
-        return replace(one, what=one.later, signature=np.where(of_values, one.signature, 0.0), start=start)
+        return replace(
+            candidate,
+            what=candidate.later,
+            signature=np.where(of_values, candidate.signature, 0.0),
+            start=start,
+        )
 
     def spread(self, values: Sequence[float], times: bool = False) -> Floats:
         """Return values of the candidates over the whole record for all candidates; shape (K,).
@@ -123,11 +128,11 @@ class Hypotheses:
         times : bool
             Whether the number of beginnings is taken from the value of a family, as a logarithm.
         """
-        own: list[float] = list(values[: len(self.whole)])
+        spread_values: list[float] = list(values[: len(self.whole)])
         for f, (number, slots) in enumerate(self.families):
             value = values[len(self.whole) + f] if len(values) > len(self.whole) else values[number]
-            own += [value - (math.log(slots.size) if times else 0.0)] * slots.size
-        return np.array(own)
+            spread_values += [value - (math.log(slots.size) if times else 0.0)] * slots.size
+        return np.array(spread_values)
 
     def scores(self, weighted: Floats) -> Floats:
         """Multiply all signatures with weighted residuals (D, H * S, m), shape (K, m). [-]"""
@@ -143,7 +148,7 @@ class Hypotheses:
     @cached_property
     def _signatures(self) -> Floats:
         """Signatures over the whole record, shape (D * H * S, W). [unit]"""
-        return np.stack([one.signature.ravel() for one in self.whole], axis=1)
+        return np.stack([candidate.signature.ravel() for candidate in self.whole], axis=1)
 
     def information(self, gaussian: DayGaussian) -> Floats:
         """Compute the information of every candidate, shape (K,). [-]
@@ -160,16 +165,19 @@ class Hypotheses:
         shared = gaussian.solve(columns) @ gaussian.precision @ root
         inverse = gaussian.inverse_blocks + shared @ np.swapaxes(shared, 1, 2)
         shape, flat = present.shape, shared.reshape(present.size, -1)
-        whole = self._signatures.reshape(*shape, -1)
-        found = [
-            np.einsum("dnk,dnk->k", whole, inverse @ whole) - np.sum((flat.T @ self._signatures) ** 2, axis=0)
+        signatures = self._signatures.reshape(*shape, -1)
+        information = [
+            np.einsum("dnk,dnk->k", signatures, inverse @ signatures)
+            - np.sum((flat.T @ self._signatures) ** 2, axis=0)
         ]
         for number, slots in self.families:
             signature = self._signatures[:, number]
             across = (signature[:, None] * flat).reshape(self._hours.size, -1, flat.shape[1]).sum(axis=1)
             square = np.sum(_from_end(across)[slots] ** 2, axis=1)
-            found.append(_blocks_from_end(inverse, signature.reshape(shape), self.grid.slots)[slots] - square)
-        return np.asarray(np.maximum(np.concatenate(found), 0.0))
+            information.append(
+                _blocks_from_end(inverse, signature.reshape(shape), self.grid.slots)[slots] - square
+            )
+        return np.asarray(np.maximum(np.concatenate(information), 0.0))
 
 
 def _from_end(values: Floats) -> Floats:

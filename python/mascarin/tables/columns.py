@@ -125,9 +125,9 @@ class Column:
         """
         if self.unit is not None:
             plain = parse_unit(self.unit)
-            own = replace(self, unit=plain) if self.unit not in FACTORS and plain is not None else self
-            if stated is None or self.overrule or _same(own.unit, stated.unit, interval):
-                return own
+            column = replace(self, unit=plain) if self.unit not in FACTORS and plain is not None else self
+            if stated is None or self.overrule or _same(column.unit, stated.unit, interval):
+                return column
             raise InputError(
                 f"{where}: found the unit {self.unit!r}, but {stated.place} says {stated.text!r} for the "
                 f"column {self.column!r}; expected the same. Leave the unit out to use that of the file, or "
@@ -139,8 +139,8 @@ class Column:
         if not target and (FACTORS.get(stated.unit, ("W/m2",))[0] not in CONVERTED or
                            conversion(stated.unit, "", interval) is None):  # fmt: skip
             return self
-        found = conversion(stated.unit, target, interval)
-        if found is None:
+        factors = conversion(stated.unit, target, interval)
+        if factors is None:
             if stated.unit == "deg":  # the sign of degrees alone
                 return self
             likely = [name for name in names if name != self.column][:12]
@@ -149,14 +149,14 @@ class Column:
                 f"of {', '.join(units_of(target))}. Name another column (there are {', '.join(likely)}), or "
                 f"write {self._forced(target)} where the file is wrong."
             )
-        if plain_factors or found == (1.0, 0.0):
+        if plain_factors or factors == (1.0, 0.0):
             return replace(self, unit=stated.unit)
-        if np.allclose((self.scale, self.offset), found, rtol=1e-3, atol=1e-3):
+        if np.allclose((self.scale, self.offset), factors, rtol=1e-3, atol=1e-3):
             return self  # the user converts by hand
         raise InputError(
             f"{where}: found scale {self.scale:g} and offset {self.offset:g}, but {stated.place} says "
-            f"{stated.text!r} for the column {self.column!r}, which is converted by {found[0]:g} and "
-            f"{found[1]:g}; expected one of the two. Write unit: {stated.unit} where scale and "
+            f"{stated.text!r} for the column {self.column!r}, which is converted by {factors[0]:g} and "
+            f"{factors[1]:g}; expected one of the two. Write unit: {stated.unit} where scale and "
             "offset are applied after the conversion, or "
             f"{self._forced(target or FACTORS[stated.unit][0])} where the file is wrong."
         )
@@ -184,13 +184,13 @@ class Column:
             The column's unit cannot be converted to the wanted one.
         """
         if self.unit is not None and self.unit != unit:
-            found = conversion(self.unit, unit, interval)
-            if found is None:
+            factors = conversion(self.unit, unit, interval)
+            if factors is None:
                 raise InputError(
                     f"{where}: unit {self.unit!r} of column {self.column!r} cannot be turned into "
                     f"{unit}; expected one of {', '.join(units_of(unit))}, or give scale and offset instead."
                 )
-            values = values * found[0] + found[1]
+            values = values * factors[0] + factors[1]
         if self.scale == 1.0 and self.offset == 0.0:
             return values
         return values * self.scale + self.offset
@@ -219,9 +219,15 @@ class Column:
         str
             Name, unit in the file, conversion, range, missing values, and whether all are equal.
         """
-        own = self.unit or ""
+        input_unit = self.unit or ""
         after = unit or (
-            FACTORS[own][0] if own in FACTORS else "W" if own in HEATS else "W/m2" if own else ""
+            FACTORS[input_unit][0]
+            if input_unit in FACTORS
+            else "W"
+            if input_unit in HEATS
+            else "W/m2"
+            if input_unit
+            else ""
         )
         parts = [f"column {self.column!r}" if self.column != name else "column"]
         by = f" ({stated.place})" if stated is not None and not self.overrule else " (as stated)"
@@ -235,12 +241,12 @@ class Column:
             parts.append(f"taken as {unit}, no unit is stated" if unit else "no unit is stated")
         if self.scale != 1.0 or self.offset != 0.0:
             parts.append(f"times {self.scale:g} plus {self.offset:g}")
-        there = values[~np.isnan(values)]
-        if not len(there):
+        valid = values[~np.isnan(values)]
+        if not len(valid):
             return f"{name}: {', '.join(parts)}; no values."
-        low, high = float(there.min()), float(there.max())
+        low, high = float(valid.min()), float(valid.max())
         extent = f"constant {low:.4g}" if low == high else f"{low:.4g} .. {high:.4g}"
-        absent = len(values) - len(there)
+        absent = len(values) - len(valid)
         listed = ", ".join(f"{count} {word!r}" for word, count in words.items())
         counted = f" ({listed})" if listed else ""
         return f"{name}: {', '.join(parts)}; {extent}{' ' * bool(after)}{after}, {absent} missing{counted}."

@@ -61,6 +61,6 @@ def _reads(head: bytes, code: str) -> bool:
 def _are_cyrillic(head: bytes) -> bool:
     """Whether most words with a letter above 127 have these letters alone, some of them small ones."""
     words = [word for word in _WORDS.findall(head) if any(byte > 127 for byte in word)]
-    whole = [word for word in words if all(byte >= 0xC0 or byte in (0xA8, 0xB8) for byte in word)]
-    small = [word for word in whole if sum(byte >= 0xE0 for byte in word) >= len(word) - 1]
-    return len(small) >= 2 and len(whole) > 0.6 * len(words)
+    cyrillic = [word for word in words if all(byte >= 0xC0 or byte in (0xA8, 0xB8) for byte in word)]
+    small = [word for word in cyrillic if sum(byte >= 0xE0 for byte in word) >= len(word) - 1]
+    return len(small) >= 2 and len(cyrillic) > 0.6 * len(words)

@@ -49,13 +49,13 @@ class Profile:
             Time, same zero as `start` [s].
         """
         count, pieces = self.nodes.shape[0], self.nodes.shape[1] - 1
-        place = (np.asarray(time, dtype=np.float64) - self.start) / self.interval
-        row = np.ceil(place - _TIME_TOLERANCE / self.interval).astype(np.int64) - 1
+        position = (np.asarray(time, dtype=np.float64) - self.start) / self.interval
+        row = np.ceil(position - _TIME_TOLERANCE / self.interval).astype(np.int64) - 1
         row = np.clip(row, 0, count - 1)
-        inner = np.clip(place - row, 0.0, 1.0) * pieces
-        left = np.minimum(inner.astype(np.int64), pieces - 1)
-        weight = inner - left
-        return np.asarray((1.0 - weight) * self.nodes[row, left] + weight * self.nodes[row, left + 1])
+        inner = np.clip(position - row, 0.0, 1.0) * pieces
+        node = np.minimum(inner.astype(np.int64), pieces - 1)
+        weight = inner - node
+        return np.asarray((1.0 - weight) * self.nodes[row, node] + weight * self.nodes[row, node + 1])
 
     def means(self, edges: Array) -> Array:
         """Mean over each span between consecutive edges.
@@ -131,20 +131,20 @@ def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Arr
     ndarray, shape (n, m + 1)
         k; zero in intervals without shape.
     """
-    left, middle, right = _tents(shape.shape[1] - 1)
+    left_tent, middle_tent, right_tent = _tents(shape.shape[1] - 1)
     weights = trapezoid_weights(shape.shape[1] - 1)
     weighted = shape * weights
     total = weighted.sum(axis=1)
-    on_left, on_middle, on_right = (weighted @ tent for tent in (left, middle, right))
-    lit = total > 0.0
-    safe = np.where(lit, total, 1.0)
-    constant = np.where(lit, means / safe, 0.0)
-    edges = _shared_edges(constant, lit)
+    on_left, on_middle, on_right = (weighted @ tent for tent in (left_tent, middle_tent, right_tent))
+    has_shape = total > 0.0
+    safe = np.where(has_shape, total, 1.0)
+    constant = np.where(has_shape, means / safe, 0.0)
+    edges = _shared_edges(constant, has_shape)
     if largest is not None:
         edges = _lowered(edges, means, on_left, on_right)
-    tented = lit & (on_middle > _FLAT_BELOW * total)
-    rest = means - edges[:-1] * on_left - edges[1:] * on_right
-    centre = np.where(tented, rest / np.where(tented, on_middle, 1.0), constant)
+    tented = has_shape & (on_middle > _FLAT_BELOW * total)
+    remainder = means - edges[:-1] * on_left - edges[1:] * on_right
+    centre = np.where(tented, remainder / np.where(tented, on_middle, 1.0), constant)
     share = np.where(tented, 1.0, 0.0)
     if largest is not None:
         limit = np.maximum(largest, constant)
@@ -153,7 +153,9 @@ def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Arr
         centre = np.maximum(centre, 0.0)  # rounding, where the edges were lowered
     flat = (1.0 - share) * constant
     ends = [flat + share * edges[:-1], flat + share * centre, flat + share * edges[1:]]
-    return np.asarray(sum(end[:, None] * tent for end, tent in zip(ends, (left, middle, right), strict=True)))
+    return np.asarray(
+        sum(end[:, None] * tent for end, tent in zip(ends, (left_tent, middle_tent, right_tent), strict=True))
+    )
 
 
 def steady(means: Array, pieces: int, *, positive: bool) -> Array:
@@ -182,15 +184,15 @@ def steady(means: Array, pieces: int, *, positive: bool) -> Array:
 def _tents(pieces: int) -> tuple[Array, Array, Array]:
     """Linear functions that are one at the left edge, the middle and the right edge."""
     x = np.arange(pieces + 1) / pieces
-    left = np.maximum(0.0, 1.0 - 2.0 * x)
-    right = np.maximum(0.0, 2.0 * x - 1.0)
-    return left, 1.0 - left - right, right
+    left_tent = np.maximum(0.0, 1.0 - 2.0 * x)
+    right_tent = np.maximum(0.0, 2.0 * x - 1.0)
+    return left_tent, 1.0 - left_tent - right_tent, right_tent
 
 
-def _shared_edges(index: Array, lit: Flags) -> Array:
+def _shared_edges(index: Array, has_shape: Flags) -> Array:
     """Mean of the two neighbours' index; where one has no shape, the other's."""
-    padded = np.concatenate([[0.0], np.where(lit, index, 0.0), [0.0]])
-    number = np.concatenate([[0.0], lit.astype(np.float64), [0.0]])
+    padded = np.concatenate([[0.0], np.where(has_shape, index, 0.0), [0.0]])
+    number = np.concatenate([[0.0], has_shape.astype(np.float64), [0.0]])
     both = number[1:] + number[:-1]
     return np.asarray((padded[1:] + padded[:-1]) / np.where(both > 0.0, both, 1.0))
 

@@ -87,15 +87,15 @@ class Steps:
 def _count(first: float, last: float, step: float, stages: int) -> int:
     if not step > 0.0:
         raise InputError(f"step: found {step!r} s, expected a positive length.")
-    wanted = (last - first) / step
+    ratio = (last - first) / step
     least = (last - first) / MOST_STEPS
-    if wanted > MOST_STEPS:
+    if ratio > MOST_STEPS:
         raise InputError(
-            f"step: {last - first:.6g} s in steps of {step:.6g} s are {wanted:.3g} steps, which would take "
-            f"{memory.amount(wanted * stages * BYTES)} of memory; expected at most {MOST_STEPS:.0e} steps. "
+            f"step: {last - first:.6g} s in steps of {step:.6g} s are {ratio:.3g} steps, which would take "
+            f"{memory.amount(ratio * stages * BYTES)} of memory; expected at most {MOST_STEPS:.0e} steps. "
             f"Take a step of {least:.3g} s or more, or a shorter period"
         )
-    count = round(wanted)
+    count = round(ratio)
     memory.require(
         count * stages * BYTES,
         f"step: {count} steps of {step:.6g} s",

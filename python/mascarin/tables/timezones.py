@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _OFFSET = re.compile(r"^(?:UTC|GMT)?\s*([+-])(\d{1,2})(?::?([0-5]\d))?$", re.IGNORECASE)
-_WANTED = (
+_EXPECTED_ZONE = (
     "expected an IANA name such as 'Europe/Paris' or 'Indian/Reunion', "
     "or a fixed offset such as 'UTC+4' or 'UTC-07:00'"
 )
@@ -61,7 +61,7 @@ def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
     ('Indian/Reunion', 'UTC+4')
     """
     if not isinstance(text, str) or not text.strip():
-        raise InputError(f"{where}: a time zone is required, found {text!r}; {_WANTED}.")
+        raise InputError(f"{where}: a time zone is required, found {text!r}; {_EXPECTED_ZONE}.")
     name = text.strip()
     if name.upper() in {"UTC", "GMT", "Z"}:
         return UTC
@@ -70,13 +70,13 @@ def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
         hours, minutes = int(match[2]), int(match[3] or 0)
         offset = timedelta(hours=hours, minutes=minutes) * (-1 if match[1] == "-" else 1)
         if not timedelta(hours=-12) <= offset <= timedelta(hours=14):
-            raise InputError(f"{where}: offset {name!r} is outside UTC-12 .. UTC+14; {_WANTED}.")
+            raise InputError(f"{where}: offset {name!r} is outside UTC-12 .. UTC+14; {_EXPECTED_ZONE}.")
         return timezone(offset, _offset_name(offset))
     try:
         return ZoneInfo(name)
     except (ZoneInfoNotFoundError, ValueError, OSError) as error:
         hint = did_you_mean(name, available_timezones())
-        raise InputError(f"{where}: no time zone {name!r}; {_WANTED}. {hint}".rstrip()) from error
+        raise InputError(f"{where}: no time zone {name!r}; {_EXPECTED_ZONE}. {hint}".rstrip()) from error
 
 
 def fixed_zone(hours: float) -> tzinfo:
@@ -106,7 +106,7 @@ def zone_of(zone: tzinfo) -> tzinfo:
         return parse_timezone(name)
     offset = zone.utcoffset(None)
     if offset is None:
-        raise InputError(f"timezone: found {zone!r}; {_WANTED}.")
+        raise InputError(f"timezone: found {zone!r}; {_EXPECTED_ZONE}.")
     return fixed_zone(offset.total_seconds() / 3600.0)
 
 
@@ -127,8 +127,8 @@ def _offset_name(offset: timedelta) -> str:
     if minutes == 0:
         return "UTC"
     sign = "-" if minutes < 0 else "+"
-    hours, rest = divmod(abs(minutes), 60)
-    return f"UTC{sign}{hours}" + (f":{rest:02d}" if rest else "")
+    hours, odd_minutes = divmod(abs(minutes), 60)
+    return f"UTC{sign}{hours}" + (f":{odd_minutes:02d}" if odd_minutes else "")
 
 
 def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeIndex:
@@ -234,11 +234,11 @@ def seconds_at(value: object, zone: tzinfo, what: str) -> float:
 
     A plain date whose local time exists once is read without pandas, whose import takes longer than a run.
     """
-    given = _plain(value)
-    if given is not None and YEARS[0] <= given.year <= YEARS[1]:
-        if given.tzinfo is not None:
-            return given.timestamp()
-        early, late = (given.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
+    stamp = _plain(value)
+    if stamp is not None and YEARS[0] <= stamp.year <= YEARS[1]:
+        if stamp.tzinfo is not None:
+            return stamp.timestamp()
+        early, late = (stamp.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
         if early.utcoffset() == late.utcoffset():
             return early.timestamp()
     return moment(value, zone, what).timestamp()

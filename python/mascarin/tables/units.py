@@ -194,14 +194,14 @@ def _key(text: str) -> str:
     return re.sub(r"[\s^*·.()⋅]", "", plain)
 
 
-def unit_in_name(name: str, others: Sequence[str] = ()) -> tuple[str, str] | None:
+def unit_in_name(name: str, column_names: Sequence[str] = ()) -> tuple[str, str] | None:
     """Unit in the name of a column: in brackets, after a comma, or at the end.
 
     Parameters
     ----------
     name : str
         Name of the column.
-    others : sequence of str
+    column_names : sequence of str
         Names of all columns: beside ``temp_A`` and ``temp_B``, ``temp_F`` is the sixth sensor.
 
     Returns
@@ -224,14 +224,14 @@ def unit_in_name(name: str, others: Sequence[str] = ()) -> tuple[str, str] | Non
         unit = parse_unit(text)
         if unit is not None and not (len(text.strip()) == 1 and text.strip().islower()):
             return unit, text.strip()
-    known = _KNOWN_NAMES.fullmatch(name.strip())
-    if known is not None and known["letter"] and _is_lettered(name.strip(), others):
+    temperature = _KNOWN_NAMES.fullmatch(name.strip())
+    if temperature is not None and temperature["letter"] and _is_lettered(name.strip(), column_names):
         return None
-    if known is not None:
+    if temperature is not None:
         return (
-            ("degF", known["fahrenheit"] or known["letter"])
-            if (known["letter"] or "f") in "fF"
-            else ("degC", known["letter"])
+            ("degF", temperature["fahrenheit"] or temperature["letter"])
+            if (temperature["letter"] or "f") in "fF"
+            else ("degC", temperature["letter"])
         )
     ending = _ENDING.search(name)
     wind = _WIND_NAMES.fullmatch(name.strip())
@@ -243,11 +243,11 @@ def unit_in_name(name: str, others: Sequence[str] = ()) -> tuple[str, str] | Non
     return None if unit is None else (unit, ending[0])
 
 
-def _is_lettered(name: str, others: Sequence[str]) -> bool:
+def _is_lettered(name: str, column_names: Sequence[str]) -> bool:
     """Whether the last letter of a name counts columns, as those of others do."""
     return any(
         other.strip()[:-1] == name[:-1] and other.strip()[-1:].isalpha() and other.strip()[-1] not in "CFK"
-        for other in others
+        for other in column_names
     )
 
 
@@ -295,15 +295,15 @@ def conversion(unit: str, target: str, interval: float) -> tuple[float, float] |
     return None
 
 
-def same_unit(one: str, other: str) -> bool:
+def same_unit(first: str, second: str) -> bool:
     """Whether two units are converted alike, such as hPa and mbar.
 
     Parameters
     ----------
-    one, other : str
+    first, second : str
         Names of units.
     """
-    return one == other or (one in FACTORS and FACTORS[one] == FACTORS.get(other))
+    return first == second or (first in FACTORS and FACTORS[first] == FACTORS.get(second))
 
 
 def units_of(target: str) -> list[str]:
@@ -314,6 +314,6 @@ def units_of(target: str) -> list[str]:
     target : str
         Unit after conversion.
     """
-    known = [name for name, entry in FACTORS.items() if entry[0] == target]
-    known += [name for name, other in _FRACTIONS if other == target]
-    return known + (list(ENERGIES) if target == "W/m2" else [])
+    units = [name for name, entry in FACTORS.items() if entry[0] == target]
+    units += [name for name, other in _FRACTIONS if other == target]
+    return units + (list(ENERGIES) if target == "W/m2" else [])

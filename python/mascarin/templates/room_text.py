@@ -82,13 +82,13 @@ def _lines(room: Room) -> Iterator[str]:
         The room.
     """
     length, width, height = size_of(room.size)
-    place = place_of(room.place)
+    location = place_of(room.place)
     what = "A room" if room.rooms == 1 else f"{room.rooms} rooms in a house"
-    yield f"# {what} of {length:g} x {width:g} x {height:g} m in the climate of {place.title}."
+    yield f"# {what} of {length:g} x {width:g} x {height:g} m in the climate of {location.title}."
     yield f"# Made by: {room.command}"
     yield _HEAD
     yield f"name: {'room' if room.rooms == 1 else 'house'}"
-    yield f"site: {place.site}"
+    yield f"site: {location.site}"
     yield _DEFAULTS
     yield _SUNLIT if room.openings else _INDOORS
     yield from _constructions(room)
@@ -98,7 +98,7 @@ def _lines(room: Room) -> Iterator[str]:
     if room.gap != "none":
         yield f"  gap: {_infiltration(0.5 if room.gap == 'closed' else 0.2, 2.0, 'leaks')}"
     yield "surfaces:"
-    for name, keys in _surfaces(room, place.ground):
+    for name, keys in _surfaces(room, location.ground):
         yield f"  {name}:"
         yield f"    {{{', '.join(keys)}}}"
     yield from _openings(room)

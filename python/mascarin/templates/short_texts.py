@@ -191,20 +191,20 @@ def _layer(text: str, option: str) -> LayerText:
     match = _LAYER.match(text)
     if match is None:
         raise InputError(f"{option}: found an empty layer; expected a material between two '+'")
-    whole, product = _material(text)
-    if whole is not None:
-        name, (material, typical) = text, whole
+    product_entry, product = _material(text)
+    if product_entry is not None:
+        name, (material, typical) = text, product_entry
         number = unit = None
     else:
         name, number, unit = match["name"], match[2], match["unit"]
-        found, product = _material(name)
-        if found is None:
+        entry, product = _material(name)
+        if entry is None:
             names = [*common_materials(), *product]
             raise InputError(
                 f"{option}: found no material '{name}'; expected a product that 'mascarin materials' lists, "
                 f"or one of {', '.join(common_materials())}. {did_you_mean(name, names)}".rstrip()
             )
-        material, typical = found
+        material, typical = entry
     thickness, assumed = _thickness(text, number, unit, typical, option)
     return LayerText(
         re.sub(r"[^a-z0-9]+", "_", name.strip().lower()).strip("_"), material, thickness, assumed

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.templates.study_text import Record
 
-_PLACE: Final = re.compile(r"^(\d+(?:\.\d+)?)\s*mm$")
+_DEPTH: Final = re.compile(r"^(\d+(?:\.\d+)?)\s*mm$")
 _OUTDOORS: Final = """\
     outside:
       outdoors: true
@@ -81,21 +81,21 @@ class Wall:
             A place that is not in the wall.
         """
         outputs = {}
-        for column, place in (self.sensors or {}).items():
-            if place in ("inside", "outside"):
-                outputs[column] = f"wall.{place}_temperature"
+        for column, position in (self.sensors or {}).items():
+            if position in ("inside", "outside"):
+                outputs[column] = f"wall.{position}_temperature"
             else:
-                self._depth(column, place)
+                self._depth(column, position)
                 outputs[column] = f"{name_of(column)}.temperature"
         return outputs
 
-    def _depth(self, column: str, place: str) -> float:
+    def _depth(self, column: str, position: str) -> float:
         """Depth of a sensor from the outer surface. [m]"""
-        match, thickness = _PLACE.match(place), sum(layer.thickness for layer in self._parts)
+        match, thickness = _DEPTH.match(position), sum(layer.thickness for layer in self._parts)
         depth = 1e-3 * float(match[1]) if match else -1.0
         if not 0.0 < depth < thickness:
             raise InputError(
-                f"--sensor: found {column}={place}; expected inside, outside, or a depth from the inner "
+                f"--sensor: found {column}={position}; expected inside, outside, or a depth from the inner "
                 f"surface below the {1e3 * thickness:g} mm of the wall, such as {column}=55mm"
             )
         return thickness - depth
@@ -140,9 +140,9 @@ class Wall:
         yield "      # Convection and radiation together."
         yield '      convection: {value: 7.7, range: [4, 12], source: "ISO 6946: 0.13 m2 K/W", assumed: true}'
         inner = {
-            column: self._depth(column, place)
-            for column, place in (self.sensors or {}).items()
-            if place not in ("inside", "outside")
+            column: self._depth(column, position)
+            for column, position in (self.sensors or {}).items()
+            if position not in ("inside", "outside")
         }
         if inner:
             yield "sensors:"

@@ -179,11 +179,13 @@ class Climate(RecordView[WeatherRecord]):
         """
         require_type("path", path, (str, Path), "the path of a TMY3 or TMY2 file")
         if Path(path).suffix.lower() == ENDING:
-            made = record_of_pvlib(
+            pvlib_record = record_of_pvlib(
                 read_tmy2(Path(path)), latitude=None, longitude=None, altitude=None, stamps="end",
                 typical=True, timezone=None, absent=(),
             )  # fmt: skip
-            record = replace(made, file=Path(path).name, sha256=file_hash(Path(path)), elsewhere=elsewhere)
+            record = replace(
+                pvlib_record, file=Path(path).name, sha256=file_hash(Path(path)), elsewhere=elsewhere
+            )
             return cls(replace(shifted(record, shift), check_sun=check_sun)).completed()
         record = record_of_year(read_tmy3(Path(path)), typical, year, elsewhere)
         return cls(replace(shifted(record, shift), check_sun=check_sun))
@@ -298,13 +300,15 @@ class Climate(RecordView[WeatherRecord]):
             "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
             "shift": shift,
         }  # fmt: skip
-        further, gone = (one if isinstance(one, Mapping) else tuple(one) for one in (extra, absent))
+        further, gone = (
+            entries if isinstance(entries, Mapping) else tuple(entries) for entries in (extra, absent)
+        )
         choice = (columns, further, gone, stamps, tuple(instant), tuple(mean))
         record = cached_record(
             WeatherRecord, source, timezone, (reading, *choice), [measured, derive],
             lambda: record_of_table(read_table(source, timezone=timezone, **reading), *choice),
         )  # fmt: skip
-        return cls(replace(record, check_sun=check_sun))._at(latitude, longitude, altitude)
+        return cls(replace(record, check_sun=check_sun))._at_site(latitude, longitude, altitude)
 
     @classmethod
     def from_pvlib(
@@ -453,18 +457,18 @@ class Climate(RecordView[WeatherRecord]):
         InputError
             There is no site, or the radiation does not follow the sun there.
         """
-        place = site if site is not None else self.site
-        if place is None:
+        location = site if site is not None else self.site
+        if location is None:
             raise InputError(
                 f"{self.file}: latitude and longitude are needed to derive radiation from what was measured."
             )
-        key = (float(place.latitude), float(place.longitude))
+        key = (float(location.latitude), float(location.longitude))
         if key not in self._completed:
             said = check_clock(self.record, *key) if self.record.check_sun else ()
             filled_record = with_whole_infrared(complete(self.record, *key))
             complete_record = with_findings(filled_record, self.record, *key)
-            made = Climate(with_notes(complete_record, said))
-            made._completed[key] = self._completed[key] = made
+            climate = Climate(with_notes(complete_record, said))
+            climate._completed[key] = self._completed[key] = climate
         return self._completed[key]
 
     @property
@@ -520,16 +524,16 @@ class Climate(RecordView[WeatherRecord]):
         measured = None if measurements is None else measurements.record
         return forcing(self.record, self.completed(site).record, site, steps, channels, measured, limits)
 
-    def _at(self, latitude: float | None, longitude: float | None, altitude: float) -> Climate:
+    def _at_site(self, latitude: float | None, longitude: float | None, altitude: float) -> Climate:
         """The climate at a place, with what can be derived there; as it is where the place is not known."""
         if latitude is None or longitude is None:
             return self
         return Climate(replace(self.record, site=Place(latitude, longitude, altitude))).completed()
 
     def _rows(self) -> list[tuple[str, str]]:
-        place = self.site
-        known = "not known" if place is None else (
-            f"{place.name + ': ' if place.name else ''}{place.latitude:g} deg north, "
-            f"{place.longitude:g} deg east, {place.altitude:g} m"
+        location = self.site
+        site_text = "not known" if location is None else (
+            f"{location.name + ': ' if location.name else ''}{location.latitude:g} deg north, "
+            f"{location.longitude:g} deg east, {location.altitude:g} m"
         )  # fmt: skip
-        return [("site", known), *super()._rows()]
+        return [("site", site_text), *super()._rows()]

@@ -60,14 +60,14 @@ def write_epw(climate: Climate, path: str | Path) -> None:
     >>> mc.Climate.from_epw(file).grid.periodic
     True
     """
-    grid, place = climate.grid, climate.site
+    grid, site = climate.grid, climate.site
     first = climate.index[0]
-    whole = (
+    is_full_year = (
         grid.interval == 3600.0 and grid.count in _YEAR and (first.month, first.day, first.hour) == (1, 1, 0)
     )
-    if not whole or place is None:
+    if not is_full_year or site is None:
         raise InputError(
-            f"{climate.file}: found {'no site' if whole else grid.span()}; expected a climate of one "
+            f"{climate.file}: found {'no site' if is_full_year else grid.span()}; expected a climate of one "
             "calendar year of hours, from 1 January 00:00 on, with its site"
         )
     columns = {name: _ending(climate, name) for name in climate.data.columns if name in _FIELDS}
@@ -87,16 +87,16 @@ def write_epw(climate: Climate, path: str | Path) -> None:
 
 
 def _head(climate: Climate) -> list[str]:
-    place = climate.site
-    assert place is not None  # noqa: S101 (checked before)
+    site = climate.site
+    assert site is not None  # noqa: S101 (checked before)
     first = climate.index[0]
     offset = first.utcoffset()
     hours = 0.0 if offset is None else offset.total_seconds() / 3600.0
-    name = place.name.replace(",", " ") or "unknown"
+    name = site.name.replace(",", " ") or "unknown"
     notes = " ".join(climate.provenance).replace(",", ";")[-400:]
     return [
-        f"LOCATION,{name},-,-,Mascarin,000000,{place.latitude:.4f},{place.longitude:.4f},{hours:g},"
-        f"{place.altitude:.1f}",
+        f"LOCATION,{name},-,-,Mascarin,000000,{site.latitude:.4f},{site.longitude:.4f},{hours:g},"
+        f"{site.altitude:.1f}",
         "DESIGN CONDITIONS,0",
         "TYPICAL/EXTREME PERIODS,0",
         "GROUND TEMPERATURES,0",

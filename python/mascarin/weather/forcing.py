@@ -94,12 +94,12 @@ def forcing(
     out = np.empty((*steps.stage.shape, len(CHANNELS) + len(channels)))
     first = steps.first
     _fill_at_place(out[..., : len(CHANNELS)], completed, site, steps)
-    for place, name in enumerate(channels, start=len(CHANNELS)):
+    for column, name in enumerate(channels, start=len(CHANNELS)):
         record = record_of(source, measured, name)
         record.grid.require(first, steps.last, f"{record.file}: {name}")
         if limits is not None and name in limits:
             require_range(record, name, limits[name], first, steps.last, UNITS.get(name, ""))
-        out[..., place] = column_values(record, name, steps)
+        out[..., column] = column_values(record, name, steps)
     return out
 
 
@@ -207,15 +207,15 @@ def column_means(record: Record, name: str, steps: Steps) -> Array:
     start, values, kind = window(record, name, origin + edges[0], origin + edges[-1])
     knots = start - origin + record.grid.interval * np.arange(len(values) + (kind == "mean"))
     # Fine enough that the mean of straight lines is exact: the integral at every knot and edge.
-    places = np.union1d(knots, edges)
-    middle = 0.5 * (places[1:] + places[:-1])
+    nodes = np.union1d(knots, edges)
+    middle = 0.5 * (nodes[1:] + nodes[:-1])
     inside = (
         values[np.clip(np.searchsorted(knots, middle) - 1, 0, len(values) - 1)]
         if kind == "mean"
         else np.interp(middle, knots, values)
     )
-    integral = np.concatenate([[0.0], np.cumsum(inside * np.diff(places))])
-    return np.asarray(np.diff(np.interp(edges, places, integral)) / np.diff(edges))
+    integral = np.concatenate([[0.0], np.cumsum(inside * np.diff(nodes))])
+    return np.asarray(np.diff(np.interp(edges, nodes, integral)) / np.diff(edges))
 
 
 def column_values(record: Record, name: str, steps: Steps) -> Array:
@@ -294,11 +294,11 @@ def _held(values: Array) -> Array:
     good = np.flatnonzero(~np.isnan(values))
     if not len(good):
         return np.zeros_like(values)
-    place = np.arange(len(values))
-    right = np.clip(np.searchsorted(good, place), 0, len(good) - 1)
-    left = np.clip(right - 1, 0, len(good) - 1)
-    nearer = np.abs(good[left] - place) <= np.abs(good[right] - place)
-    return values[np.where(nearer, good[left], good[right])]
+    row = np.arange(len(values))
+    after = np.clip(np.searchsorted(good, row), 0, len(good) - 1)
+    before = np.clip(after - 1, 0, len(good) - 1)
+    nearer = np.abs(good[before] - row) <= np.abs(good[after] - row)
+    return values[np.where(nearer, good[before], good[after])]
 
 
 def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps) -> None:
@@ -317,19 +317,19 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps
     """
     origin, edges = steps.first, steps.edges
     basis = record.radiation_basis
-    kept = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:], "all": RADIATION}[basis]
-    given: dict[str, Array] = {}
+    components = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:], "all": RADIATION}[basis]
+    irradiances: dict[str, Array] = {}
     start, kind = 0.0, "mean"
-    for name in kept:
-        start, given[name], kind = window(record, name, origin + edges[0], origin + edges[-1])
-    blank = np.zeros_like(given["diffuse_horizontal"])
-    direct, diffuse, total = (given.get(name, blank) for name in RADIATION)
+    for name in components:
+        start, irradiances[name], kind = window(record, name, origin + edges[0], origin + edges[-1])
+    blank = np.zeros_like(irradiances["diffuse_horizontal"])
+    direct, diffuse, total = (irradiances.get(name, blank) for name in RADIATION)
     make = from_means if kind == "mean" else from_instants
     sky = make(sun, start - origin, record.grid.interval, direct, diffuse, total, basis)
-    lit = out[..., CHANNELS.index("sun_up")] > 0.0
+    sunlit = out[..., CHANNELS.index("sun_up")] > 0.0
     for name in RADIATION:
         profile: Profile = getattr(sky, name)
-        usable = lit if name == "direct_normal" else None
+        usable = sunlit if name == "direct_normal" else None
         out[..., CHANNELS.index(name)] = _balanced(profile, edges, steps.stage, steps.weights, usable=usable)
 
 
@@ -381,8 +381,12 @@ def record_of(weather: WeatherRecord, measured: Record | None, name: str) -> Rec
         return weather
     if measured is not None and name in measured.columns:
         return measured
-    known = [str(column) for column in weather.columns if column not in CHANNELS]
-    known += [] if measured is None else [str(column) for column in measured.columns]
+    measured_columns = [str(column) for column in weather.columns if column not in CHANNELS]
+    measured_columns += [] if measured is None else [str(column) for column in measured.columns]
     where = weather.file if measured is None else f"{weather.file}, {measured.file}"
-    hint = did_you_mean(name, known) if known else "No measured columns were read: name them under extra."
+    hint = (
+        did_you_mean(name, measured_columns)
+        if measured_columns
+        else "No measured columns were read: name them under extra."
+    )
     raise InputError(f"{where}: no measured column {name!r}, which the building needs. {hint}".rstrip())

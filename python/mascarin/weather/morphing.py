@@ -99,13 +99,13 @@ class MonthlyChanges:
         ndarray, shape (12,)
             From January on. [unit of the change]
         """
-        given, (low, high, unit) = getattr(self, key), _LIMITS[key]
-        if given is None:
+        changes, (low, high, unit) = getattr(self, key), _LIMITS[key]
+        if changes is None:
             return np.full(12, np.nan)
         try:
-            numbers = np.asarray(given, dtype=np.float64)
+            numbers = np.asarray(changes, dtype=np.float64)
         except (TypeError, ValueError):
-            raise InputError(f"changes: {key}: found {given!r}; expected numbers [{unit}]") from None
+            raise InputError(f"changes: {key}: found {changes!r}; expected numbers [{unit}]") from None
         if numbers.ndim > 1 or numbers.size not in (1, 12):
             raise InputError(
                 f"changes: {key}: found {numbers.size} numbers; expected one, or twelve from January to "
@@ -155,12 +155,12 @@ class MonthlyChanges:
         except (ValueError, OSError) as error:  # errors of the parser are values
             raise InputError(f"{path}: cannot be read as a CSV table: {error}") from None
         table.columns = [str(name).strip() for name in table.columns]
-        known = [one.name for one in fields(cls)]
+        columns = [field.name for field in fields(cls)]
         for name in table.columns:
-            if name != "month" and name not in known:
+            if name != "month" and name not in columns:
                 raise InputError(
-                    f"{path}:1: found the column '{name}'; expected month and some of {', '.join(known)}. "
-                    f"{did_you_mean(name, known)}".rstrip()
+                    f"{path}:1: found the column '{name}'; expected month and some of {', '.join(columns)}. "
+                    f"{did_you_mean(name, columns)}".rstrip()
                 )
         months = sorted(table["month"].tolist()) if "month" in table else []
         if months != list(range(1, 13)):

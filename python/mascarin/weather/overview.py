@@ -100,7 +100,7 @@ def overview(climate: Climate, *, heating_base: float = 18.0, cooling_base: floa
     if "direct_normal" in data:
         sunshine = float((data["direct_normal"] >= SUNSHINE).sum() * hours)
     months = pd.DataFrame(table)
-    months.index = pd.Index([str(one) for one in months.index], name="month")
+    months.index = pd.Index([str(period) for period in months.index], name="month")
     return Overview(
         months, heating_base, cooling_base,
         float(np.maximum(heating_base - means, 0.0).sum()),

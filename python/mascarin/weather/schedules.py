@@ -135,8 +135,8 @@ def scheduled(
         fraction = getattr(course, "schedule", None)
         return values if fraction is None else np.asarray(values * values_of(fraction))
 
-    for place, name in enumerate(schedules):
-        out[..., place] = values_of(name)
+    for column, name in enumerate(schedules):
+        out[..., column] = values_of(name)
     return out
 
 

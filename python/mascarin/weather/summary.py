@@ -34,15 +34,15 @@ def summary(climate: Climate) -> dict[str, Any]:
     >>> summary(climate)["range"]
     '2024-06-01 00:00 .. 2024-06-01 04:00 (UTC)'
     """
-    place = climate.site
+    site = climate.site
     return {
         "file": climate.file,
         "sha256": climate.sha256,
         "range": climate.grid.span(),
         "step_seconds": climate.grid.interval,
         "timezone": climate.timezone,
-        "site": None if place is None else {"latitude": place.latitude, "longitude": place.longitude,
-                                           "altitude": place.altitude, "name": place.name},
+        "site": None if site is None else {"latitude": site.latitude, "longitude": site.longitude,
+                                           "altitude": site.altitude, "name": site.name},
         "provenance": list(climate.used.provenance),
     }  # fmt: skip
 

@@ -145,8 +145,8 @@ def carried_bands(
     """
     from scipy import stats
 
-    known, words = usable(simulation.building, posterior)
-    series = _simulated(simulation, observation, posterior, known)
+    columns, words = usable(simulation.building, posterior)
+    series = _simulated(simulation, observation, posterior, columns)
     center, spread = np.nanmean(series, axis=0), np.nanstd(series, axis=0, ddof=1)
     tail = 0.5 + 0.5 * posterior.confidence
     shared_factor = float(stats.t.ppf(tail, max(posterior.days - 1, 2)))

@@ -124,9 +124,9 @@ def with_posterior(
     }
     positions = _positions(fit, joint)
     sample = as_reported(fit, positions) / scale
-    others: dict[str, float] = {}
+    described: dict[str, float] = {}
     if joint is not None and numbers is not None:
-        others, columns = _others(building, joint, numbers, positions)
+        described, columns = _other_numbers(building, joint, numbers, positions)
         sample = np.column_stack([sample, columns])
     ranges = {name: (_short(np.min(v)), _short(np.max(v))) for name, v in weather.items() if v.size}
     return building.replace(
@@ -138,8 +138,8 @@ def with_posterior(
                 days=max(days, 1),
                 stated=stated,
                 intervals=intervals,
-                numbers=others,
-                sample=table_of((*intervals, *others), sample),
+                numbers=described,
+                sample=table_of((*intervals, *described), sample),
                 sensors={sensor.name: _sensor(sensor, joint) for sensor in sensors},
                 weather=ranges,
             )
@@ -174,26 +174,26 @@ def as_reported(fit: Calibration, positions: Array) -> Array:
     return problem.values(np.clip(middle + np.where(away < 0.0, below, above) * away, 0.0, 1.0))
 
 
-def _others(
+def _other_numbers(
     building: Building, joint: JointPosterior, numbers: OtherNumbers, positions: Array
 ) -> tuple[dict[str, float], Array]:
     """Numbers that are not estimated: their values as described, and a sample of them (n, K).
 
-    Given the parameters the combinations that the identification tells are normal; all others are as
+    Given the parameters the combinations that the identification tells are normal; all described are as
     uncertain as they were.
     """
     rng = np.random.default_rng(_SEED)
-    count, told = joint.z.size, numbers.directions.shape[1]
-    first = count + len(joint.names) - told
-    own = slice(first, first + told)
+    count, direction_count = joint.z.size, numbers.directions.shape[1]
+    first = count + len(joint.names) - direction_count
+    block = slice(first, first + direction_count)
     covariance = joint.covariance
     ridge = 1e-12 * np.eye(count)
-    gain = np.linalg.solve(covariance[:count, :count] + ridge, covariance[:count, own]).T
-    conditional = covariance[own, own] - gain @ covariance[:count, own]
+    gain = np.linalg.solve(covariance[:count, :count] + ridge, covariance[:count, block]).T
+    conditional = covariance[block, block] - gain @ covariance[:count, block]
     value, vectors = np.linalg.eigh(0.5 * (conditional + conditional.T))
     root = vectors * np.sqrt(np.maximum(value, 0.0))
-    along = joint.mean[own] + (positions - joint.mean[:count]) @ gain.T
-    along = along + rng.standard_normal((len(positions), told)) @ root.T
+    along = joint.mean[block] + (positions - joint.mean[:count]) @ gain.T
+    along = along + rng.standard_normal((len(positions), direction_count)) @ root.T
     free = rng.standard_normal((len(positions), len(numbers.paths)))
     free -= free @ numbers.directions @ numbers.directions.T
     moved = (along @ numbers.directions.T + free) * numbers.uncertainty

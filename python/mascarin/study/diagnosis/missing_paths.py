@@ -115,20 +115,20 @@ def input_errors(setup: StudyContext, simulation: Simulation, vector: Array) -> 
     """
     forcing = simulation.compiled.forcing_at(vector)
     inputs = simulation.compiled.inputs
-    known, clock = ({}, 0.0) if inputs is None else inputs.errors(vector[inputs.positions])
+    present_errors, clock = ({}, 0.0) if inputs is None else inputs.errors(vector[inputs.positions])
     candidates = list(_candidates(setup, simulation, forcing))
     schedules = len(courses(simulation.building))
     corrected = corrected_forcing(
         simulation.building, setup.climate, simulation.channels[: len(simulation.channels) - schedules],
-        [*dict.fromkeys((*known, *(column for _, _, column, _, _, _ in candidates)))],
+        [*dict.fromkeys((*present_errors, *(column for _, _, column, _, _, _ in candidates)))],
         times=simulation.times, scheme=simulation.scheme, measurements=setup.inputs.driving,
     )  # fmt: skip
     for what, subject, column, error, scale, unit in candidates:
-        before = known.get(column, RIGHT)
+        before = present_errors.get(column, RIGHT)
         after = ColumnError(
             before.gain * error.gain, before.offset * error.gain + error.offset, before.clock + error.clock
         )
-        without = corrected.at(forcing, known, {**known, column: after}, (clock, clock))
+        without = corrected.at(forcing, present_errors, {**present_errors, column: after}, (clock, clock))
         yield InputFault(what, subject, np.asarray(without), scale, unit)
 
 

@@ -146,14 +146,14 @@ class Model:
 
         return self.store.array(("fine", run.identity, vector.tobytes()), make)
 
-    def slopes(self, vector: Array, *, every: bool) -> Array:
+    def slopes(self, vector: Array, *, all_paths: bool) -> Array:
         """Derivatives by the calibrated parameters, and by the others, in ranges. [unit of each]
 
         Parameters
         ----------
         vector : ndarray
             Parameter vector. [unit of each]
-        every : bool
+        all_paths : bool
             Whether the others are asked for.
 
         Returns
@@ -169,34 +169,34 @@ class Model:
             return np.asarray(self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None])
 
         key = ("slopes", run.identity, self.group, vector.tobytes(), tuple(fitted))
-        found = self.store.array(key, exact) if fitted else np.zeros((0, *self.measured.shape))
-        if not every or len(self.paths) == len(fitted):
-            return found
-        others = np.zeros((len(self.paths) - len(fitted), *found.shape[1:]))
-        place = {path: k for k, path in enumerate(self.paths[len(fitted) :])}
+        fitted_slopes = self.store.array(key, exact) if fitted else np.zeros((0, *self.measured.shape))
+        if not all_paths or len(self.paths) == len(fitted):
+            return fitted_slopes
+        other_slopes = np.zeros((len(self.paths) - len(fitted), *fitted_slopes.shape[1:]))
+        row_of = {path: k for k, path in enumerate(self.paths[len(fitted) :])}
         effects = Effects(self.setup, run, self.fine(vector), vector)
         with reporting(self._progress, "effects of all parameters") as report:
             for path, effect in effects.each(report):
-                if path in place:
-                    others[place[path]] = self.averaged(effect)
-        return np.concatenate([found, others])
+                if path in row_of:
+                    other_slopes[row_of[path]] = self.averaged(effect)
+        return np.concatenate([fitted_slopes, other_slopes])
 
     def priors(self, paths: Sequence[str], vector: Array) -> tuple[Array, Array, Array]:
         """Centre, precision and limits of the changes of parameters from a vector. [ranges]"""
         center, precision, limits = [], [], []
         for path in paths:
-            (low, high), here = self.range[path], self.simulation.value_in(vector, path)
+            (low, high), value = self.range[path], self.simulation.value_in(vector, path)
             width = high - low
-            known = self.fitted.get(path)
-            if known is None:
+            parameter = self.fitted.get(path)
+            if parameter is None:
                 mean, sd = self.simulation.value_in(self.simulation.values, path), PRIOR
-            elif known.prior is None:
+            elif parameter.prior is None:
                 mean, sd = 0.5 * (low + high), _WIDE
             else:
-                mean, sd = known.prior[0], known.prior[1] / width
-            center.append((mean - here) / width)
+                mean, sd = parameter.prior[0], parameter.prior[1] / width
+            center.append((mean - value) / width)
             precision.append(sd**-2)
-            limits.append((min(0.0, (low - here) / width), max(0.0, (high - here) / width)))
+            limits.append((min(0.0, (low - value) / width), max(0.0, (high - value) / width)))
         return np.array(center), np.array(precision), np.array(limits).reshape(-1, 2)
 
     def other(self, building: Building, further: Sequence[str] = ()) -> Simulation | None:
@@ -224,8 +224,8 @@ class Model:
 
     def transferred(self, vector: Array, other: Simulation) -> Array:
         """The parameter vector of another building with the values of the calibrated parameters it has."""
-        known = {parameter.path for parameter in other.building.parameters()}
-        values = {path: self.simulation.value_in(vector, path) for path in self.fitted if path in known}
+        paths = {parameter.path for parameter in other.building.parameters()}
+        values = {path: self.simulation.value_in(vector, path) for path in self.fitted if path in paths}
         return other.vector(values)
 
     def neighbours(self, vector: Array) -> dict[int, dict[str, Array]]:
@@ -234,30 +234,30 @@ class Model:
         By sensor, then by name; shape (n,). [degC]
         """
         names = places_near(self.simulation.building, self.simulation.outputs[: self.sensors])
-        wanted = list(dict.fromkeys(name for near in names.values() for name in near))
-        if not wanted:
+        recorded = list(dict.fromkeys(name for neighbours in names.values() for name in neighbours))
+        if not recorded:
             return {}
         shown = {output.name for output in self.simulation.outputs[: self.sensors]}
-        run = self.other(self.simulation.building, [name for name in wanted if name not in shown])
+        run = self.other(self.simulation.building, [name for name in recorded if name not in shown])
         if run is None:
             return {}
         columns = {output.name: k for k, output in enumerate(run.outputs)}
-        at = [columns[name] for name in wanted]
+        positions = [columns[name] for name in recorded]
 
         def make() -> Array:
             records = run.run_vector(
                 run.vector(dict(zip(self.simulation.paths, vector, strict=True)))
             ).records
             observation = self.setup.observation
-            sampled = [observation.sampled(run.index, records[:, k]) for k in at]
+            sampled = [observation.sampled(run.index, records[:, k]) for k in positions]
             return self.averaged(np.stack(sampled, axis=-1))
 
         try:
-            found = self.store.array(("near", run.identity, self.group, vector.tobytes()), make)
+            means = self.store.array(("near", run.identity, self.group, vector.tobytes()), make)
         except (SolverError, InputError):
             return {}
-        series = dict(zip(wanted, found.T, strict=True))
-        return {s: {name: series[name] for name in near} for s, near in names.items()}
+        series = dict(zip(recorded, means.T, strict=True))
+        return {s: {name: series[name] for name in neighbours} for s, neighbours in names.items()}
 
 
 def places_near(building: Building, outputs: Sequence[Output]) -> dict[int, list[str]]:
@@ -272,30 +272,30 @@ def places_near(building: Building, outputs: Sequence[Output]) -> dict[int, list
     """
     names = {output.name for output in building.outputs()}
     surfaces, zones = list(building.surfaces), list(building.zones)
-    found: dict[int, list[str]] = {}
+    neighbours_of: dict[int, list[str]] = {}
     for s, output in enumerate(outputs):
-        near: list[str] = []
+        neighbours: list[str] = []
         if output.kind == "air_temperature" and output.zone is not None:
-            near = [f"{zones[output.zone]}.{_RADIANT}"]
+            neighbours = [f"{zones[output.zone]}.{_RADIANT}"]
         elif output.unit == "degC" and output.surface is not None and output.surface < len(surfaces):
             name = surfaces[output.surface]
             layers = len(building.constructions[building.surfaces[name].construction].layers)
-            places = [
+            interfaces = [
                 f"{name}.outside_temperature",
                 *(f"{name}.interface_{k}_temperature" for k in range(1, layers)),
                 f"{name}.inside_temperature",
             ]
-            if output.name in places:
-                at = places.index(output.name)
-                near = [places[k] for k in (at - 1, at + 1) if 0 <= k < len(places)]
-                zone = building.surfaces[name].inside.zone if at == layers else None
-                zone = building.surfaces[name].outside.zone if at == 0 else zone
-                near += [f"{zone}.air_temperature"] if zone is not None else []
+            if output.name in interfaces:
+                position = interfaces.index(output.name)
+                neighbours = [interfaces[k] for k in (position - 1, position + 1) if 0 <= k < len(interfaces)]
+                zone = building.surfaces[name].inside.zone if position == layers else None
+                zone = building.surfaces[name].outside.zone if position == 0 else zone
+                neighbours += [f"{zone}.air_temperature"] if zone is not None else []
         elif output.kind == "sensor" and output.sensor is not None:
             name = building.sensors[list(building.sensors)[output.sensor]].surface
-            near = [f"{name}.outside_temperature", f"{name}.inside_temperature"]
-        found[s] = [place for place in near if place in names]
-    return {s: near for s, near in found.items() if near}
+            neighbours = [f"{name}.outside_temperature", f"{name}.inside_temperature"]
+        neighbours_of[s] = [output_name for output_name in neighbours if output_name in names]
+    return {s: adjacent for s, adjacent in neighbours_of.items() if adjacent}
 
 
 def _factors(building: Building) -> list:  # type: ignore[type-arg]

@@ -12,17 +12,17 @@ if TYPE_CHECKING:
     from mascarin.building import Building
 
 #: In a building with more surfaces only those of sensors are changed alone, and all others together.
-_MANY: Final = 14
+_MAX_SURFACES: Final = 14
 
 
-def forms(building: Building, seen: set[str]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def forms(building: Building, measured_surfaces: set[str]) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Other choices of a law, one at a time.
 
     Parameters
     ----------
     building : Building
         As described.
-    seen : set of str
+    measured_surfaces : set of str
         Surfaces with a sensor.
 
     Yields
@@ -38,14 +38,14 @@ def forms(building: Building, seen: set[str]) -> Iterator[tuple[str, str, dict[s
         if row.alternatives and site.diffuse != kind:
             yield "site.diffuse", kind, {"site.diffuse": kind}
     sides = list(_sides(building))
-    alone = len(building.surfaces) <= _MANY
+    alone = len(building.surfaces) <= _MAX_SURFACES
     together: dict[tuple[str, str], dict[str, Any]] = {}
     for name, side, now, kinds in sides:
         part = f"surfaces.{name}.{side}.convection"
         for kind, value in kinds:
             if kind == now:
                 continue
-            if alone or name in seen:
+            if alone or name in measured_surfaces:
                 yield part, kind, {part: value}
             else:
                 together.setdefault((side, kind), {})[part] = value

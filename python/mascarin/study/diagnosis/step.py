@@ -89,22 +89,22 @@ def diagnosis(
     Diagnosis
         Without causes where nothing is significant.
     """
-    found: list[Cause] = list(words.of_table(setup))
+    causes: list[Cause] = list(words.of_table(setup))
     model = Model(setup, run.simulation, fit, Store(workspace), progress)
     vector = run.simulation.vector(fit.values)
     with reporting(progress, "diagnosis") as report:
         noise, excess = _noise(setup, model, vector)
-        found += [words.of_noise(excess)] if excess else []
+        causes += [words.of_noise(excess)] if excess else []
         report(0, 2)
         forms_tried = 1 if combination is None else len(combination.forms)
-        given = diagnosis_input(setup, model, vector, _weight(combination), forms_tried)
+        inputs = diagnosis_input(setup, model, vector, _weight(combination), forms_tried)
         report(1, 2)
-        if given is None:
-            return Diagnosis(tuple(found), noise)
-        result = diagnose(given)
+        if inputs is None:
+            return Diagnosis(tuple(causes), noise)
+        result = diagnose(inputs)
         report(2, 2)
-    found += [words.of_finding(setup, one) for one in result.findings]
-    return Diagnosis(tuple(found), noise, result.p, result.candidates, result.draws)
+    causes += [words.of_finding(setup, finding) for finding in result.findings]
+    return Diagnosis(tuple(causes), noise, result.p, result.candidates, result.draws)
 
 
 def _weight(combination: Combination | None) -> float:
@@ -144,20 +144,20 @@ def diagnosis_input(
     days = np.unique(np.floor(model.hours / 24.0 + 1e-9))
     if not mask.any() or days.size < _FEWEST_DAYS:
         return None
-    slopes = model.slopes(vector, every=True)
+    slopes = model.slopes(vector, all_paths=True)
     center, precision, _ = model.priors(model.paths, vector)
     sd = precision**-0.5
     grid = series.grid
     residual = np.where(mask, model.measured - simulated, 0.0)
     residual -= np.where(mask, np.tensordot(center, slopes, 1), 0.0)
     effects = _directions(np.moveaxis(slopes * sd[:, None, None], 0, -1), mask, series.uncertainty)
-    known = np.concatenate([effects, _sensor_errors(setup, model, simulated)], axis=2)
+    known_effects = np.concatenate([effects, _sensor_errors(setup, model, simulated)], axis=2)
     mean, count = grid.means(residual, mask)
     basis = np.repeat(hour_basis(model.hours)[:, None, :], mask.shape[1], axis=1)
     data = DayData(
         grid,
         mean,
-        np.concatenate([grid.means(known, mask)[0], stated_errors(series)], axis=2),
+        np.concatenate([grid.means(known_effects, mask)[0], stated_errors(series)], axis=2),
         grid.means(basis, mask)[0],
         count > 0,
         grid.within(residual, mask),
@@ -172,7 +172,11 @@ def diagnosis_input(
     span = np.array([np.ptp(y[np.isfinite(y)]) if np.isfinite(y).any() else 1.0 for y in model.measured.T])
     plan = (setup.plan.identification and setup.plan.identification.discrepancy) or DiscrepancyPlan()
     limit = np.maximum(plan.limit * span, series.uncertainty)
-    used = tuple(one for one in candidates if np.isfinite(one.signature).all() and np.any(one.signature))
+    used = tuple(
+        candidate
+        for candidate in candidates
+        if np.isfinite(candidate.signature).all() and np.any(candidate.signature)
+    )
     return DiagnosisInput(data, days, series.names, series.uncertainty, limit, used, weight, number)
 
 
@@ -221,10 +225,10 @@ def _parameters(
         width, now = high - low, model.simulation.value_in(vector, path)
         unit = model.simulation.building.parameter(path).unit
         # The whole change is that within the prior and that beyond it, in the ratio of their variances.
-        whole = 1.0 + (sd[k] / _OUTSIDE) ** 2
+        variance_ratio = 1.0 + (sd[k] / _OUTSIDE) ** 2
         yield Candidate(
             "parameter", "parameter", (path,), series.grid.means(slopes[k], series.mask)[0], 0.0, _OUTSIDE,
-            width * whole, "" if unit == "-" else unit, known=now + center[k] * width,
+            width * variance_ratio, "" if unit == "-" else unit, known=now + center[k] * width,
         )  # fmt: skip
 
 
@@ -232,8 +236,10 @@ def _laws(model: Model, series: Series, vector: Array, simulated: Array) -> Iter
     """Other laws of parts of the model."""
     building, outputs = model.simulation.building, model.simulation.outputs[: len(series.names)]
     surfaces = list(building.surfaces)
-    seen = {surfaces[o.surface] for o in outputs if o.surface is not None and o.surface < len(surfaces)}
-    for part, kind, changes in forms(building, seen):
+    measured_surfaces = {
+        surfaces[o.surface] for o in outputs if o.surface is not None and o.surface < len(surfaces)
+    }
+    for part, kind, changes in forms(building, measured_surfaces):
         other = model.of_form((part, kind), changes, vector)
         if np.isfinite(other).all():
             signature = series.grid.means(other - simulated, series.mask)[0]
@@ -274,11 +280,11 @@ def _noise(
     # At every sample: slow errors of the model vanish in the second differences.
     interval = setup.observation.interval
     errors = setup.observation.measured - model.fine(vector)
-    found, excess = {}, []
+    noise, excess = {}, []
     for s, name in enumerate(setup.observation.names):
         sd, error = white_noise(errors[:, s], interval)
-        found[name] = sd
+        noise[name] = sd
         stated = max(setup.plan.sensors[name].uncertainty, 1e-9) / 1.96
         if math.isfinite(sd) and sd - _SURE * error > _NOISY * stated:
             excess.append((name, sd, error, model.simulation.outputs[s].unit))
-    return found, excess
+    return noise, excess

@@ -40,7 +40,7 @@ def of_table(setup: StudyContext) -> Iterator[Cause]:
     """Stretches of the sensors' columns that were not measured, the longest first."""
     sensors = {column: name for name, sensor in setup.plan.sensors.items() for column in sensor.columns}
     stretches = [s for s in setup.quality if s.channel in sensors and s.kind in _FAULTY]
-    for stretch in sorted(stretches, key=lambda one: -one.count):
+    for stretch in sorted(stretches, key=lambda part: -part.count):
         left_out = (
             "they are left out of all comparisons"
             if setup.inputs.leaves_out(stretch)
@@ -58,114 +58,115 @@ def of_table(setup: StudyContext) -> Iterator[Cause]:
 def of_noise(excess: Sequence[tuple[str, float, float, str]]) -> Cause:
     """White noise above the stated uncertainty: name, size, its standard error and unit of each sensor."""
     shown = ", ".join(f"{name} {sd:.2g} {unit.replace('degC', 'K')}" for name, sd, _, unit in excess)
-    _, sd, error, unit = max(excess, key=lambda one: one[1])
+    _, sd, error, unit = max(excess, key=lambda sensor: sensor[1])
     text = (
         f"White noise above the stated uncertainty: {shown}. It is independent from sample to sample: no "
         "model takes it away. State it as the repeatability, or use means over longer intervals."
     )
-    return Cause("data", "noise", tuple(one[0] for one in excess), text, sd, error, unit.replace("degC", "K"))
-
-
-def of_finding(setup: StudyContext, found: Finding) -> Cause:
-    """A cause that the residuals name, or the candidates that they cannot tell apart."""
-    one, since = found.candidate, _since(setup, found.candidate.start)
-    statement = _statement(setup, found, since)
-    evidence = (
-        f"In records without any cause something explains as much in {_percent(found.p)} of cases (p "
-        f"{found.p:.2g})"
+    return Cause(
+        "data", "noise", tuple(sensor[0] for sensor in excess), text, sd, error, unit.replace("degC", "K")
     )
-    if found.told:
+
+
+def of_finding(setup: StudyContext, finding: Finding) -> Cause:
+    """A cause that the residuals name, or the candidates that they cannot tell apart."""
+    candidate, since = finding.candidate, _since(setup, finding.candidate.start)
+    statement = _statement(setup, finding, since)
+    evidence = (
+        f"In records without any cause something explains as much in {_percent(finding.p)} of cases (p "
+        f"{finding.p:.2g})"
+    )
+    if finding.told:
         text = (
             f"{statement}. {evidence}; that it is this and no other candidate has a probability of "
-            f"{_percent(found.certainty)}."
+            f"{_percent(finding.certainty)}."
         )
     else:
-        others = "; ".join(_short(setup, other) for other in found.others)
-        if one.group != "data":
-            others = "; ".join(
-                filter(None, (others, "an error of the model that is not among the candidates"))
+        alternatives = "; ".join(_short(setup, other) for other in finding.others)
+        if candidate.group != "data":
+            alternatives = "; ".join(
+                filter(None, (alternatives, "an error of the model that is not among the candidates"))
             )
         text = (
             f"Cannot tell: the residuals have a cause, but the measurements do not tell which candidate. "
-            f"{evidence}. The most probable of them, with {_percent(found.certainty)}, is: {statement}. "
-            f"It may as well be: {others or 'none of the candidates'}."
+            f"{evidence}. The most probable of them, with {_percent(finding.certainty)}, is: {statement}. "
+            f"It may as well be: {alternatives or 'none of the candidates'}."
         )
     return Cause(
-        one.group, one.what, one.subject, text, found.value, found.error, one.unit, found.p, found.certainty,
-        found.log_bayes_factor, found.told, tuple(_short(setup, other) for other in found.others),
+        candidate.group, candidate.what, candidate.subject, text, finding.value, finding.error,
+        candidate.unit, finding.p, finding.certainty, finding.log_bayes_factor, finding.told,
+        tuple(_short(setup, other) for other in finding.others),
     )  # fmt: skip
 
 
-def summary(found: Diagnosis) -> list[str]:
+def summary(diagnosis: Diagnosis) -> list[str]:
     """What the diagnosis says as a whole: nothing significant, or that the days are no longer blind."""
-    tested = [cause for cause in found.causes if math.isfinite(cause.p)]
+    tested = [cause for cause in diagnosis.causes if math.isfinite(cause.p)]
     if tested:
         return [NOT_BLIND]
-    if not math.isfinite(found.p):
+    if not math.isfinite(diagnosis.p):
         return []
     return [
-        f"No cause is named: of {found.candidates} candidates (sensors, inputs, model) the best one explains "
-        f"no more than is usual in records without any cause (p {found.p:.2g})."
+        f"No cause is named: of {diagnosis.candidates} candidates (sensors, inputs, model) the best one "
+        f"explains no more than is usual in records without any cause (p {diagnosis.p:.2g})."
     ]
 
 
-def _statement(setup: StudyContext, found: Finding, since: str) -> str:
+def _statement(setup: StudyContext, finding: Finding, since: str) -> str:
     """What is wrong if the candidate is the cause, with its size."""
-    one, size = found.candidate, _size(found)
-    what, subject = one.what, " and ".join(one.subject)
-    if one.group == "data":
+    candidate, size = finding.candidate, _size(finding)
+    what, subject = candidate.what, " and ".join(candidate.subject)
+    if candidate.group == "data":
         return (
-            f"{_of_sensor(setup, found, since)}: {_CHECKS[what]}"
+            f"{_of_sensor(setup, finding, since)}: {_CHECKS[what]}"
             if what in _CHECKS
-            else _of_sensor(setup, found, since)
+            else _of_sensor(setup, finding, since)
         )
-    if one.group == "input":
+    if candidate.group == "input":
         errors = {
-            "gain": f"reads {size} too {_side(found.value)}",
-            "offset": f"reads {size} too {_side(found.value)}",
-            "clock": f"is {size} {'late' if found.value > 0.0 else 'early'}",
+            "gain": f"reads {size} too {_side(finding.value)}",
+            "offset": f"reads {size} too {_side(finding.value)}",
+            "clock": f"is {size} {'late' if finding.value > 0.0 else 'early'}",
         }
         return f"Input {subject}: the measured input {errors[what]}: check the instrument and its mounting"
-    if one.group == "parameter":
-        value = with_uncertainty(found.value, found.error)
+    if candidate.group == "parameter":
+        value = with_uncertainty(finding.value, finding.error)
         return (
-            f"{subject}: a value of {value} {one.unit}".rstrip()
+            f"{subject}: a value of {value} {candidate.unit}".rstrip()
             + ", outside of what its prior allows, explains "
             "the measurements better: check the number, or what the model lacks beside it"
         )
-    if one.group == "path":
-        side = "missing" if found.value > 0.0 else "too much"
-        return f"Zone {subject}: {side} {one.detail}, about {size}"
-    return f"{subject}: the law '{one.detail}' explains the measurements better than the present one"
+    if candidate.group == "path":
+        side = "missing" if finding.value > 0.0 else "too much"
+        return f"Zone {subject}: {side} {candidate.detail}, about {size}"
+    return f"{subject}: the law '{candidate.detail}' explains the measurements better than the present one"
 
 
-def _of_sensor(setup: StudyContext, found: Finding, since: str) -> str:
-    one, size, name = found.candidate, _size(found), found.candidate.subject[0]
-    match one.what:
+def _of_sensor(setup: StudyContext, finding: Finding, since: str) -> str:
+    candidate, size, name = finding.candidate, _size(finding), finding.candidate.subject[0]
+    match candidate.what:
         case "swapped" | "swap_step":
-            columns = [", ".join(setup.plan.sensors[sensor].columns) for sensor in one.subject]
-            return (
-                f"{name} and {one.subject[1]}: the columns {columns[0]} and {columns[1]} are exchanged{since}"
-            )
+            columns = [", ".join(setup.plan.sensors[sensor].columns) for sensor in candidate.subject]
+            names = f"{name} and {candidate.subject[1]}"
+            return f"{names}: the columns {columns[0]} and {columns[1]} are exchanged{since}"
         case "clock" | "clock_step":
-            return f"{name}: its series is {size} {'late' if found.value > 0.0 else 'early'}{since}"
+            return f"{name}: its series is {size} {'late' if finding.value > 0.0 else 'early'}{since}"
         case "offset" | "step":
-            return f"{name}: it reads {size} too {_side(found.value)}{since or ' at all times'}"
+            return f"{name}: it reads {size} too {_side(finding.value)}{since or ' at all times'}"
         case "gain":
-            return f"{name}: it reads {size} too {_side(found.value)}"
+            return f"{name}: it reads {size} too {_side(finding.value)}"
         case "scale":
-            return f"{name}: it reads {size} too {_side(found.value)} about its mean"
+            return f"{name}: it reads {size} too {_side(finding.value)} about its mean"
         case "drift":
-            return f"{name}: it drifts by {size} {'up' if found.value > 0.0 else 'down'} over the record"
+            return f"{name}: it drifts by {size} {'up' if finding.value > 0.0 else 'down'} over the record"
         case _:
-            return f"{name}: its series contains {size} of {one.detail.removeprefix('part of ')}"
+            return f"{name}: its series contains {size} of {candidate.detail.removeprefix('part of ')}"
 
 
-def _short(setup: StudyContext, one: Candidate) -> str:
+def _short(setup: StudyContext, candidate: Candidate) -> str:
     """A candidate in few words."""
-    return f"{' and '.join(one.subject)}: {GROUPS[one.group]}, {one.detail or WORDS[one.what]}" + _since(
-        setup, one.start
-    )
+    subject, detail = " and ".join(candidate.subject), candidate.detail or WORDS[candidate.what]
+    return f"{subject}: {GROUPS[candidate.group]}, {detail}{_since(setup, candidate.start)}"
 
 
 def _since(setup: StudyContext, start: float) -> str:
@@ -178,10 +179,10 @@ def _since(setup: StudyContext, start: float) -> str:
     return f" from about {local[0].normalize() + pd.Timedelta(hours=start):%Y-%m-%d %H:%M} on"
 
 
-def _size(found: Finding) -> str:
-    value = with_uncertainty(abs(found.value), found.error)
-    error = with_uncertainty(found.error, found.error) if found.error > 0.0 else ""
-    return f"{value}{f' ± {error}' if error else ''} {found.candidate.unit}".rstrip()
+def _size(finding: Finding) -> str:
+    value = with_uncertainty(abs(finding.value), finding.error)
+    error = with_uncertainty(finding.error, finding.error) if finding.error > 0.0 else ""
+    return f"{value}{f' ± {error}' if error else ''} {finding.candidate.unit}".rstrip()
 
 
 def _percent(share: float) -> str:

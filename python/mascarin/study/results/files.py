@@ -136,15 +136,15 @@ def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> 
 
 def _sensitivity_figures(findings: Findings, folder: Path, once: Once) -> list[Path]:
     """Figures of the sensitivity analysis of each sensor, if there is one."""
-    found = findings.sensitivity
-    if found is None:
+    analysis = findings.sensitivity
+    if analysis is None:
         return []
-    hours = analyzed_hours(findings.context, found)
+    hours = analyzed_hours(findings.context, analysis)
     written = []
     for name in findings.context.observation.names:
 
         def draw(name: str = name) -> list[Path]:
-            return list(save_all(found, name, folder, name, hours))
+            return list(save_all(analysis, name, folder, name, hours))
 
         written += once(f"sensitivity {name}", draw)
     return written
@@ -155,12 +155,12 @@ def _days(findings: Findings) -> Figure:
     from matplotlib.figure import Figure
     from pandas import to_datetime
 
-    found = findings.days
-    dates = to_datetime(list(found.days))
+    choice = findings.days
+    dates = to_datetime(list(choice.days))
     figure = Figure(figsize=(9.0, 4.5), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, EXTRAPOLATION_RATIO)
-    day_figures.information(lower, dates, found.information, found.used, found.proposed)
+    day_figures.leverage(upper, dates, choice.ratio, choice.used, choice.proposed, EXTRAPOLATION_RATIO)
+    day_figures.information(lower, dates, choice.information, choice.used, choice.proposed)
     upper.legend(fontsize="small", ncols=4, frameon=False)
     lower.set_xlabel(f"local time ({findings.context.climate.timezone})")
     return figure

@@ -179,7 +179,7 @@ class StudyResults(Findings):
         rows = [
             ("criteria", f"{sum(verdict.passed for verdict in judged)} of {len(judged)} met"),
             ("calibrated", f"{len(self.calibration.problem.parameters)} parameters"),
-            *(("read first", one.text) for one in self.contradictions),
+            *(("read first", statement.text) for statement in self.contradictions),
             ("energy balance", f"relative residual {self.fitted.results.energy.closure:.1e}"),
         ]
         for sensor, periods in self.fitted.scores.items():

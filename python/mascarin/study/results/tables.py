@@ -54,9 +54,9 @@ def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
     return tables
 
 
-def estimates_table(found: Calibration) -> pd.DataFrame:
+def estimates_table(calibration: Calibration) -> pd.DataFrame:
     """One row per parameter: nominal and calibrated value, interval, unit, remark."""
-    table = found.to_dataframe().reset_index().rename(columns={"estimate": "fitted"})
+    table = calibration.to_dataframe().reset_index().rename(columns={"estimate": "fitted"})
     return table[["parameter", "nominal", "fitted", "low", "high", "unit", "remark"]]
 
 
@@ -100,7 +100,7 @@ def criteria_table(verdicts: Mapping[str, Sequence[Verdict]]) -> pd.DataFrame:
     import pandas as pd
 
     columns = ["model", "name", "sensor", "period", "metric", "value", "limit", "unit", "passed"]
-    rows = [{"model": model, **verdict.to_dict()} for model, found in verdicts.items() for verdict in found]
+    rows = [{"model": model, **verdict.to_dict()} for model, judged in verdicts.items() for verdict in judged]
     return pd.DataFrame(rows, columns=columns)
 
 
@@ -114,7 +114,7 @@ def quality_table(stretches: Sequence[Stretch]) -> pd.DataFrame:
     )
 
 
-def causes_table(found: Diagnosis) -> pd.DataFrame:
+def causes_table(diagnosis: Diagnosis) -> pd.DataFrame:
     """One row for each cause, in their order."""
     import pandas as pd
 
@@ -122,26 +122,26 @@ def causes_table(found: Diagnosis) -> pd.DataFrame:
     columns += ["told", "same", "text"]
     rows = [
         {**cause.to_dict(), "subject": ", ".join(cause.subject), "same": ", ".join(cause.same)}
-        for cause in found.causes
+        for cause in diagnosis.causes
     ]
     return pd.DataFrame(rows, columns=columns)
 
 
-def days_table(found: DayChoice) -> pd.DataFrame:
+def days_table(choice: DayChoice) -> pd.DataFrame:
     """One row for each day: leverage, expected information, and parts outside of the identification."""
     import pandas as pd
 
-    order = {d: k for k, d in enumerate(found.proposed, start=1)}
+    order = {d: k for k, d in enumerate(choice.proposed, start=1)}
     return pd.DataFrame(
         {
-            "day": list(found.days),
-            "used": found.used,
-            "leverage": found.leverage,
-            "ratio": found.ratio,
-            "information": found.information,
-            "reduction": found.reduction,
-            "order": [order.get(d, "") for d in range(len(found.days))],
-            **{f"outside {name}": values for name, values in found.outside.items()},
+            "day": list(choice.days),
+            "used": choice.used,
+            "leverage": choice.leverage,
+            "ratio": choice.ratio,
+            "information": choice.information,
+            "reduction": choice.reduction,
+            "order": [order.get(d, "") for d in range(len(choice.days))],
+            **{f"outside {name}": values for name, values in choice.outside.items()},
         }
     )
 

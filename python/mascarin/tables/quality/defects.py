@@ -101,24 +101,24 @@ def find(
         return []
     interval = float((data.index[1] - data.index[0]).total_seconds())
     columns = {str(name): data[name].to_numpy(dtype=np.float64) for name in data.columns}
-    found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
+    defects: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
     stuck: dict[str, list[tuple[int, int]]] = {}
     for name, values in columns.items():
-        found[name] += _missing(values)
+        defects[name] += _missing(values)
         outside = _out_of_range(values, (limits or {}).get(name))
-        found[name] += outside
-        kept = values.copy()
+        defects[name] += outside
+        plausible = values.copy()
         for _, first, last, _ in outside:
-            kept[first:last] = np.nan
-        stuck[name] = [] if is_switched(values) else _stuck(kept, interval, (limits or {}).get(name, ()))
-        found[name] += _spikes(_unwound(kept), values)
+            plausible[first:last] = np.nan
+        stuck[name] = [] if is_switched(values) else _stuck(plausible, interval, (limits or {}).get(name, ()))
+        defects[name] += _spikes(_unwound(plausible), values)
     sensed = {name: values for name, values in columns.items() if not is_switched(values)}
     for name, stretches in _repeated(sensed, stuck).items():
-        found[name] += stretches
+        defects[name] += stretches
     return [
         Stretch(name, kind, data.index[first], data.index[last - 1], last - first, detail)
         for name in columns
-        for kind, first, last, detail in sorted(found[name], key=lambda item: (item[1], item[0]))
+        for kind, first, last, detail in sorted(defects[name], key=lambda item: (item[1], item[0]))
     ]
 
 
@@ -176,22 +176,22 @@ def _out_of_range(values: Array, limits: tuple[float, float] | None) -> list[tup
     low, high = limits if limits is not None else _usual_range(values)
     with np.errstate(invalid="ignore"):
         outside = below(values, low) | above(values, high)
-    found: list[tuple[Defect, int, int, str]] = []
+    defects: list[tuple[Defect, int, int, str]] = []
     for first, last in runs(outside):
         part = values[first:last]
         worst = part[np.argmax(np.abs(part - 0.5 * (low + high)))]
         said = "possible range" if limits is not None else "range to be expected from the other values"
-        found.append(("out_of_range", first, last, f"{worst:g} is outside the {said}, {low:g} .. {high:g}"))
-    return found
+        defects.append(("out_of_range", first, last, f"{worst:g} is outside the {said}, {low:g} .. {high:g}"))
+    return defects
 
 
 def _usual_range(values: Array) -> tuple[float, float]:
     """Limits far outside the usual values; none for a column that is mostly constant (rain)."""
-    there = values[~np.isnan(values)]
-    if len(there) < 20:
+    valid = values[~np.isnan(values)]
+    if len(valid) < 20:
         return -np.inf, np.inf
-    low, middle, high = np.quantile(there, [0.05, 0.5, 0.95])
-    if not high > low or np.mean(there == middle) > 0.4:
+    low, middle, high = np.quantile(valid, [0.05, 0.5, 0.95])
+    if not high > low or np.mean(valid == middle) > 0.4:
         return -np.inf, np.inf
     reach = _FAR * (high - low)
     return float(middle - reach), float(middle + reach)
@@ -200,29 +200,31 @@ def _usual_range(values: Array) -> tuple[float, float]:
 # ---------------------------------------------------------------------- spikes
 
 
-def _spikes(kept: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
+def _spikes(plausible: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
     """Excursions of at most three rows that come back to where they started.
 
-    The usual change in one step is derived from the values that are possible (`kept`, NaN elsewhere). An
+    The usual change in one step is derived from the values that are possible (`plausible`, NaN elsewhere). An
     excursion may itself be impossible: it is then a spike as well as out of range. The text names the values
     as `shown`.
     """
-    least = _least_spike(kept[~np.isnan(kept)])
-    possible = ~np.isnan(kept)
-    every = np.where(possible, kept, shown)
-    flags = np.zeros(len(kept), dtype=bool)
+    least = _least_spike(plausible[~np.isnan(plausible)])
+    possible = ~np.isnan(plausible)
+    combined = np.where(possible, plausible, shown)
+    flags = np.zeros(len(plausible), dtype=bool)
     # Without the impossible values, so that a spike beside one is seen; then with them.
-    for values in (kept, every):
-        there = np.flatnonzero(~np.isnan(values))
-        flags[there[_excursions(values[there], possible[there], least)]] = True
-    there = np.flatnonzero(~np.isnan(every))
-    found: list[tuple[Defect, int, int, str]] = []
-    for first, last in runs(flags[there]):
-        row = there[first + int(np.argmax(np.abs(every[there[first:last]] - every[there[first - 1]])))]
-        after = there[min(last, len(there) - 1)]
-        text = f"{shown[row]:g} between {shown[there[first - 1]]:g} and {shown[after]:g}"
-        found.append(("spike", int(there[first]), int(there[last - 1]) + 1, text))
-    return found
+    for values in (plausible, combined):
+        valid_rows = np.flatnonzero(~np.isnan(values))
+        flags[valid_rows[_excursions(values[valid_rows], possible[valid_rows], least)]] = True
+    valid_rows = np.flatnonzero(~np.isnan(combined))
+    spikes: list[tuple[Defect, int, int, str]] = []
+    for first, last in runs(flags[valid_rows]):
+        row = valid_rows[
+            first + int(np.argmax(np.abs(combined[valid_rows[first:last]] - combined[valid_rows[first - 1]])))
+        ]
+        after = valid_rows[min(last, len(valid_rows) - 1)]
+        text = f"{shown[row]:g} between {shown[valid_rows[first - 1]]:g} and {shown[after]:g}"
+        spikes.append(("spike", int(valid_rows[first]), int(valid_rows[last - 1]) + 1, text))
+    return spikes
 
 
 def _least_spike(series: Array) -> float:
@@ -244,15 +246,15 @@ def _excursions(series: Array, possible: Flags, least: float) -> Lines:
         above = np.min(inner, axis=0) - np.maximum(before, after) > least
         below = np.minimum(before, after) - np.max(inner, axis=0) > least
         back = (np.abs(after - before) < 0.5 * least) & possible[: -width - 1] & possible[width + 1 :]
-        for place in np.flatnonzero((above | below) & back):
-            taken[place + 1 : place + 1 + width] = True
+        for row in np.flatnonzero((above | below) & back):
+            taken[row + 1 : row + 1 + width] = True
     return np.flatnonzero(taken)
 
 
 def _unwound(values: Array) -> Array:
     """A direction in degrees without its jumps at north; any other column as it is."""
-    there = ~np.isnan(values)
-    series = values[there]
+    valid = ~np.isnan(values)
+    series = values[valid]
     if (
         len(series) < 2
         or series.min() < 0.0
@@ -261,7 +263,7 @@ def _unwound(values: Array) -> Array:
     ):
         return values
     unwound = values.copy()
-    unwound[there] = np.unwrap(series, period=360.0)
+    unwound[valid] = np.unwrap(series, period=360.0)
     return unwound
 
 
@@ -290,12 +292,12 @@ def _usual_longest(lengths: Lines, least: int = 2) -> float:
 
 def _stuck(values: Array, interval: float, bounds: Sequence[float]) -> list[tuple[int, int]]:
     """Runs of equal values that are not usual for this channel: first and past-the-end row."""
-    there = values[~np.isnan(values)]
-    if len(there) < _FEWEST:
+    valid = values[~np.isnan(values)]
+    if len(valid) < _FEWEST:
         return []
-    if np.all(there == there[0]):
+    if np.all(valid == valid[0]):
         # Never changes: a whole number was written by hand, any other number comes from a sensor.
-        return [] if float(there[0]).is_integer() else [(0, len(values))]
+        return [] if float(valid[0]).is_integer() else [(0, len(values))]
     start, length = _runs_of_equal(values)
     idle = _idle(values, start, length, interval) | np.isin(values[start], bounds) | np.isnan(values[start])
     idle |= switched_levels(values, start, length)
@@ -369,21 +371,21 @@ def _repeated(
     if not columns:
         return {}
     together = _held_together(columns, stuck)
-    found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
+    defects: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
     count = len(next(iter(columns.values())))
     for name, values in columns.items():
         blocks = [block for block in together if _held(values, block) and _counts(values, block)]
         for first, last in blocks:
             end = ", to the end of the record" if last == count else ""
             text = f"repeats {values[first]:g} while several other channels repeat theirs{end}"
-            found[name].append(("forward_filled", first, last, text))
+            defects[name].append(("forward_filled", first, last, text))
         for first, last in stuck[name]:
             if any(_alike((first + 1, last), block) for block in blocks):
                 continue
             end = ", to the end of the record" if last == count else ""
             text = f"stuck at {values[first]:g} for {last - first} rows{end}"
-            found[name].append(("stuck", first + 1 if first else 0, last, text))
-    return found
+            defects[name].append(("stuck", first + 1 if first else 0, last, text))
+    return defects
 
 
 def _held_together(
@@ -447,10 +449,10 @@ def _free(
     ]
 
 
-def _alike(one: tuple[int, int], other: tuple[int, int]) -> bool:
+def _alike(run: tuple[int, int], other: tuple[int, int]) -> bool:
     """Whether two runs cover nearly the same rows."""
-    shared = min(one[1], other[1]) - max(one[0], other[0])
-    return shared >= _ALIKE * (max(one[1], other[1]) - min(one[0], other[0]))
+    shared = min(run[1], other[1]) - max(run[0], other[0])
+    return shared >= _ALIKE * (max(run[1], other[1]) - min(run[0], other[0]))
 
 
 def _held(values: Array, block: tuple[int, int]) -> bool:

@@ -54,7 +54,7 @@ def filled_stretches(data: pd.DataFrame, columns: Iterable[str]) -> list[Stretch
     if len(data) < _SHORTEST:
         return []
     interval = float((data.index[1] - data.index[0]).total_seconds())
-    found = []
+    stretches = []
     for name in columns:
         if name not in data.columns:
             continue
@@ -62,12 +62,12 @@ def filled_stretches(data: pd.DataFrame, columns: Iterable[str]) -> list[Stretch
         kinds: list[tuple[Defect, list[Run]]] = [
             ("interpolated", interpolated(values)), ("copied", copied(values, interval)),
         ]  # fmt: skip
-        found += [
+        stretches += [
             Stretch(name, kind, data.index[first], data.index[last - 1], last - first, text)
             for kind, parts in kinds
             for first, last, text in parts
         ]
-    return found
+    return stretches
 
 
 def interpolated(values: Array) -> list[Run]:
@@ -98,7 +98,7 @@ def interpolated(values: Array) -> list[Run]:
     # Rows that are on no line count as lines of three rows.
     lengths += [3] * ((values.size - sum(lengths)) // 3)
     usual = float(np.quantile(lengths, 0.99, method="lower"))
-    found = []
+    runs = []
     for first, last in lines:
         steps = values[first:last]
         level = np.ptp(steps) <= 2.0 * tolerance
@@ -107,8 +107,8 @@ def interpolated(values: Array) -> list[Run]:
             while first > 0 and abs(values[first - 1] - (values[first] - slope)) <= 2.0 * tolerance:
                 first -= 1
             text = f"a straight line from {values[first]:g} to {values[last - 1]:g}"
-            found.append((first + 1, last - 1, text))
-    return found
+            runs.append((first + 1, last - 1, text))
+    return runs
 
 
 def copied(values: Array, interval: float) -> list[Run]:
@@ -136,7 +136,7 @@ def copied(values: Array, interval: float) -> list[Run]:
     per_day = _DAY / interval
     if np.isfinite(values).sum() < _SHORTEST or abs(per_day - round(per_day)) > 1e-9:
         return []
-    found: list[Run] = []
+    runs: list[Run] = []
     for days in (1, 2, 3, 4, 5, 6, 7):
         lag = days * round(per_day)
         if lag >= values.size - _FEWEST:
@@ -147,24 +147,24 @@ def copied(values: Array, interval: float) -> list[Run]:
             level = np.ptp(values[first:last]) <= 2.0 * _resolution(values)
             rate = (same.sum() - (last - first)) / max(values.size - (last - first), 1)
             expected = values.size * max(rate, 1.0 / values.size) ** (last - first)
-            known = any(first < other[1] and other[0] < last for other in found)
-            if last - first >= _FEWEST and expected < _CHANCE and not level and not known:
-                found.append((first, last, f"the same values as {days} day{'s' * (days > 1)} before"))
-    return sorted(found)
+            overlaps = any(first < other[1] and other[0] < last for other in runs)
+            if last - first >= _FEWEST and expected < _CHANCE and not level and not overlaps:
+                runs.append((first, last, f"the same values as {days} day{'s' * (days > 1)} before"))
+    return sorted(runs)
 
 
 def _resolution(values: Array) -> float:
     """Smallest step of the column, from its decimals: that of rounding. [unit]"""
-    there = values[np.isfinite(values)]
+    valid = values[np.isfinite(values)]
     for decimals in range(7):
-        if np.allclose(there, np.round(there, decimals), rtol=0.0, atol=1e-9):
+        if np.allclose(valid, np.round(valid, decimals), rtol=0.0, atol=1e-9):
             return float(10.0**-decimals)
     return 0.0
 
 
 def _lines(values: Array, tolerance: float) -> list[tuple[int, int]]:
     """Longest runs whose values are within a tolerance of the line between their ends."""
-    found: list[tuple[int, int]] = []
+    segments: list[tuple[int, int]] = []
     # Second differences of a rounded line are within four tolerances: only such stretches are examined.
     second = np.full(values.size, np.inf)
     second[1:-1] = np.abs(values[:-2] - 2.0 * values[1:-1] + values[2:])
@@ -173,11 +173,11 @@ def _lines(values: Array, tolerance: float) -> list[tuple[int, int]]:
         while end - start >= 4:
             stop = _longest(values, start, end, tolerance)
             if stop - start >= 4:
-                found.append((start, stop))
+                segments.append((start, stop))
                 start = stop - 1
             else:
                 start += 1
-    return found
+    return segments
 
 
 def _longest(values: Array, start: int, end: int, tolerance: float) -> int:

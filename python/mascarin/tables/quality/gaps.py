@@ -42,13 +42,13 @@ def filled(record: R, longest: str | float, columns: Iterable[str] | None, *, ho
         There is no such column, or no length can be read.
     """
     limit = seconds_of(longest, "fill_gaps") / record.grid.interval
-    known = list(record.columns)
-    names = known if columns is None else list(columns)
+    column_names = list(record.columns)
+    names = column_names if columns is None else list(columns)
     values_of, closing, notes = dict(record.columns), dict(record.closing), list(record.provenance)
     for name in names:
-        if name not in known:
+        if name not in column_names:
             raise InputError(
-                f"{record.file}: no column {name!r} to fill. {did_you_mean(name, known)}".rstrip()
+                f"{record.file}: no column {name!r} to fill. {did_you_mean(name, column_names)}".rstrip()
             )
         values = values_of[name].copy()
         count = fill_linearly(values, limit, circular=name == "wind_direction")

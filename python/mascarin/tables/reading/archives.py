@@ -97,9 +97,9 @@ def read_bsrn(path: Path, content: bytes) -> pd.DataFrame:
     heads = [k for k, line in enumerate(text) if line.startswith("*")]
     begin = next((k for k in heads if text[k][2:6] == "0100"), None)
     if begin is None:
-        found = ", ".join(text[k][2:6] for k in heads)
+        codes = ", ".join(text[k][2:6] for k in heads)
         raise InputError(
-            f"{path.name}: found the logical records {found}, expected 0100, the basic measurements; get the "
+            f"{path.name}: found the logical records {codes}, expected 0100, the basic measurements; get the "
             "file of another month, or of another station."
         )
     end = next((k for k in heads if k > begin), len(text))

@@ -190,9 +190,9 @@ def read_frame(
     if layout.trailing:
         frame = frame.iloc[:, :-1]
     if is_meteo_france(frame):
-        frame, known, clock = of_one_station(frame, path.name)
+        frame, station_units, clock = of_one_station(frame, path.name)
         note = f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units as described."
-        return Read(frame, rows[: len(frame)] + 1, (*notes, note), known, clock=(clock, 1))
+        return Read(frame, rows[: len(frame)] + 1, (*notes, note), station_units, clock=(clock, 1))
     _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
     preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
@@ -283,8 +283,8 @@ def _large_body(
     count = text.count("\n", first) + bool(last)
     rows = layout.first + np.arange(count, dtype=np.int64)
     # The head may have letters of several bytes; the rows are not copied before they are put together.
-    rest = memoryview(raw or text.encode())[len(text[:first].encode()) :]
-    body = b"".join([f"{_names_line(lines, layout)}\n".encode(), rest])
+    data_bytes = memoryview(raw or text.encode())[len(text[:first].encode()) :]
+    body = b"".join([f"{_names_line(lines, layout)}\n".encode(), data_bytes])
     return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
 
 
@@ -336,7 +336,7 @@ def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
         said = re.sub(
             r"(?<=line )\d+",
-            lambda found: str(int(rows[int(found[0]) - 2]) + 1),
+            lambda match: str(int(rows[int(match[0]) - 2]) + 1),
             " ".join(str(error).split()),
         )
         raise InputError(

@@ -63,8 +63,8 @@ def to_starts(
         else:
             columns[name] = column
     means = [name for name in values if kinds[name] == "mean"]
-    at = "the end" if late else "the start"
-    note = f"{table.where}: a stamp marks {at} of its interval; "
+    edge = "the end" if late else "the start"
+    note = f"{table.where}: a stamp marks {edge} of its interval; "
     note += f"means: {', '.join(means)}; " if means else "no means; "
     note += "all other columns are values at the stamp"
     note += ", means moved to the start" if late and means else ""

@@ -133,20 +133,20 @@ def find_layout(
         There is no header, or no separator in it.
     """
     header = skip_lines if skip_lines is not None else _header(lines, where, separator)
-    found = separator or _separator(lines, where, header)
-    names = _cells(lines[header], found) if header < len(lines) else []
+    delimiter = separator or _separator(lines, where, header)
+    names = _cells(lines[header], delimiter) if header < len(lines) else []
     units: tuple[str, ...] = ()
     first = header + 1
     while first - header <= _UNIT_ROWS and first < len(lines):
-        cells = _cells(lines[first], found)
+        cells = _cells(lines[first], delimiter)
         if len(cells) != len(names) or not (_is_units(cells) or _is_labels(cells)):
             break
         units, first = units or (tuple(cells) if _is_units(cells) else ()), first + 1
-    sample = [_cells(line, found) for line in lines[first : first + _SEARCHED] if line.strip()]
+    sample = [_cells(line, delimiter) for line in lines[first : first + _SEARCHED] if line.strip()]
     trailing = bool(sample) and all(len(row) == len(names) + 1 and not row[-1].strip() for row in sample)
     mark, evident = (decimal, True) if decimal else _decimal(sample)
-    two = _names_of_two_lines(lines, header, found, names)
-    return Layout(found, mark, header, first, trailing, units, evident, two)
+    two = _names_of_two_lines(lines, header, delimiter, names)
+    return Layout(delimiter, mark, header, first, trailing, units, evident, two)
 
 
 def _names_of_two_lines(
@@ -170,60 +170,62 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
         _begins_with_names(lines[start : start + 2], mark) and not _are_names(third, mark) for mark in marks
     ):
         return start
-    found = [(block[1], -block[0], mark) for mark in marks if (block := _first_block(lines, mark))]
-    if not found:
+    blocks = [(block[1], -block[0], mark) for mark in marks if (block := _first_block(lines, mark))]
+    if not blocks:
         return start
-    count, place, mark = max(found)
-    first = -place
+    count, negated_first, mark = max(blocks)
+    first = -negated_first
     # Rows above the block that begin with a time are data, too: one of their entries is no number.
     while first > 0 and len(cells := _cells(lines[first - 1], mark)) == count and _DIGIT.match(cells[0]):
         first -= 1
-    at = first - 1
-    while at >= 0 and (not lines[at].strip() or _is_units(_cells(lines[at], mark))):
-        at -= 1
-    at = _above_labels(lines, at, mark, count)
-    at = _below_a_preamble(lines, at, mark, count)
-    names = _cells(lines[at], mark) if at >= 0 else []
-    if at < 0 or len(names) not in (count, count - 1):
+    header = first - 1
+    while header >= 0 and (not lines[header].strip() or _is_units(_cells(lines[header], mark))):
+        header -= 1
+    header = _above_labels(lines, header, mark, count)
+    header = _below_a_preamble(lines, header, mark, count)
+    names = _cells(lines[header], mark) if header >= 0 else []
+    if header < 0 or len(names) not in (count, count - 1):
         above = (
-            f"line {at + 1} has {len(names)} of {count} entries" if at >= 0 else "there is no line above it"
+            f"line {header + 1} has {len(names)} of {count} entries"
+            if header >= 0
+            else "there is no line above it"
         )
         raise InputError(
             f"{where}:{first + 1}: found the first row of data, {lines[first].strip()[:60]!r}, and no names "
             f"of columns above it ({above}); expected a line with the name of each column: add one, or "
             "state skip_lines, the number of lines before the line with the names."
         )
-    return at
+    return header
 
 
-def _above_labels(lines: Sequence[str], at: int, mark: str, count: int) -> int:
+def _above_labels(lines: Sequence[str], header: int, mark: str, count: int) -> int:
     """Number of the line with the names where a line of labels without one for the time is below them."""
-    place = at
-    while place > 0 and _is_labels(_cells(lines[place], mark)):
-        place -= 1
-        while place > 0 and _is_units(_cells(lines[place], mark)):
-            place -= 1
-    names = _cells(lines[place], mark) if place >= 0 else []
-    return place if len(names) == count and all(names) else at
+    line_number = header
+    while line_number > 0 and _is_labels(_cells(lines[line_number], mark)):
+        line_number -= 1
+        while line_number > 0 and _is_units(_cells(lines[line_number], mark)):
+            line_number -= 1
+    names = _cells(lines[line_number], mark) if line_number >= 0 else []
+    return line_number if len(names) == count and all(names) else header
 
 
-def _below_a_preamble(lines: Sequence[str], at: int, mark: str, count: int) -> int:
+def _below_a_preamble(lines: Sequence[str], header: int, mark: str, count: int) -> int:
     """Number of the line with the names where rows of a preamble have as many entries as those of the table.
 
     Such a preamble, as spreadsheets write it, leaves entries of the line above its rows empty, or begins it
     with a number.
     """
-    cells = _cells(lines[at], mark) if at >= 0 else []
-    if len(cells) == count and _are_names(lines[at], mark):
-        return at
-    for place in range(max(at, 0) + 1, min(len(lines), _SEARCHED)):
-        if not _are_names(lines[place], mark) or len(_cells(lines[place], mark)) != count:
+    cells = _cells(lines[header], mark) if header >= 0 else []
+    if len(cells) == count and _are_names(lines[header], mark):
+        return header
+    for line_number in range(max(header, 0) + 1, min(len(lines), _SEARCHED)):
+        if not _are_names(lines[line_number], mark) or len(_cells(lines[line_number], mark)) != count:
             continue
-        rows = [_cells(line, mark) for line in lines[place + 1 : place + 2 + _UNIT_ROWS]]
+        rows = [_cells(line, mark) for line in lines[line_number + 1 : line_number + 2 + _UNIT_ROWS]]
         data = [row for row in rows if row and not _is_units(row)]
         if data and all(len(row) == count and _is_data(row) for row in data):
-            return place
-    return at
+            return line_number
+    return header
 
 
 def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
@@ -265,14 +267,14 @@ def footer_of(lines: Sequence[str], first: int, separator: str) -> int:
     >>> footer_of(["time,T", "2024-01-01,3", "", "T: air temperature"], 1, ",")
     2
     """
-    place = len(lines)
-    while place > first:
-        line = lines[place - 1]
+    end = len(lines)
+    while end > first:
+        line = lines[end - 1]
         if line.strip() and (_DIGIT.match(line.strip(" \"'")) or line.count(separator) > 3):
             break
-        place -= 1
-    blank = place < len(lines) and not lines[place].strip()
-    return place if blank and any(line.strip() for line in lines[place:]) else len(lines)
+        end -= 1
+    blank = end < len(lines) and not lines[end].strip()
+    return end if blank and any(line.strip() for line in lines[end:]) else len(lines)
 
 
 def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:

@@ -146,12 +146,14 @@ def without_codes(values: Array) -> tuple[Array, dict[str, int]]:
     if lowest not in CODES:
         return values, {}
     codes = np.isin(values, CODES)
-    others = values[np.isfinite(values) & ~codes]
-    if not len(others) or lowest > others.min() - 5.0 * np.ptp(others) or others.min() < -300.0:
+    measured = values[np.isfinite(values) & ~codes]
+    if not len(measured) or lowest > measured.min() - 5.0 * np.ptp(measured) or measured.min() < -300.0:
         return values, {}
     names, counts = np.unique(values[codes], return_counts=True)
-    found = {f"{name:g}": int(count) for name, count in zip(names.tolist(), counts.tolist(), strict=True)}
-    return np.where(codes, np.nan, values), found
+    code_counts = {
+        f"{name:g}": int(count) for name, count in zip(names.tolist(), counts.tolist(), strict=True)
+    }
+    return np.where(codes, np.nan, values), code_counts
 
 
 def _is_bad(text: str) -> bool:
@@ -229,12 +231,14 @@ def points_as_degrees(series: pd.Series[Any]) -> pd.Series[Any]:
         return series
     degrees = {point: 22.5 * k for k, point in enumerate(_POINTS)}
     texts = series.astype("object").where(series.notna(), "").astype(str).str.strip()
-    known = {text: degrees.get(text.upper()) for text in texts.unique()}
-    if not any(value is not None for value in known.values()):
+    direction_of = {text: degrees.get(text.upper()) for text in texts.unique()}
+    if not any(value is not None for value in direction_of.values()):
         return series
-    if any(value is None and text.lower() not in EMPTY for text, value in known.items()):
+    if any(value is None and text.lower() not in EMPTY for text, value in direction_of.items()):
         return series
-    return texts.map(lambda text: np.nan if known[text] is None else known[text]).astype(np.float64)
+    return texts.map(lambda text: np.nan if direction_of[text] is None else direction_of[text]).astype(
+        np.float64
+    )
 
 
 def marks_of(texts: Sequence[str], decimal: str, line_of: Any, where: str) -> tuple[str, str]:
@@ -272,8 +276,8 @@ def marks_of(texts: Sequence[str], decimal: str, line_of: Any, where: str) -> tu
     if both:
         mark = "," if both[0].rfind(",") > both[0].rfind(".") else "."
         return mark, "." if mark == "," else ","
-    found = {mark: [text for text in texts if mark in text] for mark in ".,"}
-    readings = {mark: _reading(entries, texts, mark) for mark, entries in found.items() if entries}
+    texts_with = {mark: [text for text in texts if mark in text] for mark in ".,"}
+    readings = {mark: _reading(entries, texts, mark) for mark, entries in texts_with.items() if entries}
     if not readings:
         return decimal, ""
     if len(readings) == 1:
@@ -284,12 +288,12 @@ def marks_of(texts: Sequence[str], decimal: str, line_of: Any, where: str) -> tu
         if reading == "open":
             if decimal == other:
                 return other, mark
-            _refuse(found[mark], texts, mark, line_of, where)
+            _refuse(texts_with[mark], texts, mark, line_of, where)
         return mark, ""
     decimals = [mark for mark, reading in readings.items() if reading == "decimal"]
     if len(decimals) == 1:
         return decimals[0], "," if decimals[0] == "." else "."
-    first, second = found["."][0], found[","][0]
+    first, second = texts_with["."][0], texts_with[","][0]
     raise InputError(
         f"{where}: found {first!r} in line {line_of(first)} and {second!r} in line {line_of(second)}, whose "
         "marks contradict each other; expected one decimal mark in a column. Write the numbers of one of the "
@@ -353,14 +357,14 @@ def suspicious_decimals(values: Array) -> bool:
     # Some entries are enough to show that a long column could not.
     if len(values) > _SAMPLE and not _could_be_groups(values[:_SAMPLE]):
         return False
-    there = np.abs(values[np.isfinite(values)])
-    whole = there == np.floor(there)
-    return bool(np.any(~whole) and np.any(there[whole] >= 100.0)) and _could_be_groups(values)
+    magnitudes = np.abs(values[np.isfinite(values)])
+    is_integer = magnitudes == np.floor(magnitudes)
+    return bool(np.any(~is_integer) and np.any(magnitudes[is_integer] >= 100.0)) and _could_be_groups(values)
 
 
 def _could_be_groups(values: Array) -> bool:
     """Whether all numbers with decimals are between 1 and 1000, and have at most three."""
-    there = np.abs(values[np.isfinite(values)])
-    parts = there[there != np.floor(there)]
+    magnitudes = np.abs(values[np.isfinite(values)])
+    parts = magnitudes[magnitudes != np.floor(magnitudes)]
     thousandths = np.abs(parts * 1e3 - np.round(parts * 1e3)) < 1e-6
     return bool(np.all((parts >= 1.0) & (parts < _GROUPED)) and np.all(thousandths))

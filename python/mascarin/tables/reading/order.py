@@ -68,17 +68,17 @@ def skipped_hour(index: pd.DatetimeIndex, extra: Array, where: str, zone: tzinfo
     if not fixed_offset(zone):
         return []
     # On a Sunday between midnight and 4 h, in March, April, September or October.
-    found = [
+    stamps = [
         index[row]
         for row in np.flatnonzero(extra == 3600.0).tolist()
         if (stamp := index[row + 1]).weekday() == 6 and stamp.hour <= 4 and stamp.month in (3, 4, 9, 10)
     ]
     return [
-        f"{where}: warning: one hour is missing after {found[0]:%Y-%m-%d %H:%M}, when clocks go forward in "
+        f"{where}: warning: one hour is missing after {stamps[0]:%Y-%m-%d %H:%M}, when clocks go forward in "
         "many "
         f"zones. If the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong zone: "
         "state the zone of the place, such as Europe/Paris."
-        for _ in found[:1]
+        for _ in stamps[:1]
     ]
 
 
@@ -112,7 +112,7 @@ def require_order(
         _require_one_record(gaps, index, lines, where)
         return
     row = int(wrong[0])
-    found = "is repeated" if gaps[row] == 0.0 else f"comes after {index[row]:%Y-%m-%d %H:%M:%S}"
+    disorder = "is repeated" if gaps[row] == 0.0 else f"comes after {index[row]:%Y-%m-%d %H:%M:%S}"
     hint = "remove or sort the rows."
     series = _names_of_series(frame) if gaps[row] == 0.0 else ""
     if series:
@@ -126,7 +126,7 @@ def require_order(
     elif _is_half_a_clock(gaps):
         hint = "the clock has 12 hours and no AM or PM: export the file with them, or with 24 hours."
     raise InputError(
-        f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected increasing "
+        f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {disorder}, expected increasing "
         f"times ({len(wrong)} such rows in all); {hint}"
     )
 

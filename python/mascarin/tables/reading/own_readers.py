@@ -140,11 +140,11 @@ def read_own(path: Path, reader: Reader) -> pd.DataFrame:
 @cache
 def _entries() -> dict[str, tuple[EntryPoint, ...]]:
     """Entry points by the ending of their files."""
-    found: dict[str, tuple[EntryPoint, ...]] = {}
+    readers: dict[str, tuple[EntryPoint, ...]] = {}
     for entry in entry_points(group=GROUP):
         key = entry.name.strip(". ").lower()
-        found[key] = (*found.get(key, ()), entry)
-    return found
+        readers[key] = (*readers.get(key, ()), entry)
+    return readers
 
 
 def _loaded(entry: EntryPoint) -> Reader:

@@ -51,11 +51,11 @@ def clock_of_preamble(lines: Sequence[str]) -> tuple[str, int]:
 
 def _offsets(lines: Sequence[str]) -> list[tuple[str, int]]:
     """Offsets of the clock as numbers: behind their name, or in the line below it."""
-    found = []
+    offsets = []
     for number, line in enumerate(lines):
         alone = _OFFSET_LINE.fullmatch(line)
         if alone is not None:
-            found.append((_offset_text(float(alone["hours"])), number))
+            offsets.append((_offset_text(float(alone["hours"])), number))
         below = lines[number + 1] if number + 1 < len(lines) else ""
         for mark in (",", ";", "\t"):
             names, values = ([cell.strip(" \"'") for cell in text.split(mark)] for text in (line, below))
@@ -64,8 +64,8 @@ def _offsets(lines: Sequence[str]) -> list[tuple[str, int]]:
             for name, value in zip(names, values, strict=False):
                 factor = _OFFSET_CELLS.get(name.lower())
                 if factor is not None and _OFFSET.fullmatch(value) and abs(float(value) * factor) <= 14.0:
-                    found.append((_offset_text(float(value) * factor), number + 1))
-    return found
+                    offsets.append((_offset_text(float(value) * factor), number + 1))
+    return offsets
 
 
 def _offset_text(hours: float) -> str:
@@ -100,10 +100,10 @@ def units_of_preamble(lines: Sequence[str], names: Sequence[str]) -> dict[str, t
         for name in names:
             if not name or name in units:
                 continue
-            own = rf"(?:^|[\s\"'#;,]){re.escape(name)}"
-            parts = re.findall(rf"{own}\s*[:=;,\t\[(]+([^:=;,\t\])]+)", line)
-            parts += re.findall(rf"{own} (?:is |are |measured )*in ([^:=;,\t\])]+)", line)
-            parts += re.findall(rf"{own}\s*[:=][^:=\[(]*[\[(](?:in )?([^\])]+)[\])]", line)
+            name_pattern = rf"(?:^|[\s\"'#;,]){re.escape(name)}"
+            parts = re.findall(rf"{name_pattern}\s*[:=;,\t\[(]+([^:=;,\t\])]+)", line)
+            parts += re.findall(rf"{name_pattern} (?:is |are |measured )*in ([^:=;,\t\])]+)", line)
+            parts += re.findall(rf"{name_pattern}\s*[:=][^:=\[(]*[\[(](?:in )?([^\])]+)[\])]", line)
             for part in parts:
                 text = part.strip(_SIGNS)
                 if parse_unit(text) is not None:

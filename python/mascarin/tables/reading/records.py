@@ -47,10 +47,10 @@ def record_of_columns(
     InputError
         A column is missing, or an entry cannot be used.
     """
-    wanted: Iterable[str] | Columns
-    wanted, words = (table.numeric, table.words) if columns is None else (columns, [])
-    pairs = wanted.items() if isinstance(wanted, Mapping) else [(name, name) for name in wanted]
-    chosen = {name: Column.of(given, f"{table.where}: columns.{name}") for name, given in pairs}
+    selection: Iterable[str] | Columns
+    selection, words = (table.numeric, table.words) if columns is None else (columns, [])
+    pairs = selection.items() if isinstance(selection, Mapping) else [(name, name) for name in selection]
+    chosen = {name: Column.of(entry, f"{table.where}: columns.{name}") for name, entry in pairs}
     kinds: dict[str, Kind] = {name: column.kind or "instant" for name, column in chosen.items()}
     for name in mean:
         if name not in kinds:
@@ -64,11 +64,11 @@ def record_of_columns(
         values[name], origins[name] = converted(table, column, name, "")
         if column.kind is None and origins[name].of_interval:
             kinds[name] = "mean"
-    kept, closing, grid, note = to_starts(table, values, kinds, stamps)
+    start_values, closing, grid, note = to_starts(table, values, kinds, stamps)
     left_out = [f"{table.where}: left out, without a number: {', '.join(words)}."] if words else []
     said = (*table.notes, note, *left_out, *(f"{table.where}: {origin.line}" for origin in origins.values()))
     return Record(
-        kept, kinds, grid, closing, table.where, table.sha256, said, table.lines,
+        start_values, kinds, grid, closing, table.where, table.sha256, said, table.lines,
         knot_lines(table.lines, stamps), origins=origins,
     )  # fmt: skip
 
@@ -111,11 +111,11 @@ def converted(table: Table, column: Column, name: str, unit: str) -> tuple[Array
     if settled.unit == "degC" and not column.overrule:
         _require_celsius(values, column, where)
     words = {**table.empty_words(column.column), **codes}
-    left = "" if stated is None or settled.unit is not None else stated.unit
+    remaining_unit = "" if stated is None or settled.unit is not None else stated.unit
     stated_somewhere = stated is not None or settled != Column(column.column, kind=column.kind)
     of_interval = settled.unit in ENERGIES or settled.unit in HEATS
     return values, Origin(
-        left, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval
+        remaining_unit, stated_somewhere, settled.line(name, unit, values, stated, words), of_interval
     )
 
 
@@ -135,10 +135,10 @@ def _require_settled_letter(values: Array, column: Column, name: str, table: Tab
 
 def _require_celsius(values: Array, column: Column, where: str) -> None:
     """Refuse temperatures that are stated in degC and look like kelvins throughout."""
-    there = values[np.isfinite(values)]
-    if len(there) and there.min() > _KELVINS[0] and there.max() < _KELVINS[1]:
+    valid = values[np.isfinite(values)]
+    if len(valid) and valid.min() > _KELVINS[0] and valid.max() < _KELVINS[1]:
         raise InputError(
-            f"{where}: found {there.min():g} .. {there.max():g} degC in the column {column.column!r}, as the "
+            f"{where}: found {valid.min():g} .. {valid.max():g} degC in the column {column.column!r}, as the "
             "unit is stated; expected temperatures of a building. They look like K: write "
             f"{{column: {column.column!r}, unit: K, overrule: true}}, or unit: degC with overrule: true where"
             " they are right."
@@ -155,10 +155,10 @@ _BOILING: Final = 130.0
 
 def _is_meter(values: Array) -> bool:
     """Whether a column never falls and is far above its steps: the total of a meter."""
-    there = values[np.isfinite(values)]
-    steps = np.diff(there)
+    valid = values[np.isfinite(values)]
+    steps = np.diff(valid)
     return bool(
-        len(there) > 5 and np.all(steps >= 0.0) and there[-1] > there[0] and there[-1] > 3.0 * steps.max()
+        len(valid) > 5 and np.all(steps >= 0.0) and valid[-1] > valid[0] and valid[-1] > 3.0 * steps.max()
     )
 
 

@@ -59,8 +59,8 @@ def _counts_rows(series: pd.Series[Any]) -> bool:
     """Whether a column counts the rows."""
     import pandas as pd
 
-    whole = pd.api.types.is_integer_dtype(series.dtype)
-    return whole and bool(np.all(np.diff(series.to_numpy(dtype=np.float64)) == 1.0))
+    is_integer = pd.api.types.is_integer_dtype(series.dtype)
+    return is_integer and bool(np.all(np.diff(series.to_numpy(dtype=np.float64)) == 1.0))
 
 
 def has_numbers(series: pd.Series[Any]) -> bool:

@@ -63,9 +63,9 @@ def sheet_text(path: Path) -> tuple[str, tuple[str, ...]]:
             if sum(bool(line.strip()) for line in out.getvalue().splitlines()) > 2 or (
                 name == names[-1] and out.getvalue().strip()
             ):
-                others = [other for other in names if other != name]
-                said = f"{path.name}: read from the sheet {name!r}; {', '.join(map(repr, others))} left out."
-                return out.getvalue(), (said,) if others else ()
+                skipped = [other for other in names if other != name]
+                said = f"{path.name}: read from the sheet {name!r}; {', '.join(map(repr, skipped))} left out."
+                return out.getvalue(), (said,) if skipped else ()
     except (BadZipFile, KeyError, ValueError, OSError, TypeError) as error:
         raise InputError(
             f"{path.name}: cannot be read as a spreadsheet ({error}), expected a whole workbook; save the "

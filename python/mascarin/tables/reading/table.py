@@ -124,9 +124,9 @@ class Table:
         InputError
             The two contradict each other.
         """
-        found = self._statements(column)
-        for other in found[1:]:
-            if not same_unit(found[0].unit, other.unit):
+        units = self._statements(column)
+        for other in units[1:]:
+            if not same_unit(units[0].unit, other.unit):
                 says = (
                     f"whose name says {other.text!r}"
                     if other.place == _IN_NAME
@@ -134,28 +134,28 @@ class Table:
                 )
                 line = f":{self.units_line}" if self.units_line and column in self.units else ""
                 raise InputError(
-                    f"{self.where}{line}: {found[0].place.split(' (line')[0]} has {found[0].text!r} for the "
+                    f"{self.where}{line}: {units[0].place.split(' (line')[0]} has {units[0].text!r} for the "
                     f"column {column!r}, {says}; expected the same. State the right one: "
                     f"{{column: {column!r}, unit: {other.unit!r}, overrule: true}}."
                 )
-        return found[0] if found else None
+        return units[0] if units else None
 
     def _statements(self, column: str) -> list[StatedUnit]:
         """All that the file says of the unit of a column: row of units, entries, name, lines above."""
-        found = []
+        statements = []
         spot = f"the row of units (line {self.units_line})" if self.units_line else "the file"
         texts = [(self.units.get(column, ""), spot), (self.entry_units.get(column, ""), "each entry")]
-        for text, place in texts:
+        for text, location in texts:
             unit = parse_unit(text)
             if unit is not None:
-                found.append(StatedUnit(unit, text, place))
+                statements.append(StatedUnit(unit, text, location))
         name = unit_in_name(column, self.names)
         if name is not None:
-            found.append(StatedUnit(*name, _IN_NAME))
+            statements.append(StatedUnit(*name, _IN_NAME))
         if column in self.preamble_units:
             words, line = self.preamble_units[column]
-            found.append(StatedUnit(str(parse_unit(words)), words, f"line {line} above the names"))
-        return found
+            statements.append(StatedUnit(str(parse_unit(words)), words, f"line {line} above the names"))
+        return statements
 
     def empty_words(self, column: str) -> dict[str, int]:
         """How often each word for no value stands in a column; empty entries are not counted."""
@@ -183,13 +183,13 @@ class Table:
                 f"{self.where}: no column {column!r} (wanted for {what}). {hint} Expected the name of a "
                 "column of the file."
             )
-        place = f"{self.where}: column {column!r}"
+        location = f"{self.where}: column {column!r}"
         entries = self.frame[column]
         return parse_numbers(
             points_as_degrees(entries) if compass else entries,
             self.decimal,
             self.lines,
-            place,
+            location,
             stated=self.decimal_stated,
             evident=self.decimal_evident,
         )
@@ -332,9 +332,9 @@ def _zone(
         stamps = source.index if time is None and _is_time(source.index) else None
         name = time if isinstance(time, str) else source.columns[0] if len(source.columns) else None
         dtype = source.index.dtype if stamps is not None else source[name].dtype if name in source else None
-        found = getattr(dtype, "tz", None)
-        if found is not None:
-            return zone_of(found)
+        stamp_zone = getattr(dtype, "tz", None)
+        if stamp_zone is not None:
+            return zone_of(stamp_zone)
     return None if timezone is None else parse_timezone(timezone, f"{where}: timezone")
 
 
@@ -412,23 +412,23 @@ def _regular(
         f"{where}: {len(frame)} rows over {size:.3g} steps of {interval:g} s",
         "check the first and the last time, or state the step",
     )
-    place = np.concatenate([[0], np.cumsum(np.round(ratio).astype(np.int64))])
+    grid_rows = np.concatenate([[0], np.cumsum(np.round(ratio).astype(np.int64))])
     notes = [
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
     notes += [*said, *clock_changes(index, where, zone), *skipped_hour(index, gaps - interval, where, zone)]
-    absent = int(place[-1]) + 1 - len(frame)
+    absent = int(grid_rows[-1]) + 1 - len(frame)
     if absent:
         row = int(np.argmax(ratio > 1.5))
         notes.append(
             f"{where}: {absent} rows are missing, the first after {index[row]:%Y-%m-%d %H:%M}; left empty."
         )
-        whole = np.zeros(int(place[-1]) + 1, dtype=np.int64)
-        whole[place] = lines
-        grid = stamps_of(seconds[0] + interval * np.arange(len(whole)), zone)
-        frame = frame.set_axis(stamps_of(seconds[0] + interval * place, zone), axis=0).reindex(grid)
-        lines = whole
+        grid_lines = np.zeros(int(grid_rows[-1]) + 1, dtype=np.int64)
+        grid_lines[grid_rows] = lines
+        grid = stamps_of(seconds[0] + interval * np.arange(len(grid_lines)), zone)
+        frame = frame.set_axis(stamps_of(seconds[0] + interval * grid_rows, zone), axis=0).reindex(grid)
+        lines = grid_lines
     if moved is not None and not absent:
         frame = frame.set_axis(index, axis=0)
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
@@ -438,8 +438,8 @@ def _commonest(gaps: Array) -> float:
     """The commonest step, of two that are equally common the earlier one. [s]"""
     if (gaps == gaps[0]).all():
         return float(gaps[0])
-    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
-    return float(lengths[np.lexsort((place, -counts))[0]])
+    lengths, first_rows, counts = np.unique(gaps, return_index=True, return_counts=True)
+    return float(lengths[np.lexsort((first_rows, -counts))[0]])
 
 
 def _without_jitter(
@@ -452,10 +452,10 @@ def _without_jitter(
     )
     for step in steps:
         if step > 0.0:
-            found = on_grid(seconds, step, _JITTER * step if tolerance is None else tolerance)
-            if found is not None:
-                said = f"stamps were moved to the grid of {_length(step)}, by {found[1]:g} s at most."
-                return found[0], step, said
+            aligned = on_grid(seconds, step, _JITTER * step if tolerance is None else tolerance)
+            if aligned is not None:
+                said = f"stamps were moved to the grid of {_length(step)}, by {aligned[1]:g} s at most."
+                return aligned[0], step, said
     return None
 
 

@@ -85,8 +85,8 @@ def cached_record(
     zone = parse_timezone(timezone, f"{path.name}: timezone")
     # The representation of plain values says all about them.
     key = (kind.__name__, file_hash(path), path.name, timezone, *map(_plain, options))
-    found = cached(key, (*_CODE, *code), lambda: _packed(make()))
-    return _unpacked(kind, found, Grid(zone=zone, **found.notes["grid"]), path.name)
+    entry = cached(key, (*_CODE, *code), lambda: _packed(make()))
+    return _unpacked(kind, entry, Grid(zone=zone, **entry.notes["grid"]), path.name)
 
 
 def _plain(value: object) -> object:
@@ -106,7 +106,8 @@ def _packed(record: Record) -> Cached:
         "sha256": record.sha256,
         "provenance": list(record.provenance),
         "origins": {
-            name: [one.unit, one.stated, one.line, one.of_interval] for name, one in record.origins.items()
+            name: [origin.unit, origin.stated, origin.line, origin.of_interval]
+            for name, origin in record.origins.items()
         },
         "last": None if knots is None else int(knots[-1]),
     }
@@ -118,9 +119,9 @@ def _packed(record: Record) -> Cached:
     return Cached(notes, numbers)
 
 
-def _unpacked(kind: type[AnyRecord], found: Cached, grid: Grid, where: str) -> AnyRecord:
+def _unpacked(kind: type[AnyRecord], entry: Cached, grid: Grid, where: str) -> AnyRecord:
     """The record of `_packed`."""
-    notes, numbers = found.notes, dict(found.columns)
+    notes, numbers = entry.notes, dict(entry.columns)
     lines = numbers.pop(_LINES).astype(np.int64)
     knots = None
     if notes["last"] is not None:

@@ -56,9 +56,9 @@ def without_units(frame: pd.DataFrame, where: str) -> tuple[pd.DataFrame, dict[s
             continue
         parts = frame[name].astype(str).str.extract(_WITH_UNIT)
         numbers, written = parts[0], parts[1]
-        there = numbers.notna()
+        has_number = numbers.notna()
         empty = frame[name].isna() | frame[name].astype(str).str.strip().str.lower().isin(EMPTY)
-        if (there | empty).all() and (written[there] == first[2]).all():
+        if (has_number | empty).all() and (written[has_number] == first[2]).all():
             columns[name], units[str(name)] = numbers, first[2]
     if not columns:
         return frame, units
@@ -93,14 +93,16 @@ def units_beside(frame: pd.DataFrame, where: str) -> dict[str, str]:
     names = list(frame.columns)
     if not frame.columns.is_unique:
         return units
-    for place, name in enumerate(names):
+    for position, name in enumerate(names):
         if not _UNIT_NAME.fullmatch(str(name).strip()):
             continue
         entries = frame[name].dropna().astype(str).str.strip()
         written = [text for text in entries.unique().tolist() if text.lower() not in EMPTY]
         if not written or any(parse_unit(text) is None for text in written):
             continue
-        beside = [k for k in (place + 1, place - 1) if 0 < k < len(names) and has_numbers(frame[names[k]])]
+        beside = [
+            k for k in (position + 1, position - 1) if 0 < k < len(names) and has_numbers(frame[names[k]])
+        ]
         if not beside:
             continue
         column = str(names[beside[0]])

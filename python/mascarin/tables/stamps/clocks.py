@@ -115,8 +115,8 @@ def stamps_from(
         _require_likely_order(index, time_format, lines, where)
     if offset:
         return Stamped(possible(index, lines, where).tz_convert(zone), notes)
-    found = _local(index, clock, zone, lines, where)
-    return Stamped(found.times, (*notes, *found.notes))
+    stamped = _local(index, clock, zone, lines, where)
+    return Stamped(stamped.times, (*notes, *stamped.notes))
 
 
 def _unreadable(
@@ -124,9 +124,9 @@ def _unreadable(
 ) -> str:
     """Text of the refusal of stamps: among many dates in one form, the row that is none is the cause."""
     row = int(bad[0])
-    others = np.flatnonzero(written.str.extract(DATE)["a"].isna().to_numpy())
-    if 0 < len(others) < 0.1 * len(written) and time_format is None:
-        row = int(others[0])
+    undated_rows = np.flatnonzero(written.str.extract(DATE)["a"].isna().to_numpy())
+    if 0 < len(undated_rows) < 0.1 * len(written) and time_format is None:
+        row = int(undated_rows[0])
     expected = f"the format {time_format!r}" if time_format else _ISO
     entry = str(written.iloc[row])
     remedy = "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
@@ -224,8 +224,8 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
     values = text.to_numpy(dtype=np.float64)
     digits = _of_digits(values)
     if digits is not None:
-        found = _local(pd.DatetimeIndex(digits), clock, zone, lines, where)
-        return Stamped(found.times, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
+        stamped = _local(pd.DatetimeIndex(digits), clock, zone, lines, where)
+        return Stamped(stamped.times, (f"stamps such as {values[0]:.0f} are digits of date and time.",))
     for low, high, unit, name in _SINCE_1970:
         if low <= values.min() and values.max() <= high:
             seconds = np.round(values * unit * 1e3).astype(np.int64)
@@ -234,8 +234,8 @@ def _of_numbers(text: pd.Series[Any], zone: tzinfo, clock: tzinfo, lines: Lines,
     if values.min() >= 20000.0 and values.max() <= 80000.0:
         # A day with eight decimals is read to the millisecond; clocks of loggers have whole seconds.
         seconds = np.round((values - _SPREADSHEET) * _DAY).astype(np.int64)
-        found = _local(pd.DatetimeIndex(seconds.astype("datetime64[s]")), clock, zone, lines, where)
-        return Stamped(found.times, (_SPREADSHEET_SAID.format(values[0]),))
+        stamped = _local(pd.DatetimeIndex(seconds.astype("datetime64[s]")), clock, zone, lines, where)
+        return Stamped(stamped.times, (_SPREADSHEET_SAID.format(values[0]),))
     raise InputError(
         f"{where}:{lines[0]}: time {text.iloc[0]} cannot be read, expected {_ISO}, seconds or milliseconds "
         "since 1970, days of a spreadsheet, or digits such as 202409040015; state the column of the times "
@@ -250,17 +250,17 @@ def _of_digits(values: Array) -> Any:
     width = len(f"{values[0]:.0f}")
     if width not in (8, 10, 12, 14) or len(f"{values[-1]:.0f}") != width:
         return None
-    rest = values.astype(np.int64)
+    leading_digits = values.astype(np.int64)
     parts: list[Lines] = []
     for _ in range((width - 8) // 2):
-        parts.insert(0, rest % 100)
-        rest //= 100
+        parts.insert(0, leading_digits % 100)
+        leading_digits //= 100
     parts = [
-        rest // 10000,
-        rest // 100 % 100,
-        rest % 100,
+        leading_digits // 10000,
+        leading_digits // 100 % 100,
+        leading_digits % 100,
         *parts,
-        *[np.zeros_like(rest)] * ((14 - width) // 2),
+        *[np.zeros_like(leading_digits)] * ((14 - width) // 2),
     ]
     year, month, day, hour, minute, second = parts
     if (
@@ -305,7 +305,7 @@ def _of_dates(
     seconds = 3600.0 * hour + 60.0 * minute + second
     orders = {"ymd": (a, b, c), "dmy": (c, b, a), "mdy": (c, a, b)}
     first_is_year = bool((parts["a"].str.len() == 4).all())
-    found = {}
+    index_of_order = {}
     for name, (year, month, day) in orders.items():
         if first_is_year != (name == "ymd") and (first_is_year or (parts["c"].str.len() == 4).any()):
             continue
@@ -314,18 +314,20 @@ def _of_dates(
             continue
         times = _times(full, month, day, seconds)
         if times is not None:
-            found[name] = pd.DatetimeIndex(times)
-    if not found:
+            index_of_order[name] = pd.DatetimeIndex(times)
+    if not index_of_order:
         return None
-    shares = {name: _share(index) for name, index in found.items()}
+    shares = {name: _share(index) for name, index in index_of_order.items()}
     best = max(shares, key=lambda name: shares[name])
     rivals = [name for name in shares if name != best and shares[name] >= _REGULAR]
-    rivals = [name for name in rivals if not found[name].equals(found[best])]
+    rivals = [name for name in rivals if not index_of_order[name].equals(index_of_order[best])]
     if "dmy" in (best, *rivals) and str(parts["mark"].iloc[0]) == ".":
         best, rivals = "dmy", []  # points stand between day, month and year alone (DIN 5008)
     if rivals:
         names = [best, *rivals]
-        readings = " or ".join(f"{found[name][0]:%Y-%m-%d %H:%M} ({FORMATS[name]})" for name in names)
+        readings = " or ".join(
+            f"{index_of_order[name][0]:%Y-%m-%d %H:%M} ({FORMATS[name]})" for name in names
+        )
         formats = " or ".join(repr(written_format(written.iloc[0], name)) for name in names)
         count = "both" if len(names) == 2 else "all of them"
         raise InputError(
@@ -333,7 +335,9 @@ def _of_dates(
             f"times; expected one reading: state time_format: {formats}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
-    return found[best], (f"stamps such as {written.iloc[0]!r} are {words}, by the regular times of all.",)
+    return index_of_order[best], (
+        f"stamps such as {written.iloc[0]!r} are {words}, by the regular times of all.",
+    )
 
 
 def _with_names(written: pd.Series[str]) -> tuple[pd.DatetimeIndex, tuple[str, ...]] | None:
@@ -342,9 +346,9 @@ def _with_names(written: pd.Series[str]) -> tuple[pd.DatetimeIndex, tuple[str, .
     for name in _NAMED:
         parsed = pd.to_datetime(written.iloc[:5], format=name, errors="coerce")
         if not parsed.isna().any():
-            whole = pd.to_datetime(written, format=name, errors="coerce")
-            if not whole.isna().any():
-                return pd.DatetimeIndex(whole), (f"stamps are read as {name!r}.",)
+            stamps = pd.to_datetime(written, format=name, errors="coerce")
+            if not stamps.isna().any():
+                return pd.DatetimeIndex(stamps), (f"stamps are read as {name!r}.",)
     return None
 
 
@@ -373,8 +377,8 @@ def _require_likely_order(index: pd.DatetimeIndex, time_format: str, lines: Line
     )
     if other is None:
         return
-    steps = [np.diff(one.astype("datetime64[s]").astype(np.int64)) for one in (index.to_numpy(), other)]
-    mine, theirs = (len(np.unique(one)) for one in steps)
+    steps = [np.diff(times.astype("datetime64[s]").astype(np.int64)) for times in (index.to_numpy(), other)]
+    mine, theirs = (len(np.unique(gaps)) for gaps in steps)
     if theirs == 1 and mine > 1 and steps[1][0] > 0:
         swapped = time_format.replace("%d", "%0").replace("%m", "%d").replace("%0", "%m")
         row = int(np.argmax(steps[0] != steps[1])) + 1
@@ -413,13 +417,13 @@ def offset_in_name(name: str) -> float | None:
     >>> offset_in_name("Date Time, GMT-05:00"), offset_in_name("time(UTC)"), offset_in_name("Date Time")
     (-5.0, 0.0, None)
     """
-    found = _ZONE.search(name)
-    if found is None:
+    match = _ZONE.search(name)
+    if match is None:
         return 0.0 if _PLAIN_ZONE.search(name) else None
-    hours = int(found["hours"]) + int(found["minutes"] or 0) / 60.0
+    hours = int(match["hours"]) + int(match["minutes"] or 0) / 60.0
     if hours > 14.0:
         return None
-    return -hours if found["sign"] != "+" else hours
+    return -hours if match["sign"] != "+" else hours
 
 
 def require_zone_has(zone: tzinfo, hours: float, years: tuple[int, int], name: str, where: str) -> None:

@@ -32,14 +32,14 @@ def written_format(example: str, order: str) -> str:
     >>> written_format("11/12/20 16.00", "dmy")
     '%d/%m/%y %H.%M'
     """
-    found = re.match(DATE, example)
-    if found is None:
+    match = re.match(DATE, example)
+    if match is None:
         return FORMATS[order]
-    mark = found["mark"]
-    year = "%Y" if max(len(found["a"]), len(found["c"])) == 4 else "%y"
+    mark = match["mark"]
+    year = "%Y" if max(len(match["a"]), len(match["c"])) == 4 else "%y"
     date = mark.join({"y": year, "m": "%m", "d": "%d"}[letter] for letter in order)
-    if found["hour"] is None:
+    if match["hour"] is None:
         return date
-    between = example[found.end("hour")]
-    clock = ("%I" if found["half"] else "%H") + f"{between}%M" + (f"{between}%S" if found["second"] else "")
-    return f"{date} {clock}" + (" %p" if found["half"] else "")
+    between = example[match.end("hour")]
+    clock = ("%I" if match["half"] else "%H") + f"{between}%M" + (f"{between}%S" if match["second"] else "")
+    return f"{date} {clock}" + (" %p" if match["half"] else "")

@@ -63,10 +63,10 @@ def _letters(text: pd.Series[Any]) -> Bytes | None:
         if column.null_count or len(column) != len(text):
             return None
         _, ends, content = column.buffers()
-        places = np.frombuffer(ends, dtype=np.int64)[column.offset : column.offset + len(column) + 1]
-        if not (np.diff(places) == width).all():
+        offsets = np.frombuffer(ends, dtype=np.int64)[column.offset : column.offset + len(column) + 1]
+        if not (np.diff(offsets) == width).all():
             return None
-        raw = np.frombuffer(content, dtype=np.uint8)[places[0] : places[-1]]
+        raw = np.frombuffer(content, dtype=np.uint8)[offsets[0] : offsets[-1]]
     except ImportError:
         try:
             joined = "".join(text.tolist())
@@ -85,14 +85,14 @@ def _letters(text: pd.Series[Any]) -> Bytes | None:
 def _times(letters: Bytes) -> npt.NDArray[np.datetime64] | None:
     columns = np.ascontiguousarray(letters.T)  # by place in the text, each a row in memory
     width = len(columns)
-    marks = [(at, mark) for at, mark in _MARKS if at < width]
-    if any((columns[at] != ord(mark)).any() for at, mark in marks):
+    marks = [(position, mark) for position, mark in _MARKS if position < width]
+    if any((columns[position] != ord(mark)).any() for position, mark in marks):
         return None
     if ((columns[10] != ord(" ")) & (columns[10] != ord("T"))).any():
         return None
-    between = {at for at, _ in marks} | {10}
+    between = {position for position, _ in marks} | {10}
     digits = columns - np.uint8(ord("0"))  # of what is below "0" a number above 9
-    if any((digits[at] > 9).any() for at in range(width) if at not in between):
+    if any((digits[position] > 9).any() for position in range(width) if position not in between):
         return None
 
     def number(first: int) -> npt.NDArray[np.int32]:

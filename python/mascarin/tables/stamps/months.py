@@ -50,8 +50,8 @@ def with_numbers_of_months(written: pd.Series[Any]) -> pd.Series[Any]:
     if _SIGNED.match(first):
         plain = written.str.replace("[年月]", "-", regex=True)
         return plain.str.replace("日 *", " ", regex=True).str.strip()
-    found = re.match(_NAMED, first)
-    if found is None or found["month"].lower() in _ENGLISH:
+    match = re.match(_NAMED, first)
+    if match is None or match["month"].lower() in _ENGLISH:
         return written
     parts = written.str.extract(_NAMED)
     if parts["month"].isna().any():

@@ -78,11 +78,11 @@ def _time_names(frame: pd.DataFrame) -> list[Hashable]:
         first = next((k for k in range(1, min(len(names), 8)) if _are_dates(frame[names[k]])), 0)
     if first + 1 < len(names):
         pair = [frame[name].iloc[:50].dropna().astype(str).str.strip() for name in names[first : first + 2]]
-        whole = [
+        matches = [
             len(part) > 0 and bool(part.str.fullmatch(form).all())
             for part, form in zip(pair, _PAIR, strict=True)
         ]
-        if all(whole) or (_are_days(frame[names[first]]) and _is_hours(frame, names[first + 1])):
+        if all(matches) or (_are_days(frame[names[first]]) and _is_hours(frame, names[first + 1])):
             return list(names[first : first + 2])
     return [names[first]]
 
@@ -162,8 +162,8 @@ def _of_days(frame: pd.DataFrame) -> pd.Series[Any]:
     year, day = (frame[name].to_numpy(dtype=np.float64) for name in frame.columns[:2])
     first = (year - 1970.0).astype(np.int64).astype("datetime64[Y]").astype("datetime64[s]")
     seconds = np.round((day - 1.0) * 86400.0).astype(np.int64)
-    near = 60 * np.round(seconds / 60.0).astype(np.int64)
-    seconds = near if np.all(np.abs(seconds - near) <= 1) else seconds
+    full_minutes = 60 * np.round(seconds / 60.0).astype(np.int64)
+    seconds = full_minutes if np.all(np.abs(seconds - full_minutes) <= 1) else seconds
     return pd.Series(first + seconds.astype("timedelta64[s]"), index=frame.index)
 
 

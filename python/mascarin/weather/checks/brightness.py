@@ -169,17 +169,17 @@ def bright_parts(record: WeatherRecord, index: pd.Index[pd.Timestamp]) -> list[S
 
 
 def _sentence(record: WeatherRecord, name: str, rows: Flags) -> str:
-    grid, found = record.grid, np.flatnonzero(rows)
+    grid, bright_rows = record.grid, np.flatnonzero(rows)
     values = record.columns[name]
-    worst = int(found[np.argmax(values[found])])
+    worst = int(bright_rows[np.argmax(values[bright_rows])])
     first, at_worst = (
         f"{stamp:%Y-%m-%d %H:%M}"
         for stamp in stamps_of(
-            grid.start + grid.interval * np.array([found[0], worst], dtype=float), grid.zone
+            grid.start + grid.interval * np.array([bright_rows[0], worst], dtype=float), grid.zone
         )
     )
     return (
-        f"{record.file}: {name} is {_LIMIT} in {len(found)} of {len(rows)} rows, first at {first}, "
+        f"{record.file}: {name} is {_LIMIT} in {len(bright_rows)} of {len(rows)} rows, first at {first}, "
         f"{values[worst]:.0f} W/m2 at {at_worst}; expected at most that. Check time zone, stamps, unit and "
         "sensor; what is calculated from it is bounded by the extraterrestrial irradiance."
     )

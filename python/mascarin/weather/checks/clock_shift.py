@@ -93,8 +93,8 @@ class ClockShift:
     @property
     def minutes(self) -> str:
         """Shift and uncertainty as text. [min]"""
-        own, uncertain = abs(self.late) / 60.0, self.uncertainty / 60.0
-        return f"{own:.0f} min (standard uncertainty {uncertain:.1f} min)"
+        shift, uncertain = abs(self.late) / 60.0, self.uncertainty / 60.0
+        return f"{shift:.0f} min (standard uncertainty {uncertain:.1f} min)"
 
     def exceeds(self, limit: float) -> bool:
         """Whether the shift exceeds a limit [s] and three times its uncertainty."""
@@ -154,8 +154,8 @@ def shifts_of(record: WeatherRecord, latitude: float, longitude: float) -> tuple
     days = days_of(record, latitude, longitude)
     if days is None:
         return ()
-    found = (_by_balance(days), _by_symmetry(days))
-    return tuple(shift for shift in found if shift is not None)
+    shifts = (_by_balance(days), _by_symmetry(days))
+    return tuple(shift for shift in shifts if shift is not None)
 
 
 def days_of(
@@ -196,11 +196,11 @@ def days_of(
     sun = SunPath.over(latitude, longitude, starts[0] + nodes[0] - 1.0, starts[-1] + nodes[-1] + 1.0)
     directions = sun.vector(starts[:, None] + nodes)
     sines = np.maximum(directions[..., 2], 0.0)
-    lit = sines.max(axis=1) > _LOW
-    if not lit.any() or "global_horizontal" not in values:
+    sunlit = sines.max(axis=1) > _LOW
+    if not sunlit.any() or "global_horizontal" not in values:
         return None
-    lit_values = {name: column[lit] for name, column in values.items()}
-    return Days(lit_values, sines[lit], directions[lit], round(width / NODE))
+    lit_values = {name: column[sunlit] for name, column in values.items()}
+    return Days(lit_values, sines[sunlit], directions[sunlit], round(width / NODE))
 
 
 LAGS: Final = np.arange(-_MOST, _MOST + 1, 2)
@@ -208,20 +208,20 @@ LAGS: Final = np.arange(-_MOST, _MOST + 1, 2)
 
 def _best(scores: Array) -> float:
     """Shift with the highest score, between those that were tried. [s]"""
-    place = int(np.argmax(scores))
-    inner = min(max(place, 1), len(scores) - 2)
-    left, middle, right = scores[inner - 1 : inner + 2]
-    bend = left - 2.0 * middle + right
-    part = 0.5 * (left - right) / bend if bend < 0.0 and inner == place else 0.0
-    return float((LAGS[place] + 2.0 * part) * NODE)
+    peak = int(np.argmax(scores))
+    inner = min(max(peak, 1), len(scores) - 2)
+    before, centre, after = scores[inner - 1 : inner + 2]
+    bend = before - 2.0 * centre + after
+    part = 0.5 * (before - after) / bend if bend < 0.0 and inner == peak else 0.0
+    return float((LAGS[peak] + 2.0 * part) * NODE)
 
 
 def _with_uncertainty(scores: Array, floor: float) -> tuple[float, float]:
     """Shift for the sum of the scores of days, shape (days, shifts), and its uncertainty by bootstrap. [s]"""
     best = _best(scores.sum(axis=0))
     rng = np.random.default_rng(0)
-    drawn = rng.multinomial(len(scores), np.full(len(scores), 1.0 / len(scores)), size=_SAMPLES)
-    spread = float(np.std([_best(row) for row in drawn.astype(np.float64) @ scores]))
+    sample_counts = rng.multinomial(len(scores), np.full(len(scores), 1.0 / len(scores)), size=_SAMPLES)
+    spread = float(np.std([_best(row) for row in sample_counts.astype(np.float64) @ scores]))
     return best, float(np.hypot(spread, floor * (1.0 + 3.0 / len(scores))))
 
 
@@ -256,17 +256,17 @@ def _residuals(days: Days, used: Flags, late: int) -> Array:
     diffuse = days.values.get("diffuse_horizontal")
     weight = used.astype(np.float64)
     if diffuse is not None:
-        wanted = np.where(used, total - diffuse, 0.0)
-        gain = float(np.clip((wanted * beam).sum() / max((beam * beam).sum(), 1e-9), 0.8, 1.25))
-        return np.asarray(wanted - gain * beam)
-    wanted = np.where(used, total, 0.0)
+        target = np.where(used, total - diffuse, 0.0)
+        gain = float(np.clip((target * beam).sum() / max((beam * beam).sum(), 1e-9), 0.8, 1.25))
+        return np.asarray(target - gain * beam)
+    target = np.where(used, total, 0.0)
     terms = np.stack([beam, sine * weight, weight], axis=-1)
     scale = np.array([500.0, 1.0, 1.0])
     terms /= scale
     matrix = np.einsum("dri,drj->dij", terms, terms) + 1e-6 * np.eye(3)
-    right = np.einsum("dri,dr->di", terms, wanted)
+    right = np.einsum("dri,dr->di", terms, target)
     fitted = np.linalg.solve(matrix, right[..., None])[..., 0]
-    return np.asarray((wanted - np.einsum("dri,di->dr", terms, fitted)) * weight)
+    return np.asarray((target - np.einsum("dri,di->dr", terms, fitted)) * weight)
 
 
 def _is_split(days: Days, used: Flags, late: int) -> bool:
@@ -286,19 +286,21 @@ def _is_split(days: Days, used: Flags, late: int) -> bool:
 
 def _by_symmetry(days: Days) -> ClockShift | None:
     """The shift for which most hours of clear days have the form of a clear sky."""
-    seen = days.sines.max(axis=0) > _LOW  # rows that are dark on all days are left out
-    lit = [bool(seen[k * days.width : (k + 1) * days.width + 2 * _MOST].any()) for k in range(days.rows)]
-    total = days.values["global_horizontal"][:, lit]
+    sunlit = days.sines.max(axis=0) > _LOW  # rows that are dark on all days are left out
+    sunlit_rows = [
+        bool(sunlit[k * days.width : (k + 1) * days.width + 2 * _MOST].any()) for k in range(days.rows)
+    ]
+    total = days.values["global_horizontal"][:, sunlit_rows]
     scores = np.zeros((len(total), len(LAGS)))
     forms = [_CLEAR * days.sines * np.exp(-decay / np.maximum(days.sines, 1e-3)) for decay in _DECAYS]
     for column, lag in enumerate(LAGS.tolist()):
-        usable = (days.means(days.sines, lag)[:, lit] > _LOW) & (total > 0.0)
+        usable = (days.means(days.sines, lag)[:, sunlit_rows] > _LOW) & (total > 0.0)
         for form in forms:
-            expected = days.means(form, lag)[:, lit]
+            expected = days.means(form, lag)[:, sunlit_rows]
             ratio = np.log(np.where(usable, total, 1.0) / np.where(usable, expected, 1.0))
             apart = (ratio[:, :, None] - ratio[:, None, :]) / _WIDTH
-            near = np.exp(-0.5 * apart * apart) * (usable[:, None, :] & usable[:, :, None])
-            scores[:, column] = np.maximum(scores[:, column], near.sum(axis=2).max(axis=1))
+            agreement = np.exp(-0.5 * apart * apart) * (usable[:, None, :] & usable[:, :, None])
+            scores[:, column] = np.maximum(scores[:, column], agreement.sum(axis=2).max(axis=1))
     rows = np.maximum((days.means(days.sines, 0) > _LOW).sum(axis=1), 1)
     clear = (scores.max(axis=1) >= _CLEAR_PART * rows) & (rows >= 4)
     if not clear.any():
@@ -315,7 +317,7 @@ def _outside(days: Days, late: float) -> float:
     high = sine > 0.7 * sine.max()
     gain = max(1.0, float(np.quantile(total[high] / clear[high], 0.9)))
     noon = np.argmax(sine, axis=1)[:, None]
-    place = np.arange(days.rows)
-    side = place > noon if late > 0.0 else place < noon
+    row = np.arange(days.rows)
+    side = row > noon if late > 0.0 else row < noon
     low = side & (sine < _LOW_SUN)
     return float(np.maximum(total - gain * clear - _TWILIGHT, 0.0)[low].sum() / max(total.sum(), 1e-9))

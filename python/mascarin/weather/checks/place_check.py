@@ -47,26 +47,43 @@ def require_place(record: WeatherRecord, site: SiteLike) -> None:
 
 
 def _require_near(record: WeatherRecord, site: SiteLike) -> None:
-    place = record.site
-    if place is None:
+    weather_site = record.site
+    if weather_site is None:
         return
-    east = float(site.longitude) - place.longitude
+    east = float(site.longitude) - weather_site.longitude
     away = [
-        ("latitude", float(site.latitude), place.latitude, abs(float(site.latitude) - place.latitude) > _FAR),
-        ("longitude", float(site.longitude), place.longitude, abs((east + 180.0) % 360.0 - 180.0) > _FAR),
+        (
+            "latitude",
+            float(site.latitude),
+            weather_site.latitude,
+            abs(float(site.latitude) - weather_site.latitude) > _FAR,
+        ),
+        (
+            "longitude",
+            float(site.longitude),
+            weather_site.longitude,
+            abs((east + 180.0) % 360.0 - 180.0) > _FAR,
+        ),
     ]
     height = getattr(site, "altitude", None)
     # A table without a stated altitude has 0.
-    if height is not None and (record.of_year or place.altitude != 0.0):
-        away.append(("altitude", float(height), place.altitude, abs(float(height) - place.altitude) > _HIGH))
-    for name, here, there, far in away:
+    if height is not None and (record.of_year or weather_site.altitude != 0.0):
+        away.append(
+            (
+                "altitude",
+                float(height),
+                weather_site.altitude,
+                abs(float(height) - weather_site.altitude) > _HIGH,
+            )
+        )
+    for name, site_value, record_value, far in away:
         if not far:
             continue
         unit, limit = ("m", _HIGH) if name == "altitude" else ("deg", _FAR)
-        sign = " (opposite sign)" if abs(here + there) <= limit else ""
+        sign = " (opposite sign)" if abs(site_value + record_value) <= limit else ""
         raise InputError(
-            f"{record.file}: the weather is of {name} {there:g} {unit}{_called(record)}, the building "
-            f"is at {name} {here:g} {unit}{sign}; expected a difference of at most {limit:g} {unit}. "
+            f"{record.file}: the weather is of {name} {record_value:g} {unit}{_called(record)}, the building "
+            f"is at {name} {site_value:g} {unit}{sign}; expected a difference of at most {limit:g} {unit}. "
             f"{_remedy(record, name)}"
         )
 
@@ -77,10 +94,10 @@ def _require_zone(record: WeatherRecord, text: str) -> None:
     years = (label, _TODAY)
     if _offsets(zone, years) & _offsets(record.grid.zone, years):
         return
-    found = zone_name(timezone(standard_offset(zone, label)))
+    winter_time = zone_name(timezone(standard_offset(zone, label)))
     raise InputError(
         f"{record.file}: the weather's clock is {zone_name(record.grid.zone)}{_called(record)}, the "
-        f"building's time zone is {text} (winter time {found}); expected the same winter time. "
+        f"building's time zone is {text} (winter time {winter_time}); expected the same winter time. "
         f"{_remedy(record, 'timezone')}"
     )
 

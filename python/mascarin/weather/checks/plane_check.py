@@ -126,17 +126,19 @@ def _said(
     sure = _of_directions([(plane, shift) for plane, shift in shown if shift is not None])
     if not sure:
         return []
-    whole = _combined([shift for _, shift in sure])
-    if abs(whole.late) < max(_NAMED, 3.0 * whole.uncertainty):
+    combined = _combined([shift for _, shift in sure])
+    if abs(combined.late) < max(_NAMED, 3.0 * combined.uncertainty):
         return []
-    text = _sentence([plane for plane, _ in sure], whole)
+    text = _sentence([plane for plane, _ in sure], combined)
     agreed = len(sure) > 1 and all(
-        abs(shift.late - whole.late) < _AGREED * shift.uncertainty for _, shift in sure
+        abs(shift.late - combined.late) < _AGREED * shift.uncertainty for _, shift in sure
     )
-    certain = _LARGEST < abs(whole.late) < _FARTHEST and whole.days >= _FEWEST_DAYS
-    if not (certain and (agreed or _is_clear(whole))) or _contradicted(record, whole, latitude, longitude):
+    certain = _LARGEST < abs(combined.late) < _FARTHEST and combined.days >= _FEWEST_DAYS
+    if not (certain and (agreed or _is_clear(combined))) or _contradicted(
+        record, combined, latitude, longitude
+    ):
         return [f"{record.file}: warning: {text}; the clock is used as stated."]
-    minutes = -round(whole.late / 60.0)
+    minutes = -round(combined.late / 60.0)
     stated = ", ".join(f"{plane.name} {plane.azimuth:g} and {plane.tilt:g} deg" for plane, _ in sure)
     raise InputError(
         f"{record.file}: {text}; expected less than {_LARGEST / 60.0:g} min. Check the time zone (now "

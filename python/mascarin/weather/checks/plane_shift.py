@@ -47,7 +47,7 @@ _NOISE: Final = (10.0, 0.05)
 """Standard deviation of clear hours: of any [W/m2], and relative to the larger irradiance [-]."""
 _FAR: Final = 3.0
 """Residuals beyond this many standard deviations decide nothing. [-]"""
-_NEAR: Final = 1.5
+_CLOSE_RESIDUAL: Final = 1.5
 """Hours within this many standard deviations follow the plane. [-]"""
 _CLEAR_PART: Final = 0.75
 """Part of the hours of a day that follow the plane from which a day is a clear one. [-]"""
@@ -174,9 +174,9 @@ def shift_by_plane(
     clear &= _brightness(days) >= _BRIGHT
     if not clear.any():
         return None
-    whole = _estimate(terms, clear, None)
+    estimate = _estimate(terms, clear, None)
     halves = [_estimate(terms, clear, half) for half in (_FIRST, _SECOND)]
-    if whole is None or halves[0] is None or halves[1] is None:
+    if estimate is None or halves[0] is None or halves[1] is None:
         return None
     apart = 0.5 * abs(halves[0][0] - halves[1][0])
     days_apart = 0.0
@@ -187,9 +187,9 @@ def shift_by_plane(
         if both[0] is None or both[1] is None:
             return None
         days_apart = 0.5 * abs(both[0][0] - both[1][0])
-    uncertainty = float(np.sqrt(whole[1] ** 2 + apart**2 + days_apart**2 + FLOOR**2))
-    stated = float(_near(terms[int(np.argmin(np.abs(LAGS)))], clear).mean())
-    return PlaneShift(whole[0], uncertainty, len(numbers), whole[2], stated)
+    uncertainty = float(np.sqrt(estimate[1] ** 2 + apart**2 + days_apart**2 + FLOOR**2))
+    stated = float(_is_close(terms[int(np.argmin(np.abs(LAGS)))], clear).mean())
+    return PlaneShift(estimate[0], uncertainty, len(numbers), estimate[2], stated)
 
 
 def _brightness(days: Days) -> Array:
@@ -212,12 +212,14 @@ def _normal(azimuth: float, tilt: float) -> tuple[Array, Array, Array]:
 def _terms(days: Days, plane: MeasuredPlane, late: int) -> _Terms:
     normal, aside, down = _normal(plane.azimuth, plane.tilt)
     total, measured = days.values["global_horizontal"], days.values[plane.name]
-    lit = (days.directions @ normal > 0.0) & (days.sines > 0.0)
+    sunlit = (days.directions @ normal > 0.0) & (days.sines > 0.0)
     sine = days.means(days.sines, late)
     used = (sine > _LOW) & np.isfinite(total) & np.isfinite(measured) & (total > _LEAST)
     height = np.where(used, sine, 1.0)
     # Direction to the sun while it shines on the plane, for each unit of its part on the horizontal.
-    toward = np.stack([days.means(days.directions[..., k] * lit, late) / height for k in range(3)], axis=-1)
+    toward = np.stack(
+        [days.means(days.directions[..., k] * sunlit, late) / height for k in range(3)], axis=-1
+    )
     beam = toward @ normal
     low = 1.0 / height - 1.0
     sky, ground = 0.5 * (1.0 + np.cos(np.radians(plane.tilt))), 0.5 * (1.0 - np.cos(np.radians(plane.tilt)))
@@ -248,25 +250,25 @@ def _fit(term: _Terms, clear: Flags, weight: float) -> tuple[Array, Array]:
     """Fitted numbers [standard uncertainties], and residuals of the clear days. [standard deviations]"""
     residual, slopes, used = term.residual[clear], term.slopes[clear], term.used[clear]
     numbers = np.zeros(slopes.shape[-1])
-    left = residual
+    deviation = residual
     for _ in range(_ITERATIONS):
         # Weights of Geman & McClure: hours that do not follow count little.
-        weights = used * weight / (1.0 + (left / _FAR) ** 2) ** 2
+        weights = used * weight / (1.0 + (deviation / _FAR) ** 2) ** 2
         matrix = np.einsum("drj,dr,drk->jk", slopes, weights, slopes) + np.eye(len(numbers))
         numbers = np.linalg.solve(matrix, np.einsum("drj,dr,dr->j", slopes, weights, residual))
-        left = residual - slopes @ numbers
-    return numbers, left
+        deviation = residual - slopes @ numbers
+    return numbers, deviation
 
 
 def _estimate(terms: list[_Terms], clear: Flags, half: int | None) -> tuple[float, float, float] | None:
     """Shift and what the fit leaves uncertain [s], and the part of the hours that follow; None at an end."""
     chosen = [term.of(half) for term in terms]
     misfit = np.array([_misfit(term, clear) for term in chosen])
-    place = int(np.argmin(misfit))
-    if place in (0, len(misfit) - 1) or misfit[place] >= _MOST_MISFIT:
+    best = int(np.argmin(misfit))
+    if best in (0, len(misfit) - 1) or misfit[best] >= _MOST_MISFIT:
         return None
-    late, spread = _lowest(misfit, place)
-    return late, spread, float(_near(chosen[place], clear).mean())
+    late, spread = _lowest(misfit, best)
+    return late, spread, float(_is_close(chosen[best], clear).mean())
 
 
 def _misfit(term: _Terms, clear: Flags) -> float:
@@ -275,39 +277,39 @@ def _misfit(term: _Terms, clear: Flags) -> float:
     if count < 3 * int(clear.sum()):
         return float("inf")
     weight = _HOURS / count
-    numbers, left = _fit(term, clear, weight)
-    square = left * left / (1.0 + (left / _FAR) ** 2) * term.used[clear]
+    numbers, deviation = _fit(term, clear, weight)
+    square = deviation * deviation / (1.0 + (deviation / _FAR) ** 2) * term.used[clear]
     return float(weight * square.sum() + numbers @ numbers)
 
 
-def _near(term: _Terms, clear: Flags) -> Flags:
-    _, left = _fit(term, clear, _HOURS / float(term.used[clear].sum()))
-    return np.asarray(np.abs(left)[term.used[clear]] < _NEAR)
+def _is_close(term: _Terms, clear: Flags) -> Flags:
+    _, deviation = _fit(term, clear, _HOURS / float(term.used[clear].sum()))
+    return np.asarray(np.abs(deviation)[term.used[clear]] < _CLOSE_RESIDUAL)
 
 
 def _follows(term: _Terms) -> Array:
     """Part of the hours of each day that follow the plane, with what is fitted to this day. [-]"""
-    left = term.residual
+    deviation = term.residual
     for _ in range(_ITERATIONS):
-        weights = term.used / (1.0 + (left / _FAR) ** 2) ** 2
+        weights = term.used / (1.0 + (deviation / _FAR) ** 2) ** 2
         weighted = term.slopes * weights[..., None]
         matrix = np.einsum("drj,drk->djk", weighted, term.slopes) + np.eye(term.slopes.shape[-1])
         right = np.einsum("drj,dr->dj", weighted, term.residual)
         numbers = np.linalg.solve(matrix, right[..., None])[..., 0]
-        left = term.residual - np.einsum("drj,dj->dr", term.slopes, numbers)
+        deviation = term.residual - np.einsum("drj,dj->dr", term.slopes, numbers)
     count = term.used.sum(axis=1)
-    near = ((np.abs(left) < _NEAR) & term.used).sum(axis=1)
-    return np.asarray(np.where(count >= _FEWEST, near / np.maximum(count, 1), 0.0))
+    close_hours = ((np.abs(deviation) < _CLOSE_RESIDUAL) & term.used).sum(axis=1)
+    return np.asarray(np.where(count >= _FEWEST, close_hours / np.maximum(count, 1), 0.0))
 
 
-def _lowest(misfit: Array, place: int) -> tuple[float, float]:
+def _lowest(misfit: Array, best: int) -> tuple[float, float]:
     """Shift with the least misfit, and how far the misfit is one more than that. [s]"""
-    left, middle, right = np.minimum(misfit[place - 1 : place + 2], _MOST_MISFIT)
-    bend = left - 2.0 * middle + right
-    part = float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if bend > 0.0 else 0.0
+    before, lowest, after = np.minimum(misfit[best - 1 : best + 2], _MOST_MISFIT)
+    bend = before - 2.0 * lowest + after
+    part = float(np.clip(0.5 * (before - after) / bend, -0.5, 0.5)) if bend > 0.0 else 0.0
     step = float(LAGS[1] - LAGS[0]) * NODE
-    late = float(LAGS[place]) * NODE + part * step
-    near = np.flatnonzero(misfit < middle + 1.0)
+    late = float(LAGS[best]) * NODE + part * step
+    likely = np.flatnonzero(misfit < lowest + 1.0)
     curved = step / np.sqrt(0.5 * bend) if bend > 0.0 else 9e9
     # Half of what is as good, or what the curvature says; the larger one.
-    return late, float(max(curved, 0.5 * (near[-1] - near[0]) * step))
+    return late, float(max(curved, 0.5 * (likely[-1] - likely[0]) * step))

@@ -84,12 +84,12 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     # The sun over a year takes half as long as a run over three months: what has passed once is remembered.
     digest = hashlib.sha256(b"".join(record.columns[name].tobytes() for name in RADIATION if name in
                                      record.columns)).hexdigest()  # fmt: skip
-    kind, given = record.kinds[_name(record)], sorted({*RADIATION} & {*record.columns} - record.assumed)
+    kind, measured = record.kinds[_name(record)], sorted({*RADIATION} & {*record.columns} - record.assumed)
     key = (
         "clock",
         digest,
         kind,
-        given,
+        measured,
         record.file,
         grid.start,
         grid.interval,
@@ -281,15 +281,15 @@ def _refuse_jump(record: WeatherRecord, middle: Array, turns: npt.NDArray[np.com
     usual = float(np.median(size[size > 0.0]))
     days *= np.minimum(1.0, usual / np.maximum(size, 1e-9))
     total = np.concatenate([[0.0], np.cumsum(days)])
-    place = np.arange(_FEWEST_DAYS, len(days) - _FEWEST_DAYS + 1)
-    before = total[place] - total[np.maximum(place - _MOST_DAYS, 0)]
-    after = total[np.minimum(place + _MOST_DAYS, len(days))] - total[place]
+    split = np.arange(_FEWEST_DAYS, len(days) - _FEWEST_DAYS + 1)
+    before = total[split] - total[np.maximum(split - _MOST_DAYS, 0)]
+    after = total[np.minimum(split + _MOST_DAYS, len(days))] - total[split]
     jumps = np.degrees(np.angle(after * np.conj(before))) / 15.0
     worst = int(np.argmax(np.abs(jumps)))
     jump = float(jumps[worst])
     if abs(jump) < _JUMP:
         return
-    when = stamps_of(np.array([noon + 86400.0 * float(place[worst])]), grid.zone)[0]
+    when = stamps_of(np.array([noon + 86400.0 * float(split[worst])]), grid.zone)[0]
     fixed = fixed_offset(grid.zone)
     advice = (
         "The clock of the file probably follows daylight saving time: state the zone of the place, such as "

@@ -41,7 +41,7 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
     """
     from pvlib.irradiance import erbs
 
-    lit = up > np.sin(np.radians(3.0))
+    sunlit = up > np.sin(np.radians(3.0))
     # pvlib uses the day of the year only for the extraterrestrial irradiance. Scaling the global irradiance
     # to that day gives the clearness index for the irradiance that is used here.
     zenith = np.degrees(np.arccos(np.clip(up, 0.0, 1.0)))
@@ -51,7 +51,7 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
     scale = float(get_extra_radiation(94.0)) / extra
     result = erbs(np.maximum(total, 0.0) * scale, zenith, day)
     diffuse = np.asarray(result["dhi"], dtype=np.float64) / scale
-    return np.where(lit, np.clip(diffuse, 0.0, np.maximum(total, 0.0)), total)
+    return np.where(sunlit, np.clip(diffuse, 0.0, np.maximum(total, 0.0)), total)
 
 
 def cloud_cover(total: Array, up: Array, interval: float) -> Array:
@@ -89,8 +89,8 @@ def cloud_cover(total: Array, up: Array, interval: float) -> Array:
         _running(np.where(usable, clear, 0.0), width), 1e-9
     )
     tenths = 10.0 * np.clip(1.0 - ratio, 0.0, _CLOUD_LOSS) / _CLOUD_LOSS
-    place = np.arange(len(total))
-    return np.interp(place, place[usable], tenths[usable])
+    position = np.arange(len(total))
+    return np.interp(position, position[usable], tenths[usable])
 
 
 def _running(values: Array, width: int) -> Array:

@@ -107,9 +107,9 @@ def from_means(
     else:
         horizontal = np.maximum(total - diffuse, 0.0)
         # The limit also holds where the horizontal part of the beam is negligible: such a beam is diffuse.
-        kept = np.minimum(horizontal, BEAM_CEILING * ((clear * up) @ weights))
-        beam = clear * index_nodes(kept, clear * up, BEAM_CLEAR)
-        moved = total - diffuse - kept
+        bounded = np.minimum(horizontal, BEAM_CEILING * ((clear * up) @ weights))
+        beam = clear * index_nodes(bounded, clear * up, BEAM_CLEAR)
+        moved = total - diffuse - bounded
     sky = _diffuse(diffuse + moved, extra * up, weights)
     return _sky(start, interval, (beam, sky, beam * up + sky), moved)
 
@@ -145,8 +145,8 @@ def direct_by_closure(total: Array, diffuse: Array, up: Array, clear: Array) -> 
     clear : ndarray, shape (n,)
         Clear beam; the result is at most `BEAM_CEILING` times this [W/m2].
     """
-    lit = up > 0.0
-    beam = np.where(lit, np.maximum(total - diffuse, 0.0) / np.where(lit, up, 1.0), 0.0)
+    sunlit = up > 0.0
+    beam = np.where(sunlit, np.maximum(total - diffuse, 0.0) / np.where(sunlit, up, 1.0), 0.0)
     return np.asarray(np.minimum(beam, BEAM_CEILING * clear))
 
 
@@ -155,16 +155,16 @@ def _normal_beam(means: Array, clear: Array, up: Array, weights: Array) -> Array
     if np.any(means < 0.0):
         # Night offsets of a sensor: kept as they are, evenly.
         return _normal_beam(np.maximum(means, 0.0), clear, up, weights) + np.minimum(means, 0.0)[:, None]
-    kept = np.minimum(means, BEAM_CEILING * (clear @ weights))
-    return np.asarray(clear * index_nodes(kept, clear, BEAM_CLEAR) + _even(means - kept, up, weights))
+    bounded = np.minimum(means, BEAM_CEILING * (clear @ weights))
+    return np.asarray(clear * index_nodes(bounded, clear, BEAM_CLEAR) + _even(means - bounded, up, weights))
 
 
 def _even(means: Array, up: Array, weights: Array) -> Array:
     """Means at the nodes, evenly while the sun is up; evenly all the time where it is not."""
-    lit = (up > 0.0).astype(np.float64)
-    share = lit @ weights
-    lit = np.where(share[:, None] > 0.0, lit, 1.0)
-    return np.asarray((means / (lit @ weights))[:, None] * lit)
+    sunlit = (up > 0.0).astype(np.float64)
+    share = sunlit @ weights
+    sunlit = np.where(share[:, None] > 0.0, sunlit, 1.0)
+    return np.asarray((means / (sunlit @ weights))[:, None] * sunlit)
 
 
 def _towards(horizontal: Array, clear: Array, even: Array, up: Array, weights: Array) -> Array:
@@ -180,9 +180,9 @@ def _towards(horizontal: Array, clear: Array, even: Array, up: Array, weights: A
 
 def _diffuse(means: Array, horizontal: Array, weights: Array) -> Array:
     """Diffuse at the nodes: extraterrestrial horizontal times an index; twilight and offsets evenly."""
-    kept = np.minimum(np.maximum(means, 0.0), DIFFUSE_CEILING * (horizontal @ weights))
-    sky = horizontal * index_nodes(kept, horizontal, DIFFUSE_USUAL)
-    return np.asarray(sky + (means - kept)[:, None])
+    bounded = np.minimum(np.maximum(means, 0.0), DIFFUSE_CEILING * (horizontal @ weights))
+    sky = horizontal * index_nodes(bounded, horizontal, DIFFUSE_USUAL)
+    return np.asarray(sky + (means - bounded)[:, None])
 
 
 def _sky(start: float, interval: float, nodes: tuple[Array, Array, Array], moved: Array) -> SkyProfiles:

@@ -97,10 +97,10 @@ class SunPath:
         ndarray, shape (..., 3)
             East, north and up components; up <= 0 below the horizon [-].
         """
-        place = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        slow = _cubic(self.slow, place)
+        position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
+        slow = _cubic(self.slow, position)
         slow /= np.sqrt(np.sum(slow * slow, axis=-1, keepdims=True))
-        return _from_pole(_turn(slow, -_TURN * _NODE_STEP * place), np.radians(self.latitude))
+        return _from_pole(_turn(slow, -_TURN * _NODE_STEP * position), np.radians(self.latitude))
 
     def normal_irradiance(self, time: Array) -> Array:
         """Extraterrestrial normal irradiance.
@@ -115,8 +115,8 @@ class SunPath:
         ndarray, shape (...,)
             Irradiance on a plane facing the sun, outside the atmosphere [W/m2].
         """
-        place = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
-        return _cubic(self.extra[:, None], place)[..., 0]
+        position = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
+        return _cubic(self.extra[:, None], position)[..., 0]
 
 
 @cache
@@ -130,11 +130,11 @@ def _algorithm() -> ModuleType:
         return sys.modules[name]
     package = importlib.util.find_spec("pvlib")
     folders = package.submodule_search_locations if package else None
-    found = importlib.machinery.PathFinder.find_spec(name, folders)
-    if found is None or found.loader is None:
+    spec = importlib.machinery.PathFinder.find_spec(name, folders)
+    if spec is None or spec.loader is None:
         return importlib.import_module(name)
-    module = importlib.util.module_from_spec(found)
-    found.loader.exec_module(module)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
     return module
 
 
@@ -166,14 +166,14 @@ def _turn(vector: Array, angle: Array) -> Array:
     )
 
 
-def _cubic(nodes: Array, place: Array) -> Array:
+def _cubic(nodes: Array, position: Array) -> Array:
     """Four-point Lagrange interpolation at fractional node numbers."""
-    base = np.clip(np.floor(place).astype(np.int64), 1, len(nodes) - 3)
-    x = (place - base)[..., None]
-    before, here, after, beyond = nodes[base - 1], nodes[base], nodes[base + 1], nodes[base + 2]
+    base = np.clip(np.floor(position).astype(np.int64), 1, len(nodes) - 3)
+    x = (position - base)[..., None]
+    before, current, after, beyond = nodes[base - 1], nodes[base], nodes[base + 1], nodes[base + 2]
     return np.asarray(
         -x * (x - 1.0) * (x - 2.0) / 6.0 * before
-        + (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * here
+        + (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * current
         - (x + 1.0) * x * (x - 2.0) / 2.0 * after
         + (x + 1.0) * x * (x - 1.0) / 6.0 * beyond
     )

@@ -104,11 +104,11 @@ class CorrectedForcing:
         for name in names:
             self._require(name, weather, measured)
         self._weather = _cut(weather, self._given, steps)
-        own = {name for name in self._channels if name in weather.columns}
-        further = {name for name in names if name in self._channels} | own
+        weather_columns = {name for name in self._channels if name in weather.columns}
+        further = {name for name in names if name in self._channels} | weather_columns
         for name in sorted(further):
             self._columns[name] = _cut(record_of(weather, measured, name), [name], steps)
-        self._of_weather = own
+        self._of_weather = weather_columns
 
     def _require(self, name: str, weather: WeatherRecord, measured: Record | None) -> None:
         """Refuse a name of no column that acts."""
@@ -122,7 +122,7 @@ class CorrectedForcing:
             )
         if name in self._given or name in self._channels:
             return
-        known = [SUN, *self._given, *(c for c in self._channels if c in weather.columns), *(
+        choices = [SUN, *self._given, *(c for c in self._channels if c in weather.columns), *(
             c for c in self._channels if measured is not None and c in measured.columns
         )]  # fmt: skip
         if name == "relative_humidity":
@@ -130,20 +130,22 @@ class CorrectedForcing:
         elif name in BY_NAME:
             hint = "It is derived from the others: correct those."
         else:
-            hint = did_you_mean(name, known)
+            hint = did_you_mean(name, choices)
         raise InputError(
-            f"{where}: found no such column in the weather, expected one of {', '.join(known)}. "
+            f"{where}: found no such column in the weather, expected one of {', '.join(choices)}. "
             f"{hint}".rstrip()
         )
 
-    def at(self, forcing: Array, known: Errors, wanted: Errors, clocks: tuple[float, float]) -> Array:
+    def at(
+        self, forcing: Array, old_errors: Errors, new_errors: Errors, clocks: tuple[float, float]
+    ) -> Array:
         """The forcing with other errors.
 
         Parameters
         ----------
         forcing : ndarray, shape (steps, stages, channels)
-            Forcing with the known errors. [unit of each channel]
-        known, wanted : mapping of str to ColumnError
+            Forcing with the old errors. [unit of each channel]
+        old_errors, new_errors : mapping of str to ColumnError
             Errors by column, before and after.
         clocks : (float, float)
             Clock of the weather as a whole, before and after. [s]
@@ -159,7 +161,8 @@ class CorrectedForcing:
             Irradiances of one table have different clocks.
         """
         before, after = (
-            self._resolved(errors, clock) for errors, clock in zip((known, wanted), clocks, strict=True)
+            self._resolved(errors, clock)
+            for errors, clock in zip((old_errors, new_errors), clocks, strict=True)
         )
         changed = {name for name in after if after[name] != before[name]}
         if not changed:
@@ -169,10 +172,10 @@ class CorrectedForcing:
         scaled = _scaled(self._weather, after)
         sunlit = changed & set(RADIATION)
         if sunlit:
-            whole = complete(self._moved_sun(scaled, after), *self._place)
-            fill_radiation(out, whole, self._sun_path, self._steps)
+            completed = complete(self._moved_sun(scaled, after), *self._place)
+            fill_radiation(out, completed, self._sun_path, self._steps)
             if "cloud_cover" not in self._weather.columns:
-                self._put(out, "cloud_cover", channel_values(whole, "cloud_cover", self._steps))
+                self._put(out, "cloud_cover", channel_values(completed, "cloud_cover", self._steps))
         if self._with_modelled_sky and (changed & {"air_temperature", "dew_point", "cloud_cover"} or sunlit):
             changed.add("infrared")
         for name in SOURCE_CHANNELS[:7]:
@@ -194,9 +197,9 @@ class CorrectedForcing:
         values = [source.columns[each] for source, each in zip(sources, names, strict=True)]
         return max(float(np.nanmax(np.abs(column), initial=0.0)) for column in values)
 
-    def readings(self, wanted: Errors, clock: float) -> dict[str, Array]:
+    def readings(self, errors: Errors, clock: float) -> dict[str, Array]:
         """Columns that gains and offsets change, with them. [unit of each]"""
-        after = self._resolved(wanted, clock)
+        after = self._resolved(errors, clock)
         sources = {**dict.fromkeys(self._given, self._weather), **self._columns}
         return {
             name: _scaled(source, after).columns[name]
@@ -204,17 +207,17 @@ class CorrectedForcing:
             if (after[name].gain, after[name].offset) != (1.0, 0.0)
         }
 
-    def sunlit(self, wanted: Errors, clock: float) -> WeatherRecord:
+    def sunlit(self, errors: Errors, clock: float) -> WeatherRecord:
         """The weather with its irradiances as corrected, such as for a comparison with the sun.
 
         Parameters
         ----------
-        wanted : mapping of str to ColumnError
+        errors : mapping of str to ColumnError
             Errors by column.
         clock : float
             Clock of the weather as a whole. [s]
         """
-        after = self._resolved(wanted, clock)
+        after = self._resolved(errors, clock)
         return self._moved_sun(_scaled(self._weather, after), after)
 
     def _put(self, out: Array, name: str, values: Array) -> None:
@@ -234,11 +237,15 @@ class CorrectedForcing:
         sun = errors.get(SUN, RIGHT)
         resolved = {}
         for name in (*self._given, *self._columns):
-            own = errors.get(name, RIGHT)
+            column_error = errors.get(name, RIGHT)
             late = clock if name in self._given or name in self._of_weather else 0.0
             if name in RADIATION:
-                own = ColumnError(own.gain * sun.gain, own.offset + sun.offset, own.clock + sun.clock)
-            resolved[name] = replace(own, clock=own.clock + late)
+                column_error = ColumnError(
+                    column_error.gain * sun.gain,
+                    column_error.offset + sun.offset,
+                    column_error.clock + sun.clock,
+                )
+            resolved[name] = replace(column_error, clock=column_error.clock + late)
         clocks = [resolved[name].clock for name in self._sun]
         if len(set(clocks)) > 1:
             raise InputError(
@@ -284,14 +291,14 @@ def _scaled(record: AnyRecord, errors: Errors) -> AnyRecord:
         error = errors.get(name, RIGHT)
         if error.gain == 1.0 and error.offset == 0.0:
             return values
-        made = error.gain * values + error.offset
+        corrected = error.gain * values + error.offset
         if name == "wind_direction":
-            return made % 360.0
+            return corrected % 360.0
         if name in RADIATION:
-            return np.where(np.asarray(values) == 0.0, 0.0, made)
+            return np.where(np.asarray(values) == 0.0, 0.0, corrected)
         if name in _NOT_NEGATIVE:
-            made = np.maximum(made, 0.0)
-        return np.minimum(made, 10.0) if name == "cloud_cover" else made
+            corrected = np.maximum(corrected, 0.0)
+        return np.minimum(corrected, 10.0) if name == "cloud_cover" else corrected
 
     return replace(
         record,

@@ -128,27 +128,27 @@ def data_file(name: str) -> Path:
     InputError
         The name is not known, or the file was not found and cannot be downloaded.
     """
-    known = _known(name)
+    entry = _entry_of(name)
     folder = os.environ.get(FOLDER)
     if folder:
-        for candidate in (Path(folder) / known.path, Path(folder) / known.name):
+        for candidate in (Path(folder) / entry.path, Path(folder) / entry.name):
             if candidate.is_file():
                 return candidate
     cache, looked = registry(), f"{FOLDER}={folder}" if folder else f"{FOLDER} is not set"
-    remedy = f"set {FOLDER} to a folder that holds {known.path}"
-    if known.url is None:
-        cached = cache_folder() / known.path
-        if cached.is_file() and _hash(cached) == known.sha256:
+    remedy = f"set {FOLDER} to a folder that holds {entry.path}"
+    if entry.url is None:
+        cached = cache_folder() / entry.path
+        if cached.is_file() and _hash(cached) == entry.sha256:
             return cached
         raise InputError(
-            f"data:{known.name}: not found ({looked}; cache {cache_folder()}), and it cannot be downloaded "
-            f"({known.origin}); {remedy}."
+            f"data:{entry.name}: not found ({looked}; cache {cache_folder()}), and it cannot be downloaded "
+            f"({entry.origin}); {remedy}."
         )
     try:
-        return Path(cache.fetch(known.path))
+        return Path(cache.fetch(entry.path))
     except (OSError, ValueError) as error:
         raise InputError(
-            f"data:{known.name}: cannot be downloaded from {known.url} ({error}); {remedy}."
+            f"data:{entry.name}: cannot be downloaded from {entry.url} ({error}); {remedy}."
         ) from error
 
 
@@ -159,17 +159,17 @@ def registry() -> pooch.Pooch:
     return pooch.create(
         path=cache_folder(),
         base_url="",
-        registry={known.path: f"sha256:{known.sha256}" for known in FILES},
-        urls={known.path: known.url for known in FILES if known.url is not None},
+        registry={entry.path: f"sha256:{entry.sha256}" for entry in FILES},
+        urls={entry.path: entry.url for entry in FILES if entry.url is not None},
     )
 
 
-def _known(name: str) -> DataFile:
-    wanted = name.replace("\\", "/")
-    for known in FILES:
-        if wanted in (known.path, known.name):
-            return known
-    hint = did_you_mean(wanted.rsplit("/", 1)[-1], [known.name for known in FILES])
+def _entry_of(name: str) -> DataFile:
+    path = name.replace("\\", "/")
+    for entry in FILES:
+        if path in (entry.path, entry.name):
+            return entry
+    hint = did_you_mean(path.rsplit("/", 1)[-1], [entry.name for entry in FILES])
     raise InputError(f"data:{name}: no such data set. {hint}".rstrip())
 
 

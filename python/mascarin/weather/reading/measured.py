@@ -64,16 +64,16 @@ def _chosen(
     table: Table,
 ) -> dict[str, Column]:
     chosen: dict[str, Column] = {}
-    for name, given in columns.items():
+    for name, entry in columns.items():
         if name not in _NAMES:
             hint = did_you_mean(name, _NAMES)
             raise InputError(f"{table.where}: columns: {name!r} is no climate channel. {hint}".rstrip())
-        chosen[name] = Column.of(given, f"{table.where}: columns.{name}")
+        chosen[name] = Column.of(entry, f"{table.where}: columns.{name}")
     further = extra if isinstance(extra, Mapping) else {name: name for name in extra}
-    for name, given in further.items():
+    for name, entry in further.items():
         if name in UNITS or name == "relative_humidity":
             raise InputError(f"{table.where}: extra: {name!r} is a climate channel; name it under columns.")
-        chosen[name] = Column.of(given, f"{table.where}: extra.{name}")
+        chosen[name] = Column.of(entry, f"{table.where}: extra.{name}")
     if "dew_point" in chosen and "relative_humidity" in chosen:
         raise InputError(f"{table.where}: columns: give dew_point or relative_humidity, not both.")
     return chosen
@@ -83,15 +83,15 @@ def _stated(
     absent: Iterable[str] | Mapping[str, float], chosen: Mapping[str, Column], where: str
 ) -> dict[str, float]:
     """Values of absent channels; refuse one that is neither in the table nor stated to be absent."""
-    given: dict[str, float | None] = (
+    stated: dict[str, float | None] = (
         {name: float(value) for name, value in absent.items()}
         if isinstance(absent, Mapping)
         else dict.fromkeys(names_of(f"{where}: absent", absent, such_as="'wind_speed'"))
     )
-    if "radiation" in given:
-        given.pop("radiation")
-        given.update({name: None for name in RADIATION if name not in chosen})
-    for name in given:
+    if "radiation" in stated:
+        stated.pop("radiation")
+        stated.update({name: None for name in RADIATION if name not in chosen})
+    for name in stated:
         if name not in NEUTRAL:
             hint = did_you_mean(name, (*NEUTRAL, "radiation"))
             raise InputError(f"{where}: absent: {name!r} is no channel that may be absent. {hint}".rstrip())
@@ -101,23 +101,23 @@ def _stated(
             )
     needed: list[tuple[str, bool]] = [
         ("air_temperature", "air_temperature" in chosen),
-        ("dew_point", bool({"dew_point", "relative_humidity"} & ({*chosen} | {*given}))),
-        ("wind_speed", "wind_speed" in chosen or "wind_speed" in given),
-        ("wind_direction", "wind_direction" in chosen or "wind_direction" in given),
-        ("global_horizontal", _enough_radiation({*chosen} | {*given})),
+        ("dew_point", bool({"dew_point", "relative_humidity"} & ({*chosen} | {*stated}))),
+        ("wind_speed", "wind_speed" in chosen or "wind_speed" in stated),
+        ("wind_direction", "wind_direction" in chosen or "wind_direction" in stated),
+        ("global_horizontal", _enough_radiation({*chosen} | {*stated})),
     ]
-    for name, there in needed:
-        if not there:
+    for name, available in needed:
+        if not available:
             remedy = _remedy(name)
             raise InputError(f"{where}: no column for {name} [{UNITS[name]}]; map one under columns{remedy}.")
     for name, source in _follows_from(chosen).items():
-        value = given.pop(name, None)
+        value = stated.pop(name, None)
         if value is not None:
             raise InputError(
                 f"{where}: absent: found {name} with the value {value:g}, but it follows from {source}, "
                 f"which is mapped to a column; leave {name} out of absent, or {source} out of columns."
             )
-    return {name: NEUTRAL[name] if value is None else value for name, value in given.items()}
+    return {name: NEUTRAL[name] if value is None else value for name, value in stated.items()}
 
 
 def _follows_from(chosen: Mapping[str, Column]) -> dict[str, str]:

@@ -117,13 +117,13 @@ class Measurements(RecordView[Record]):
             "skip_lines": skip_lines, "step": step, "missing": missing, "tolerance": tolerance,
             "shift": shift,
         }  # fmt: skip
-        wanted = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
-        choice = (wanted, tuple(mean), stamps)
+        selection = columns if columns is None or isinstance(columns, Mapping) else tuple(columns)
+        choice = (selection, tuple(mean), stamps)
 
-        def made() -> Record:
+        def record() -> Record:
             return record_of_columns(read_table(source, timezone=timezone, **reading), *choice)
 
-        return cls(cached_record(Record, source, timezone, (reading, *choice), [records], made))
+        return cls(cached_record(Record, source, timezone, (reading, *choice), [records], record))
 
     def quality(self, limits: Mapping[str, tuple[float, float]] | None = None) -> list[Stretch]:
         """Suspicious parts of every column: missing, stuck, out of range, spikes.
@@ -260,15 +260,15 @@ class Measurements(RecordView[Record]):
 
 def _instants(grid: Grid, values: Array, closing: float, seconds: Array) -> Array:
     knots = np.append(values, closing)
-    place = (seconds - grid.start) / grid.interval
-    near = np.round(place)
-    place = np.where(np.abs(place - near) < 1e-6, near, place)
-    inside = (place >= 0.0) & (place <= grid.count)
-    left = np.clip(np.floor(place).astype(np.int64), 0, grid.count)
-    right = np.minimum(left + 1, grid.count)
-    weight = place - left
+    position = (seconds - grid.start) / grid.interval
+    nearest = np.round(position)
+    position = np.where(np.abs(position - nearest) < 1e-6, nearest, position)
+    inside = (position >= 0.0) & (position <= grid.count)
+    before = np.clip(np.floor(position).astype(np.int64), 0, grid.count)
+    after = np.minimum(before + 1, grid.count)
+    weight = position - before
     # At a stamp the next value has no weight; it may be missing.
-    mixed = (1.0 - weight) * knots[left] + np.where(weight > 0.0, weight * knots[right], 0.0)
+    mixed = (1.0 - weight) * knots[before] + np.where(weight > 0.0, weight * knots[after], 0.0)
     return np.asarray(np.where(inside, mixed, np.nan))
 
 
@@ -277,9 +277,9 @@ def _means(grid: Grid, values: Array, seconds: Array, length: float) -> Array:
     missing = np.isnan(values)
     integral = np.concatenate([[0.0], np.cumsum(np.where(missing, 0.0, values))])
     absent = np.concatenate([[0.0], np.cumsum(missing.astype(np.float64))])
-    place = np.arange(grid.count + 1.0)
+    knots = np.arange(grid.count + 1.0)
     low, high = ((seconds + shift - grid.start) / grid.interval for shift in (0.0, length))
     inside = (low >= -1e-6) & (high <= grid.count + 1e-6)
-    total = np.interp(high, place, integral) - np.interp(low, place, integral)
-    gone = np.interp(high, place, absent) - np.interp(low, place, absent)
+    total = np.interp(high, knots, integral) - np.interp(low, knots, integral)
+    gone = np.interp(high, knots, absent) - np.interp(low, knots, absent)
     return np.asarray(np.where(inside & (gone < 1e-6), total * grid.interval / length, np.nan))

@@ -35,7 +35,7 @@ _CONVERSIONS: Final[Mapping[str, str]] = {
     "Pa": "multiply kPa by 1000",
 }
 
-_PLACE: Final[Mapping[str, tuple[float, float, str]]] = {
+_SITE_LIMITS: Final[Mapping[str, tuple[float, float, str]]] = {
     "latitude": (-90.0, 90.0, "deg"),
     "longitude": (-180.0, 360.0, "deg"),
     "altitude": (-450.0, 9000.0, "m"),
@@ -87,12 +87,12 @@ def record_of_pvlib(
 
     frame, metadata = (data[0], data[1]) if isinstance(data, tuple) else (data, {})
     require_type(f"{_WHERE}: data", frame, pd.DataFrame, "a pandas.DataFrame, or the pair (frame, metadata)")
-    place = _place(metadata, latitude, longitude, altitude)
+    site = _site_of(metadata, latitude, longitude, altitude)
     zone = _zone(frame, timezone)
     marked, epw = _stamps(frame, metadata, stamps)
     columns, notes = _columns(frame)
     for name in columns:
-        _require_unit(str(name), columns[name].to_numpy(dtype=np.float64), place)
+        _require_unit(str(name), columns[name].to_numpy(dtype=np.float64), site)
     if epw:
         # Spot values are those at the end of the hour, so that the end is the stamp of the whole row.
         columns.index = columns.index + _seconds(3600.0)
@@ -124,34 +124,34 @@ def record_of_pvlib(
         ],
         mean=[str(name) for name in columns if marked == "middle"],
     )
-    record = replace(record, site=place)
+    record = replace(record, site=site)
     return _periodic(record, late=marked == "end") if typical else record
 
 
-def _place(
+def _site_of(
     metadata: Mapping[str, Any], latitude: float | None, longitude: float | None, altitude: float | None
 ) -> Place:
     """The place, from the arguments or from the metadata of pvlib."""
     inner = metadata.get("inputs", {}) if isinstance(metadata.get("inputs", {}), Mapping) else {}
     location = inner.get("location", {}) if isinstance(inner, Mapping) else {}
 
-    def found(given: float | None, *keys: str) -> float | None:
-        if given is not None:
-            return finite_number(f"{_WHERE}: {keys[0]}", given, *_PLACE[keys[0]])
+    def number_of(argument: float | None, *keys: str) -> float | None:
+        if argument is not None:
+            return finite_number(f"{_WHERE}: {keys[0]}", argument, *_SITE_LIMITS[keys[0]])
         for source in (metadata, location):
             for key in keys:
                 if key in source:
                     return float(source[key])
         return None
 
-    north, east = found(latitude, "latitude", "Latitude"), found(longitude, "longitude", "Longitude")
+    north, east = number_of(latitude, "latitude", "Latitude"), number_of(longitude, "longitude", "Longitude")
     if north is None or east is None:
         raise InputError(
             f"{_WHERE}: latitude and longitude are not known; give latitude=..., longitude=... [deg], or the "
             "pair (data, metadata) that the function of pvlib returns."
         )
     name = str(metadata.get("Name", metadata.get("city", ""))).strip("\"' ")
-    return Place(north, east, found(altitude, "altitude", "elevation", "Elevation") or 0.0, name)
+    return Place(north, east, number_of(altitude, "altitude", "elevation", "Elevation") or 0.0, name)
 
 
 def _zone(frame: pd.DataFrame, timezone: str | None) -> tzinfo:
@@ -241,17 +241,17 @@ def _numbers(frame: pd.DataFrame, name: str) -> Array:
         raise InputError(f"{_WHERE}: column '{name}': expected numbers ({error}).") from error
 
 
-def _require_unit(channel: str, values: Array, place: Place) -> None:
+def _require_unit(channel: str, values: Array, site: Place) -> None:
     """Refuse a channel that is in another unit as a whole; single wrong values are left to the run."""
-    known = values[np.isfinite(values)]
-    if not len(known):
+    finite = values[np.isfinite(values)]
+    if not len(finite):
         return
-    limits, middle, highest = BY_NAME.get(channel), float(np.median(known)), float(known.max())
+    limits, middle, highest = BY_NAME.get(channel), float(np.median(finite)), float(finite.max())
     wrong = limits is not None and not limits.low <= middle <= limits.high
-    if channel == "global_horizontal" and abs(place.latitude) < _POLAR:
+    if channel == "global_horizontal" and abs(site.latitude) < _POLAR:
         # By day even a dark sky gives more than 2 W/m2.
-        lit = int(np.count_nonzero(known > 0.05 * highest))
-        wrong = wrong or (0.1 < highest <= 2.0 and lit > 0.1 * len(known))
+        bright = int(np.count_nonzero(finite > 0.05 * highest))
+        wrong = wrong or (0.1 < highest <= 2.0 and bright > 0.1 * len(finite))
     if wrong and limits is not None:
         raise InputError(
             f"{_WHERE}: {channel} ({' or '.join(_NAMES[channel])}): found a median of {middle:g} and "

@@ -56,7 +56,7 @@ _TMY: Final = (
 _HUMIDITY: Final = ("relative_humidity", 8, 1.0, 999.0)
 _MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
 
-_WHOLE: Final = (
+_HINT: Final = (
     "get it whole from its source; a shorter record can be used as a measured table (measured in a study, "
     "Climate.from_table in Python)"
 )
@@ -67,7 +67,7 @@ _DAYS: Final = (31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 _TMY_STAMP: Final = ("Date (MM/DD/YYYY)", "Time (HH:MM)")
 _TMY_DATE: Final = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}) (\d{1,2}):\d{2}(?::\d{2})?")
 #: Largest size of the entries that state the place; time zone in h, altitude in m, angles in degrees.
-_PLACE: Final = {"latitude": 90.0, "longitude": 180.0, "time zone": 14.0, "altitude": 9000.0}
+_SITE_LIMITS: Final = {"latitude": 90.0, "longitude": 180.0, "time zone": 14.0, "altitude": 9000.0}
 
 _STAMPS_NOTE: Final = (
     "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was moved to "
@@ -127,10 +127,10 @@ def read_epw(path: Path) -> Year:
     InputError
         Header or rows are broken; the line is named.
     """
-    found = file_hash(path)  # refuses what is no file
+    digest = file_hash(path)  # refuses what is no file
     where = path.name.removesuffix(COMPRESSED)
     kept_year = cached(
-        (found, where), [sys.modules[__name__], year_checks], lambda: _packed(_parsed_epw(path, where))
+        (digest, where), [sys.modules[__name__], year_checks], lambda: _packed(_parsed_epw(path, where))
     )
     return _unpacked(kept_year, where)
 
@@ -161,21 +161,23 @@ def _parsed_epw(path: Path, where: str) -> Year:
         *doubts,
     )
     numbers = np.arange(len(rows.table), dtype=np.int64) + _HEADER + 1
-    place = (latitude, longitude, altitude, name)
+    site = (latitude, longitude, altitude, name)
     return Year(
-        rows.year, rows.mixed, zone, values, place, where, digest, numbers, notes, rows.records, rows.start
+        rows.year, rows.mixed, zone, values, site, where, digest, numbers, notes, rows.records, rows.start
     )
 
 
 def _dew_point_from(humidity: Array, values: dict[str, Array], where: str) -> tuple[str, ...]:
     """Fill the dew point where it is missing and the relative humidity is there; what was done."""
     air, dew = values["air_temperature"], values["dew_point"]
-    there = np.isnan(dew) & (humidity > 0.0) & (humidity <= 110.0) & np.isfinite(air)
-    if not there.any():
+    derivable = np.isnan(dew) & (humidity > 0.0) & (humidity <= 110.0) & np.isfinite(air)
+    if not derivable.any():
         return ()
     values["dew_point"] = dew.copy()
-    values["dew_point"][there] = dew_point(air[there], humidity[there])
-    return (f"{where}: dew point of {int(there.sum())} hours from air temperature and relative humidity.",)
+    values["dew_point"][derivable] = dew_point(air[derivable], humidity[derivable])
+    return (
+        f"{where}: dew point of {int(derivable.sum())} hours from air temperature and relative humidity.",
+    )
 
 
 def _packed(read: Year) -> Cached:
@@ -189,16 +191,16 @@ def _packed(read: Year) -> Cached:
     return Cached(notes, read.values)
 
 
-def _unpacked(found: Cached, where: str) -> Year:
+def _unpacked(entry: Cached, where: str) -> Year:
     """The year of `_packed`; its rows are lines without a gap."""
-    notes, values = found.notes, found.columns
+    notes, values = entry.notes, entry.columns
     latitude, longitude, altitude, name = notes["place"]
     lines = np.arange(len(values["air_temperature"]), dtype=np.int64) + int(notes["first"])
-    place, zone = (latitude, longitude, altitude, name), fixed_zone(notes["hours"])
+    site, zone = (latitude, longitude, altitude, name), fixed_zone(notes["hours"])
     said = tuple(notes["notes"])
     month, day = notes["start"]
     return Year(
-        notes["year"], notes["mixed"], zone, values, place, where, notes["sha256"], lines, said,
+        notes["year"], notes["mixed"], zone, values, site, where, notes["sha256"], lines, said,
         notes["records"], (month, day),
     )  # fmt: skip
 
@@ -225,14 +227,14 @@ def read_tmy3(path: Path) -> Year:
         ) from error
     if len(frame) not in (_HOURS, _HOURS + 24):
         raise InputError(
-            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps: {_WHOLE}."
+            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps: {_HINT}."
         )
     values = {}
     for channel, column, _, factor in _TMY:
         raw = frame[column].to_numpy(dtype=np.float64)
         values[channel] = np.where(raw <= -9000.0, np.nan, raw * factor)
     years = [int(stamp.year) for stamp in frame.index[12::24]]
-    place = (
+    site = (
         float(meta["latitude"]),
         float(meta["longitude"]),
         float(meta["altitude"]),
@@ -240,12 +242,12 @@ def read_tmy3(path: Path) -> Year:
     )
     zone = fixed_zone(float(meta["TZ"]))
     notes = (
-        f"{where}: TMY3, {len(frame)} hours, {place[3]}, time zone {zone_name(zone)}.",
+        f"{where}: TMY3, {len(frame)} hours, {site[3]}, time zone {zone_name(zone)}.",
         _STAMPS_NOTE.format(where=where),
         f"{where}: cloud cover is the opaque sky cover.",
     )
     lines = np.arange(len(frame), dtype=np.int64) + 3
-    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, lines, notes)
+    return Year(years[0], len(set(years)) > 1, zone, values, site, where, digest, lines, notes)
 
 
 def kind_of(channel: str) -> str:
@@ -263,16 +265,16 @@ def _check_tmy(lines: list[str], where: str) -> None:
             "command "
             "line with --column."
         )
-    place = lines[0].split(",")
-    _check_place(where, [("latitude", place[4]), ("longitude", place[5]), ("time zone", place[3])])
-    _check_place(where, [("altitude", place[6])])
+    station = lines[0].split(",")
+    _check_place(where, [("latitude", station[4]), ("longitude", station[5]), ("time zone", station[3])])
+    _check_place(where, [("altitude", station[6])])
     names = [name.strip() for name in lines[1].split(",")]
     missing = [name for name in (*_TMY_STAMP, *(entry[2] for entry in _TMY)) if name not in names]
     if missing:
         raise InputError(
             f"{where}:2: no column {missing[0]!r}, which TMY3 has; found {', '.join(names[:8])}, ..."
         )
-    places = [(f"{channel} ({name})", names.index(name)) for channel, _, name, _ in _TMY]
+    value_columns = [(f"{channel} ({name})", names.index(name)) for channel, _, name, _ in _TMY]
     stamp = [names.index(name) for name in _TMY_STAMP]
     previous: tuple[int, int, int] | None = None
     for line, row in enumerate(lines[2:], start=3):
@@ -280,9 +282,9 @@ def _check_tmy(lines: list[str], where: str) -> None:
         if len(fields) < len(names):
             raise InputError(
                 f"{where}:{line}: found {len(fields)} fields, expected {len(names)}; the file is cut or "
-                f"damaged here: {_WHOLE}."
+                f"damaged here: {_HINT}."
             )
-        for name, column in places:
+        for name, column in value_columns:
             _number(fields[column], name, where, line, _NO_VALUE_TMY)
         date_, time = (fields[column].strip() for column in stamp)
         previous = _check_order(previous, _tmy_stamp(date_, time, where, line), where, line)
@@ -290,13 +292,13 @@ def _check_tmy(lines: list[str], where: str) -> None:
 
 def _tmy_stamp(day: str, time: str, where: str, line: int) -> tuple[int, int, int, int]:
     """Year, month, day and hour of a row."""
-    found = _TMY_DATE.fullmatch(f"{day} {time}")
-    if found is None:
+    match = _TMY_DATE.fullmatch(f"{day} {time}")
+    if match is None:
         raise InputError(
             f"{where}:{line}: date and time are {day!r} and {time!r}, expected MM/DD/YYYY and HH:00; correct "
             "the row."
         )
-    month, number, year, hour = (int(part) for part in found.groups())
+    month, number, year, hour = (int(part) for part in match.groups())
     return year, month, number, hour
 
 
@@ -333,7 +335,7 @@ def _read_epw_rows(lines: list[str], where: str) -> _Rows:
         if len(fields) < _FIELDS - 3:
             raise InputError(
                 f"{where}:{line}: found {len(fields)} fields, expected {_FIELDS}; the file is cut or "
-                f"damaged here: {_WHOLE}."
+                f"damaged here: {_HINT}."
             )
         year, month, day, hour = _integers(fields, where, line)
         if count == 0:
@@ -357,7 +359,7 @@ def _read_epw_rows(lines: list[str], where: str) -> _Rows:
     if len(rows) not in (_HOURS * records, (_HOURS + 24) * records):
         raise InputError(
             f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows) / records:g} hours, expected "
-            f"8760 (or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
+            f"8760 (or 8784 in a leap year); it is cut or holds gaps: {_HINT}."
         )
     start = stamps[0][1:]
     return _Rows(
@@ -369,10 +371,10 @@ def _read_epw_rows(lines: list[str], where: str) -> _Rows:
 def _is_mixed(stamps: Sequence[tuple[int, int, int]]) -> bool:
     """Whether the years of the rows do not follow the calendar: months of several years."""
     year, before = stamps[0][0], stamps[0][1:]
-    for found, month, day in stamps:
+    for row_year, month, day in stamps:
         year += int((month, day) == (1, 1) and before == (12, 31))
         before = (month, day)
-        if found != year:
+        if row_year != year:
             return True
     return False
 
@@ -407,7 +409,7 @@ def _check_location(line: str, where: str) -> None:
 def _check_place(where: str, entries: Sequence[tuple[str, str]]) -> None:
     """Refuse entries of the first line that are no numbers, or too far from zero."""
     for name, text in entries:
-        limit = _PLACE[name]
+        limit = _SITE_LIMITS[name]
         try:
             good = abs(float(text)) <= limit
         except ValueError:
@@ -445,12 +447,12 @@ def _number(text: str, what: str, where: str, line: int, code: float, *, empty: 
     if empty and not text.strip():
         return code
     try:
-        number, wanted = float(text), "a finite number"
+        number, expected = float(text), "a finite number"
     except ValueError:
-        number, wanted = math.nan, "a number"
+        number, expected = math.nan, "a number"
     if not math.isfinite(number):
         raise InputError(
-            f"{where}:{line}: {what} is {text.strip()!r}, expected {wanted}; correct it, or "
+            f"{where}:{line}: {what} is {text.strip()!r}, expected {expected}; correct it, or "
             f"write {code:.15g}, which marks a missing value, and choose a period without this hour."
         )
     return number
@@ -461,16 +463,16 @@ def _check_order(
     *, any_day: bool = False,
 ) -> tuple[int, int, int]:  # fmt: skip
     _, month, day, hour = stamp
-    here = (month, day, hour)
+    row_hour = (month, day, hour)
     if previous is None and any_day and hour == 1 and 1 <= month <= 12 and 1 <= day <= _DAYS[month - 1]:
-        return here
+        return row_hour
     expected = _next_hours(previous)
-    if here not in expected:
-        wanted = " or ".join(f"{m}/{d} hour {h}" for m, d, h in expected)
+    if row_hour not in expected:
+        hours = " or ".join(f"{m}/{d} hour {h}" for m, d, h in expected)
         raise InputError(
-            f"{where}:{line}: found {month}/{day} hour {hour}, expected {wanted}; a row is missing or twice."
+            f"{where}:{line}: found {month}/{day} hour {hour}, expected {hours}; a row is missing or twice."
         )
-    return here
+    return row_hour
 
 
 def _next_hours(previous: tuple[int, int, int] | None) -> list[tuple[int, int, int]]:

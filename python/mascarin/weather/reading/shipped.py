@@ -92,7 +92,7 @@ _ALL: Final = (
     ),
 )  # fmt: skip
 
-SHIPPED: Final = {one.name: one for one in _ALL}
+SHIPPED: Final = {climate.name: climate for climate in _ALL}
 """The shipped climates by name."""
 
 

@@ -77,10 +77,10 @@ def doubts_of_year(
     above = dew > air + _ABOVE
     if above.mean() > _PART:
         said.append(f"a dew point above the air temperature in {int(above.sum())} of {len(air)} rows.")
-    there = np.isfinite(dew) & (air > 0.0) & (humidity > 0.0) & (humidity <= 110.0)
-    if there.mean() > _COMPARED:
-        own = humidity_of_dew_point(air[there], dew[there])
-        apart = float(np.median(np.abs(own - humidity[there])))
+    comparable = np.isfinite(dew) & (air > 0.0) & (humidity > 0.0) & (humidity <= 110.0)
+    if comparable.mean() > _COMPARED:
+        derived_humidity = humidity_of_dew_point(air[comparable], dew[comparable])
+        apart = float(np.median(np.abs(derived_humidity - humidity[comparable])))
         if apart > _APART:
             said.append(
                 f"a relative humidity that differs by {apart:.0f} % (median) from that of dew point and air "

@@ -104,8 +104,8 @@ def shifted(record: WeatherRecord, shift: str | float | None) -> WeatherRecord:
 def _with_global_alone(values: dict[str, Array], where: str, notes: list[str]) -> dict[str, Array]:
     """Without irradiances that the file does not have: they are derived from the others and the sun."""
     empty = {name for name in RADIATION if name in values and np.isnan(values[name]).all()}
-    rest = set(RADIATION) - empty
-    if empty and ("global_horizontal" in rest or len(rest) == 2):
+    present = set(RADIATION) - empty
+    if empty and ("global_horizontal" in present or len(present) == 2):
         notes.append(
             f"{where}: {' and '.join(sorted(empty))} have no value in any hour: derived from the others."
         )

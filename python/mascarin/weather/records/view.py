@@ -122,9 +122,9 @@ class RecordView(Generic[R]):
             A column is unknown, or the columns have different units.
         """
         if names is None:
-            known = [str(name) for name in self.data.columns]
-            unit = UNITS.get(known[0], "")
-            names = [name for name in known if UNITS.get(name, "") == unit]
+            columns = [str(name) for name in self.data.columns]
+            unit = UNITS.get(columns[0], "")
+            names = [name for name in columns if UNITS.get(name, "") == unit]
         chosen = [names] if isinstance(names, str) else list(names)
         unit = self._common_unit(chosen)
         import matplotlib.pyplot as plt
@@ -138,17 +138,17 @@ class RecordView(Generic[R]):
 
     def _common_unit(self, names: Sequence[str]) -> str:
         """The unit of columns; raises if one is unknown or their units differ."""
-        known = [str(name) for name in self.data.columns]
+        columns = [str(name) for name in self.data.columns]
         for name in names:
-            if name not in known:
+            if name not in columns:
                 raise InputError(
-                    f"{self.file}: no column {name!r} to plot. {did_you_mean(name, known)}".rstrip()
+                    f"{self.file}: no column {name!r} to plot. {did_you_mean(name, columns)}".rstrip()
                 )
         units = {UNITS.get(name, "") for name in names}
         if len(units) > 1:
-            found = ", ".join(f"{name} [{UNITS.get(name, '')}]" for name in names)
+            listing = ", ".join(f"{name} [{UNITS.get(name, '')}]" for name in names)
             raise InputError(
-                f"{self.file}: found columns of several units to plot ({found}), expected one unit; call "
+                f"{self.file}: found columns of several units to plot ({listing}), expected one unit; call "
                 "plot once for each unit, with an ax for each."
             )
         return next(iter(units), "")

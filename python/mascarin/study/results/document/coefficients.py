@@ -63,46 +63,48 @@ def _members(buildings: Iterable[Building], path: str) -> list[str]:
         with contextlib.suppress(InputError):  # no such parameter
             members = building.parameter(path).members or members
             break
-    return list(dict.fromkeys(found[0] for member in members if (found := _LAW.match(member))))
+    return list(dict.fromkeys(match[0] for member in members if (match := _LAW.match(member))))
 
 
 def _means(study: StudyContext, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> dict[str, float]:
     """Effective mean coefficients of one model, W/(m2 K); laws that it does not have are left out."""
     building = run.simulation.building.replace(run.results.provenance.changed)
-    known = {output.name for output in building.outputs()}
+    output_names = {output.name for output in building.outputs()}
     outputs = {law: [_outputs(building, member) for member in members] for law, members in laws.items()}
-    names = {law: [one for one in found if one[0] in known] for law, found in outputs.items()}
-    wanted = dict.fromkeys(
-        name for found in names.values() for one in found for name in one if name is not None
+    names = {
+        law: [triple for triple in triples if triple[0] in output_names] for law, triples in outputs.items()
+    }
+    required = dict.fromkeys(
+        name for triples in names.values() for triple in triples for name in triple if name is not None
     )
-    if not wanted:
+    if not required:
         return {}
     recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
-    simulation = study.models.of_building(building, [name for name in wanted if name not in recorded])
+    simulation = study.models.of_building(building, [name for name in required if name not in recorded])
     results = simulation.run()
     first, last = study.periods.identification
     during = np.asarray((results.index >= first) & (results.index < last))
     air = simulation.weather("air_temperature")
     columns = [output.name for output in results.outputs]
     means = {}
-    for law, found in names.items():
-        heat = whole = 0.0
-        for coefficient, face, zone in found:
+    for law, triples in names.items():
+        heat = weight = 0.0
+        for coefficient, face, zone in triples:
             h, surface = (results.records[during, columns.index(name)] for name in (coefficient, face))
             beside = air[during] if zone is None else results.records[during, columns.index(zone)]
             area = float(building.surfaces[face.split(".")[0]].area or 0.0)
             difference = np.abs(surface - beside) * area
-            heat, whole = heat + float(np.sum(h * difference)), whole + float(np.sum(difference))
-        if whole > 0.0:
-            means[law] = float(f"{heat / whole:.6g}")
+            heat, weight = heat + float(np.sum(h * difference)), weight + float(np.sum(difference))
+        if weight > 0.0:
+            means[law] = float(f"{heat / weight:.6g}")
     return means
 
 
 def _outputs(building: Building, law: str) -> tuple[str, str, str | None]:
     """Outputs: the coefficient, the temperature of the face, that of the air (None outdoors)."""
-    found = _LAW.match(law)
-    assert found is not None  # noqa: S101 (laws are matches)
-    surface, side = found["surface"], found["side"]
+    match = _LAW.match(law)
+    assert match is not None  # noqa: S101 (laws are matches)
+    surface, side = match["surface"], match["side"]
     zone = getattr(building.surfaces[surface], side).zone
     air = None if zone is None else f"{zone}.air_temperature"
     return f"{surface}.{side}_convection", f"{surface}.{side}_temperature", air

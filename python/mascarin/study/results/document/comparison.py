@@ -65,7 +65,7 @@ def run_warnings(models: Mapping[str, ModelRun]) -> list[RunWarning]:
 def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:
     return {
         sensor: {
-            period: {**by_model[main].to_dict(), **{m: found.to_dict() for m, found in by_model.items()}}
+            period: {**by_model[main].to_dict(), **{m: metrics.to_dict() for m, metrics in by_model.items()}}
             for period, by_model in periods.items()
         }
         for sensor, periods in scores_of(models).items()

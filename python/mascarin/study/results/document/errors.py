@@ -21,31 +21,31 @@ _NAMED: Final = 0.05
 _REACHED: Final = 0.98
 
 
-def error_entries(study: StudyContext, found: Combination | None) -> dict[str, Any]:
+def error_entries(study: StudyContext, combination: Combination | None) -> dict[str, Any]:
     """Weights of the forms, estimated errors of the sensors, and sizes of the errors of the model."""
-    if found is None:
+    if combination is None:
         return {}
     return {
-        "alternatives": _forms(found),
-        "sensor_errors": _of_sensors(study, found),
-        "model_errors": _of_model(study, found),
+        "alternatives": _forms(combination),
+        "sensor_errors": _of_sensors(study, combination),
+        "model_errors": _of_model(study, combination),
     }
 
 
-def error_tables(study: StudyContext, found: Combination | None) -> list[dict[str, Any]]:
+def error_tables(study: StudyContext, combination: Combination | None) -> list[dict[str, Any]]:
     """The same as tables of the report."""
-    if found is None:
+    if combination is None:
         return []
-    tables = [_table_of_sensors(study, found), _table_of_model(study, found)]
-    return [_table_of_forms(found), *tables] if len(found.forms) > 1 else tables
+    tables = [_table_of_sensors(study, combination), _table_of_model(study, combination)]
+    return [_table_of_forms(combination), *tables] if len(combination.forms) > 1 else tables
 
 
-def error_words(study: StudyContext, found: Combination | None) -> list[str]:
+def error_words(study: StudyContext, combination: Combination | None) -> list[str]:
     """What the identification can tell of the form of the model, and errors that reach their limit."""
-    if found is None:
+    if combination is None:
         return []
-    words = [] if len(found.forms) == 1 else [_words_of_forms(found)]
-    for name, entry in _of_model(study, found).items():
+    words = [] if len(combination.forms) == 1 else [_words_of_forms(combination)]
+    for name, entry in _of_model(study, combination).items():
         full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
         unit = difference(_unit(study, name))
         words += [
@@ -56,35 +56,35 @@ def error_words(study: StudyContext, found: Combination | None) -> list[str]:
     return words
 
 
-def _words_of_forms(found: Combination) -> str:
+def _words_of_forms(combination: Combination) -> str:
     """Which form is used, and what the days left out say of the others."""
-    used, alike = found.forms[0], found.alike
-    near = {form.label for form, _ in alike}
-    behind = used.joint.by_day.sum() - found.by_day.sum(axis=1)
-    pairs = zip(found.forms[1:], found.weights[1:], behind[1:], strict=True)
+    used, alike = combination.forms[0], combination.alike
+    alike_labels = {form.label for form, _ in alike}
+    behind = used.joint.by_day.sum() - combination.by_day.sum(axis=1)
+    pairs = zip(combination.forms[1:], combination.weights[1:], behind[1:], strict=True)
     worse = [
         f"'{form.label}' ({100 * weight:.0f} %, log density {abs(less):.1f} "
         f"{'lower' if less > 0 else 'higher'})"
         for form, weight, less in pairs
-        if weight >= _NAMED and form.label not in near
+        if weight >= _NAMED and form.label not in alike_labels
     ]
-    said = [f"Form of the model: '{used.label}' is used (weight {100 * found.weights[0]:.0f} %)."]
+    said = [f"Form of the model: '{used.label}' is used (weight {100 * combination.weights[0]:.0f} %)."]
     if alike:
         same = ", ".join(f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in alike)
         said.append(f"The identification does not tell it from {same}.")
     if worse:
         said.append(f"Less likely over all days left out, but not excluded: {', '.join(worse)}.")
     if not alike and not worse:
-        said.append(f"None of the other {len(found.forms) - 1} forms comes near.")
-    if len(found.kept) > 1:
+        said.append(f"None of the other {len(combination.forms) - 1} forms comes near.")
+    if len(combination.kept) > 1:
         said.append(
-            f"The intervals of parameters and predictions are those of the mixture of {len(found.kept)} "
-            "forms."
+            "The intervals of parameters and predictions are those of the mixture of "
+            f"{len(combination.kept)} forms."
         )
     return " ".join(said)
 
 
-def _forms(found: Combination) -> list[dict[str, Any]]:
+def _forms(combination: Combination) -> list[dict[str, Any]]:
     return [
         {
             "label": form.label,
@@ -93,13 +93,13 @@ def _forms(found: Combination) -> list[dict[str, Any]]:
             "weight": float(f"{weight:.6g}"),
             "left_out": [float(f"{value:.6g}") for value in form.joint.by_day],
         }
-        for form, weight in zip(found.forms, found.weights, strict=True)
+        for form, weight in zip(combination.forms, combination.weights, strict=True)
     ]
 
 
-def _of_sensors(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
+def _of_sensors(study: StudyContext, combination: Combination) -> dict[str, dict[str, float]]:
     """Estimate and standard uncertainty of each error, with that stated."""
-    joint, count = found.forms[0].joint, found.forms[0].fit.x.size
+    joint, count = combination.forms[0].joint, combination.forms[0].fit.x.size
     stated = stated_sizes(study)
     sd = np.sqrt(np.diag(joint.covariance))
     entries = {}
@@ -122,8 +122,8 @@ _PARTS: Final = {
 }
 
 
-def _of_model(study: StudyContext, found: Combination) -> dict[str, dict[str, float]]:
-    best = found.forms[0]
+def _of_model(study: StudyContext, combination: Combination) -> dict[str, dict[str, float]]:
+    best = combination.forms[0]
     sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
     columns = {
         "repeating": np.sqrt(np.diag(sizes.hour)),
@@ -139,8 +139,8 @@ def _of_model(study: StudyContext, found: Combination) -> dict[str, dict[str, fl
     }
 
 
-def _table_of_forms(found: Combination) -> dict[str, Any]:
-    best = float(found.forms[0].joint.by_day.sum())
+def _table_of_forms(combination: Combination) -> dict[str, Any]:
+    best = float(combination.forms[0].joint.by_day.sum())
     return {
         "title": "Forms of the model",
         "caption": (
@@ -161,13 +161,13 @@ def _table_of_forms(found: Combination) -> dict[str, Any]:
                 100.0 * float(weight),
                 float(form.joint.by_day.sum()) - best,
             ]
-            for form, weight in zip(found.forms, found.weights, strict=True)
+            for form, weight in zip(combination.forms, combination.weights, strict=True)
         ],
         "section": "parameters",
     }
 
 
-def _table_of_sensors(study: StudyContext, found: Combination) -> dict[str, Any]:
+def _table_of_sensors(study: StudyContext, combination: Combination) -> dict[str, Any]:
     return {
         "title": "Errors of the sensors",
         "caption": (
@@ -176,7 +176,9 @@ def _table_of_sensors(study: StudyContext, found: Combination) -> dict[str, Any]
             "A gain is a ratio."
         ),
         "columns": ["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
-        "rows": [_row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, found).items()],
+        "rows": [
+            _row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, combination).items()
+        ],
         "uncertainty": {"estimate": "standard uncertainty"},
         "section": "parameters",
     }
@@ -185,9 +187,9 @@ def _table_of_sensors(study: StudyContext, found: Combination) -> dict[str, Any]
 def _row_of_sensor(study: StudyContext, name: str, entry: Mapping[str, float]) -> list[Any]:
     """Name and unit for readers, estimate and uncertainties."""
     sensor, _, what = name.rpartition(" ")
-    known = sensor in study.plan.sensors
-    unit = {"gain": "-", "clock": "s"}.get(what) or (_unit(study, sensor) if known else "degC")
-    label = f"{_label(study, sensor)}: {what}" if known else name
+    is_sensor = sensor in study.plan.sensors
+    unit = {"gain": "-", "clock": "s"}.get(what) or (_unit(study, sensor) if is_sensor else "degC")
+    label = f"{_label(study, sensor)}: {what}" if is_sensor else name
     return [label, difference(unit), entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
 
 
@@ -199,14 +201,14 @@ def _unit(study: StudyContext, name: str) -> str:
     return study.building.output(study.plan.sensors[name].output).unit
 
 
-def _table_of_model(study: StudyContext, found: Combination) -> dict[str, Any]:
+def _table_of_model(study: StudyContext, combination: Combination) -> dict[str, Any]:
     return {
         "title": "Errors of the model",
         "caption": (
             "Standard deviation of what no values of the parameters explain, estimated by marginal "
             "likelihood in the identification period, with a correlation time of "
-            f"{found.forms[0].joint.error_covariances.correlation_hours:g} h within a day. The limit is what "
-            "each part may absorb at most."
+            f"{combination.forms[0].joint.error_covariances.correlation_hours:g} h within a day. The limit "
+            "is what each part may absorb at most."
         ),
         "columns": ["sensor", "unit", *_PARTS.values(), "limit"],
         "rows": [
@@ -216,7 +218,7 @@ def _table_of_model(study: StudyContext, found: Combination) -> dict[str, Any]:
                 *(entry[part] for part in _PARTS),
                 entry["limit"],
             ]
-            for name, entry in _of_model(study, found).items()
+            for name, entry in _of_model(study, combination).items()
         ],
         "section": "comparison",
     }

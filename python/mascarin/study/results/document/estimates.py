@@ -39,7 +39,7 @@ def estimates(study: StudyContext, fit: Calibration, *, stated: bool) -> dict[st
     }
 
 
-def profile_entries(found: Sequence[Profile]) -> dict[str, Any]:
+def profile_entries(profiles: Sequence[Profile]) -> dict[str, Any]:
     """Profile likelihoods: path -> values, rise, limit, low, high; nothing where there are none."""
     entries = {
         profile.path: {
@@ -51,28 +51,28 @@ def profile_entries(found: Sequence[Profile]) -> dict[str, Any]:
             "high": profile.high,
             "bounded": [not profile.open_low, not profile.open_high],
         }
-        for profile in found
+        for profile in profiles
     }
     return {"profiles": entries} if entries else {}
 
 
-def prediction_entries(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
+def prediction_entries(study: StudyContext, intervals: PredictionIntervals) -> dict[str, Any]:
     """The prediction intervals in numbers."""
-    return {"band": interval_entry(study, found)}
+    return {"band": interval_entry(study, intervals)}
 
 
 def parameters(study: StudyContext, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
     """Estimates by path, with interval, range and source."""
-    known = {parameter.path for parameter in study.building.parameters()}
-    given = {
-        study.building.parameter(path).path if path in known else path: free
+    building_paths = {parameter.path for parameter in study.building.parameters()}
+    free_parameters = {
+        study.building.parameter(path).path if path in building_paths else path: free
         for path, free in plan.parameters.items()
     }
     # A candidate may have parameters that the building as described does not have.
     sources = {parameter.path: parameter.source for parameter in study.building.parameters()}
     entries = {}
     for parameter, entry in zip(fit.problem.parameters, fit.to_dict().values(), strict=True):
-        free, path = given.get(parameter.path), parameter.path
+        free, path = free_parameters.get(parameter.path), parameter.path
         more: dict[str, Any] = {
             "interval": [entry["low"], entry["high"]],
             "range": [parameter.lower, parameter.upper],

@@ -79,16 +79,16 @@ def _seed(file: StudyPlan) -> int | None:
 
 
 def _inputs(study: StudyContext) -> list[dict[str, str]]:
-    path, plan, found = study.inputs.path, study.plan, study.inputs.hashes
+    path, plan, hashes = study.inputs.path, study.plan, study.inputs.hashes
     named = [
-        ("study", "" if path is None else path.name, found["study"]),
+        ("study", "" if path is None else path.name, hashes["study"]),
         (
             "building",
             plan.building if isinstance(plan, StudyFile) else study.building.name,
-            found["building"],
+            hashes["building"],
         ),
-        ("climate", study.climate.file, found["climate"]),
-        ("measurements", study.measurements.file, found["measurements"]),
+        ("climate", study.climate.file, hashes["climate"]),
+        ("measurements", study.measurements.file, hashes["measurements"]),
     ]
     said = {"climate": study.climate.provenance, "measurements": study.measurements.provenance}
     return [

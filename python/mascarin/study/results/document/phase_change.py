@@ -31,7 +31,7 @@ def _melting(study: StudyContext, run: ModelRun, building: Building, layer: Melt
     margin = 0.05 * float(np.ptp(temperature))
     ends = float(temperature.min()) - margin, float(temperature.max()) + margin
     law = law_curve(layer.of(building), *ends)
-    every = max(1, round(3600.0 / run.simulation.step_seconds))
+    stride = max(1, round(3600.0 / run.simulation.step_seconds))
     days = _shown_days(run, study, enthalpy)
     moved = max((float(np.ptp(enthalpy[rows])) for _, _, rows in days), default=0.0)
     return {
@@ -39,8 +39,8 @@ def _melting(study: StudyContext, run: ModelRun, building: Building, layer: Melt
         "column": f"state/{layer.liquid_fraction}",
         "hysteresis": layer.of(building).hysteresis is not None,
         **_own_path(layer.of(building)),
-        "temperature": rounded(temperature[::every]),
-        "enthalpy": rounded(enthalpy[::every]),
+        "temperature": rounded(temperature[::stride]),
+        "enthalpy": rounded(enthalpy[::stride]),
         "days": [
             {
                 "label": f"{what}, {day}",
@@ -71,15 +71,15 @@ def _shown_days(
     """The coldest and the warmest whole day, and the one with the largest change of enthalpy."""
     index = run.results.index
     day = index.tz_localize(None).normalize()
-    whole = round(86400.0 / run.simulation.step_seconds)
+    steps_per_day = round(86400.0 / run.simulation.step_seconds)
     rows = {
         date: np.flatnonzero((day == date) & (index >= study.periods.compared_from)) for date in day.unique()
     }
-    rows = {date: at for date, at in rows.items() if at.size >= whole}
+    rows = {date: positions for date, positions in rows.items() if positions.size >= steps_per_day}
     if len(rows) < 3:
         return []
-    mean = {date: float(enthalpy[at].mean()) for date, at in rows.items()}
-    amplitude = {date: float(np.ptp(enthalpy[at])) for date, at in rows.items()}
+    mean = {date: float(enthalpy[positions].mean()) for date, positions in rows.items()}
+    amplitude = {date: float(np.ptp(enthalpy[positions])) for date, positions in rows.items()}
     chosen = {
         "coldest": min(mean, key=mean.__getitem__),
         "warmest": max(mean, key=mean.__getitem__),

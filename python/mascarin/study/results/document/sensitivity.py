@@ -19,38 +19,39 @@ if TYPE_CHECKING:
 _SHOWN: Final = 8
 
 
-def importance(study: StudyContext, found: Sensitivity) -> dict[str, Any]:
+def importance(study: StudyContext, analysis: Sensitivity) -> dict[str, Any]:
     """Sensitivity indices; for the spectral method also the spectra and the indices over the day."""
     rows = [
-        ["method", found.method],
-        ["index", found.measure],
-        ["parameters", str(len(found.names))],
-        ["runs", str(found.runs)],
-        ["seed", str(found.seed)],
+        ["method", analysis.method],
+        ["index", analysis.measure],
+        ["parameters", str(len(analysis.names))],
+        ["runs", str(analysis.runs)],
+        ["seed", str(analysis.seed)],
     ]
-    content: dict[str, Any] = {"sensitivity": found.to_dict()}
-    if isinstance(found, SpectralSensitivity):
-        hours = _hours(study, found.index_t.shape[1])
+    content: dict[str, Any] = {"sensitivity": analysis.to_dict()}
+    if isinstance(analysis, SpectralSensitivity):
+        hours = _hours(study, analysis.index_t.shape[1])
         rows += [
-            ["replicates", str(found.design.replicates)],
-            ["harmonics counted", str(found.design.order)],
+            ["replicates", str(analysis.design.replicates)],
+            ["harmonics counted", str(analysis.design.order)],
         ]
-        content["frequencies"] = _frequencies(found)
-        content["spectra"] = {output: _spectrum(found, output) for output in found.outputs}
-        content["day_shares"] = {output: _day_shares(found, output, hours) for output in found.outputs}
-    return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in found.warnings)]}
+        content["frequencies"] = _frequencies(analysis)
+        content["spectra"] = {output: _spectrum(analysis, output) for output in analysis.outputs}
+        content["day_shares"] = {output: _day_shares(analysis, output, hours) for output in analysis.outputs}
+    return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in analysis.warnings)]}
 
 
-def _frequencies(found: SpectralSensitivity) -> dict[str, int]:
+def _frequencies(analysis: SpectralSensitivity) -> dict[str, int]:
     """Frequency of each parameter or group in the first replicate, which the spectra show."""
     return {
-        name: int(line) for name, line in zip(found.design.groups, found.design.frequencies[0], strict=True)
+        name: int(line)
+        for name, line in zip(analysis.design.groups, analysis.design.frequencies[0], strict=True)
     }
 
 
-def analyzed_hours(study: StudyContext, found: Sensitivity) -> npt.NDArray[np.float64] | None:
+def analyzed_hours(study: StudyContext, analysis: Sensitivity) -> npt.NDArray[np.float64] | None:
     """Hour of the day of each analyzed time, local; None for methods that keep no times. [h]"""
-    times = getattr(found, "variance_t", None)
+    times = getattr(analysis, "variance_t", None)
     return None if times is None or len(times) < 2 else _hours(study, len(times))
 
 
@@ -66,8 +67,8 @@ def _hours(study: StudyContext, count: int) -> npt.NDArray[np.float64]:
     return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
 
 
-def _spectrum(found: SpectralSensitivity, output: str) -> dict[str, Any]:
-    spectrum = found.spectrum(output)
+def _spectrum(analysis: SpectralSensitivity, output: str) -> dict[str, Any]:
+    spectrum = analysis.spectrum(output)
     return {
         "frequencies": list(range(1, len(spectrum.power) + 1)),
         "power": [float(p) for p in spectrum.power],
@@ -80,14 +81,14 @@ def _spectrum(found: SpectralSensitivity, output: str) -> dict[str, Any]:
     }
 
 
-def _day_shares(found: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
+def _day_shares(analysis: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
     """First-order indices of the most influential parameters by hour of the day, summed over the days."""
-    s = found.output_index(output)
-    names = found.ranking(output, _SHOWN)
-    rows = [list(found.names).index(name) for name in names]
+    s = analysis.output_index(output)
+    names = analysis.ranking(output, _SHOWN)
+    rows = [list(analysis.names).index(name) for name in names]
     unique = np.unique(hours)
-    variance = np.nan_to_num(found.variance_t[:, s])
-    power = np.nan_to_num(found.index_t[rows, :, s]) * variance
+    variance = np.nan_to_num(analysis.variance_t[:, s])
+    power = np.nan_to_num(analysis.index_t[rows, :, s]) * variance
     share = [
         [float(p[hours == hour].sum() / max(variance[hours == hour].sum(), 1e-300)) for hour in unique]
         for p in power

@@ -56,7 +56,7 @@ def document(findings: Findings) -> dict[str, Any]:
     reference = study.plan.reference
     published = [] if reference is None else [entry.parameter for entry in reference.parameters]
     content = {
-        "contradictions": [one.to_dict() for one in findings.contradictions],
+        "contradictions": [statement.to_dict() for statement in findings.contradictions],
         **header(study, "study"),
         **comparison(findings.models, findings.criteria),
         **estimates(study, fit, stated=findings.prediction_intervals.stated),
@@ -77,9 +77,10 @@ def document(findings: Findings) -> dict[str, Any]:
             *(table for table in [conductance_table(fit)] if table is not None),
         ],
         "transfer": findings.transfer,
-        "derived": [one.to_dict() for one in findings.derived],
+        "derived": [quantity.to_dict() for quantity in findings.derived],
         "residuals": {
-            name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
+            name: {**description.to_dict(), "period": "blind"}
+            for name, description in findings.residuals.items()
         },
         "notes": _notes(findings),
         "aims": [{**verdict.to_dict(), "model": "fitted"} for verdict in findings.aims],
@@ -110,7 +111,7 @@ def _values(building: Building, paths: Sequence[str]) -> dict[str, dict[str, Any
     return {path: {"value": p.value, "unit": p.unit} for path, p in parameters.items()}
 
 
-def causes_table(found: Diagnosis) -> dict[str, Any]:
+def causes_table(diagnosis: Diagnosis) -> dict[str, Any]:
     """Causes with their evidence, as a table of the report."""
     rows = [
         [
@@ -124,7 +125,7 @@ def causes_table(found: Diagnosis) -> dict[str, Any]:
             100.0 * cause.certainty if math.isfinite(cause.certainty) else None,
             cause.p if math.isfinite(cause.p) else None,
         ]
-        for number, cause in enumerate(found.causes, start=1)
+        for number, cause in enumerate(diagnosis.causes, start=1)
     ]
     return {
         "title": CAUSES,
