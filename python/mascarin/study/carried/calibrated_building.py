@@ -179,7 +179,7 @@ def _other_numbers(
 ) -> tuple[dict[str, float], Array]:
     """Numbers that are not estimated: their values as described, and a sample of them (n, K).
 
-    Given the parameters the combinations that the identification tells are normal; all described are as
+    Given the parameters the combinations that the identification tells are normal; all others are as
     uncertain as they were.
     """
     rng = np.random.default_rng(_SEED)
