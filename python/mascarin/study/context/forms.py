@@ -54,12 +54,12 @@ class Forms:
             number *= 1 + len(forms)
         if number > MOST_COMBINATIONS:
             return [(), *self.beside(())]
-        found: list[Choice] = [()]
+        choices: list[Choice] = [()]
         for part, forms in self.parts.items():
-            found = [
-                (*choice, *more) for choice in found for more in ((), *(((part, form),) for form in forms))
+            choices = [
+                (*choice, *more) for choice in choices for more in ((), *(((part, form),) for form in forms))
             ]
-        return found
+        return choices
 
     def beside(self, choice: Choice) -> Iterator[Choice]:
         """Forms that differ from one of them in one part."""
@@ -99,37 +99,37 @@ class Forms:
 
     def _expanded(self, form: Alternative) -> Alternative:
         """The same with every * replaced by names, checked."""
-        changes = {found: value for path, value in form.changes.items() for found in self._matching(path)}
+        changes = {matched: value for path, value in form.changes.items() for matched in self._matching(path)}
         self._building.replace(changes)
         return form.model_copy(update={"changes": changes})
 
     def _matching(self, path: str) -> list[str]:
         if "*" not in path:
             return [path]
-        wanted = path.split(".")
-        there = {tuple(p.path.split(".")[: len(wanted)]) for p in self._building.parameters()}
-        found = [
+        pieces = path.split(".")
+        prefixes = {tuple(p.path.split(".")[: len(pieces)]) for p in self._building.parameters()}
+        paths = [
             ".".join(steps)
-            for steps in sorted(there)
-            if len(steps) == len(wanted) and all(map(fnmatchcase, steps, wanted))
+            for steps in sorted(prefixes)
+            if len(steps) == len(pieces) and all(map(fnmatchcase, steps, pieces))
         ]
-        if not found:
+        if not paths:
             raise InputError(f"{path}: found nothing in the building that matches; correct the path")
-        return found
+        return paths
 
     def _is_described(self, form: Alternative) -> bool:
         return _content(self._building) == _content(self._building.replace(form.changes))
 
     def _require_different(self, forms: Mapping[str, Alternative]) -> None:
-        seen = {_content(self._building): "the building as described"}
+        name_of_content = {_content(self._building): "the building as described"}
         for name, form in forms.items():
             content = _content(self._building.replace(form.changes))
-            if content in seen:
+            if content in name_of_content:
                 raise InputError(
-                    f"found '{name}', which is the same as {seen[content]}, expected forms that differ; "
-                    "remove one"
+                    f"found '{name}', which is the same as {name_of_content[content]}, expected forms that "
+                    "differ; remove one"
                 )
-            seen[content] = f"'{name}'"
+            name_of_content[content] = f"'{name}'"
 
 
 def label(choice: Choice) -> str:
@@ -158,8 +158,8 @@ def comparable(path: str, first: Choice, second: Choice, forms: Forms) -> bool:
 
 def _word(value: Any) -> str:
     if isinstance(value, Mapping) and "kind" in value:
-        rest = ", ".join(f"{key} {piece}" for key, piece in value.items() if key not in ("kind", "factor"))
-        return f"{value['kind']}, {rest}" if rest else str(value["kind"])
+        numbers = ", ".join(f"{key} {piece}" for key, piece in value.items() if key not in ("kind", "factor"))
+        return f"{value['kind']}, {numbers}" if numbers else str(value["kind"])
     return str(value)
 
 

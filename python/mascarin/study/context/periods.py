@@ -80,8 +80,8 @@ class Timeline:
 
     def warm_up(self) -> Span | None:
         """The warm-up, which is not compared."""
-        given = self._plan.periods.warm_up
-        return None if given is None else self._span(given, ("periods", "warm_up"))
+        period = self._plan.periods.warm_up
+        return None if period is None else self._span(period, ("periods", "warm_up"))
 
     def spans(self, name: str, sensor: str | None = None) -> list[Span]:
         """Periods of a name: those of a sensor where it has its own, else those of the study.
@@ -93,19 +93,19 @@ class Timeline:
         sensor : str, optional
             A sensor; None: the study.
         """
-        own = None if sensor is None else self._plan.sensors[sensor].periods
-        if own is not None and name in NAMED and getattr(own, name) is not None:
-            return self._read(own, name, ("sensors", str(sensor), "periods", name))
-        found = self._read(self._plan.periods, name, ("periods", name))
-        if own is not None and name not in NAMED:
-            found += self._read(own, name, ("sensors", str(sensor), "periods", name))
-        return found
+        sensor_periods = None if sensor is None else self._plan.sensors[sensor].periods
+        if sensor_periods is not None and name in NAMED and getattr(sensor_periods, name) is not None:
+            return self._read(sensor_periods, name, ("sensors", str(sensor), "periods", name))
+        periods = self._read(self._plan.periods, name, ("periods", name))
+        if sensor_periods is not None and name not in NAMED:
+            periods += self._read(sensor_periods, name, ("sensors", str(sensor), "periods", name))
+        return periods
 
     def every(self, name: str) -> list[Span]:
         """Periods of a name of the study and of all sensors, each once."""
         sensors = (sensor for sensor in self._plan.sensors)
-        found = [*self.spans(name), *(span for sensor in sensors for span in self.spans(name, sensor))]
-        return list(dict.fromkeys(found))
+        spans = [*self.spans(name), *(span for sensor in sensors for span in self.spans(name, sensor))]
+        return list(dict.fromkeys(spans))
 
     def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
         """Start of the first and end of the last identification period of a sensor that is used."""
@@ -116,13 +116,13 @@ class Timeline:
 
     def excluded(self, observation: Observation) -> Flags:
         """Values that are left out of all comparisons, shape (n, S)."""
-        found = np.zeros(observation.measured.shape, dtype=np.bool_)
+        left_out = np.zeros(observation.measured.shape, dtype=np.bool_)
         for s, name in enumerate(observation.names):
             for span in self.spans("exclude", name):
-                found[:, s] |= observation.during(span.start, span.end)
+                left_out[:, s] |= observation.during(span.start, span.end)
             for start, end in self._hours(name):
-                found[:, s] |= self._within(observation, start, end)
-        return found
+                left_out[:, s] |= self._within(observation, start, end)
+        return left_out
 
     def used(self, observation: Observation) -> dict[str, Flags]:
         """Values of each period, shape (n, S).
@@ -130,22 +130,30 @@ class Timeline:
         ``blind`` has every value that is in neither of the other two; if there is none, the corroboration.
         """
         shape = observation.measured.shape
-        seen, named = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
+        identified, corroborated = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
         for s, name in enumerate(observation.names):
-            known, held = self.spans("identification", name), self.spans("corroboration", name)
-            seen[:, s] = _during(observation, known)
-            named[:, s] = ~seen[:, s] & (
-                _during(observation, held)
-                if held
-                else np.asarray(observation.times >= max(span.end for span in known))
+            identification, corroboration = (
+                self.spans("identification", name),
+                self.spans("corroboration", name),
             )
-        rest = ~seen & ~named
-        return dict(zip(PERIODS, (seen, named, rest if rest.any() else named), strict=True))
+            identified[:, s] = _during(observation, identification)
+            corroborated[:, s] = ~identified[:, s] & (
+                _during(observation, corroboration)
+                if corroboration
+                else np.asarray(observation.times >= max(span.end for span in identification))
+            )
+        blind = ~identified & ~corroborated
+        return dict(
+            zip(PERIODS, (identified, corroborated, blind if blind.any() else corroborated), strict=True)
+        )
 
     def _hours(self, sensor: str) -> Iterator[tuple[float, float]]:
-        own = self._plan.sensors[sensor].periods
-        given = [*self._plan.periods.exclude_hours, *(() if own is None else own.exclude_hours)]
-        for first, last in given:
+        sensor_periods = self._plan.sensors[sensor].periods
+        hours = [
+            *self._plan.periods.exclude_hours,
+            *(() if sensor_periods is None else sensor_periods.exclude_hours),
+        ]
+        for first, last in hours:
             yield _hour(first), _hour(last)
 
     def _within(self, observation: Observation, start: float, end: float) -> Flags:
@@ -157,16 +165,16 @@ class Timeline:
         return np.asarray((hour >= start) | (hour < end))
 
     def _read(self, periods: SensorPeriods | Any, name: str, place: tuple[str, ...]) -> list[Span]:
-        return [self._span(given, place) for given in getattr(periods, name) or ()]
+        return [self._span(period, place) for period in getattr(periods, name) or ()]
 
-    def _span(self, given: str | tuple[str, str], place: tuple[str, ...]) -> Span:
+    def _span(self, period: str | tuple[str, str], place: tuple[str, ...]) -> Span:
         import pandas as pd
 
         with self._places.blame(*place):
-            if isinstance(given, str):
-                start = moment(given, self._zone, place[-1]).normalize()
+            if isinstance(period, str):
+                start = moment(period, self._zone, place[-1]).normalize()
                 return Span(start, start + pd.Timedelta(days=1), place)
-            start, end = (moment(text, self._zone, place[-1]) for text in given)
+            start, end = (moment(text, self._zone, place[-1]) for text in period)
             if end <= start:
                 raise InputError(
                     f"found {start:%Y-%m-%d %H:%M} .. {end:%Y-%m-%d %H:%M}, expected the end after the "
@@ -272,10 +280,10 @@ def overlap(known: list[Span], held: list[Span]) -> tuple[Span, Span] | None:
 
 
 def _during(observation: Observation, spans: list[Span]) -> Flags:
-    found = np.zeros(len(observation.times), dtype=np.bool_)
+    inside = np.zeros(len(observation.times), dtype=np.bool_)
     for span in spans:
-        found |= observation.during(span.start, span.end)
-    return found
+        inside |= observation.during(span.start, span.end)
+    return inside
 
 
 def _hour(text: str) -> float:

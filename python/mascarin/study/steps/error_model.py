@@ -80,13 +80,13 @@ def used_sensors(study: StudyContext) -> list[str]:
 
 def sensor_errors(study: StudyContext, names: list[str]) -> tuple[SensorError, ...]:
     """Errors that the readings of some sensors share."""
-    found = []
+    errors = []
     for name in names:
         sensor = study.plan.sensors[name]
         unit = study.building.output(sensor.output).unit
         stated = sensor.stated_uncertainty(unit, name)
-        found.append(sensor.shared_errors(stated, scatter_of(study, name)))
-    return tuple(found)
+        errors.append(sensor.shared_errors(stated, scatter_of(study, name)))
+    return tuple(errors)
 
 
 def stated_sizes(study: StudyContext) -> dict[str, float]:
@@ -136,10 +136,10 @@ def persistence_of(study: StudyContext) -> float:
 def statement(study: StudyContext, fit: Calibration) -> ErrorStatement:
     """What is known of the errors before the calibration."""
     plan = study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()
-    seen = study.rows
+    rows = study.rows
     return ErrorStatement(
         sensor_errors(study, [sensor.name for sensor in fit.problem.sensors]),
-        local_hours(study)[seen],
+        local_hours(study)[rows],
         study.observation.interval,
         np.array([max(plan.limit * sensor.span, 1e-9) for sensor in fit.problem.sensors]),
         persistence_of(study),
@@ -170,14 +170,16 @@ def with_errors(
         Numbers that are not estimated; their directions are the last effects of sensors of the joint
         distribution.
     """
-    short, seen = study.models.for_calibration(variant), study.rows
+    short, rows = study.models.for_calibration(variant), study.rows
     columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
-    every = unknowns(study, short, fit)
+    all_unknowns = unknowns(study, short, fit)
     basis: list[Array] = []
 
     def further(values: Array) -> Array:
         base = short.vector(dict(zip(fit.problem.paths, values.tolist(), strict=True)))
-        effects = effects_of_unknowns(study, _part(study.observation, seen), short, base, every)[:, columns]
+        effects = effects_of_unknowns(study, _part(study.observation, rows), short, base, all_unknowns)[
+            :, columns
+        ]
         basis[:] = [_directions(effects, fit.problem.sigma, fit.problem.mask)]
         return np.asarray(effects @ basis[0])
 
@@ -187,7 +189,7 @@ def with_errors(
     plan = study.inputs.calibration_plan
     rules = SearchOptions(slopes=plan.slopes, posterior=plan.posterior, draws=plan.draws)
     found, joint = estimate_jointly(fit, statement(study, fit), rules, further, keep=keep)
-    return found, joint, Unknowns(tuple(every), basis[0])
+    return found, joint, Unknowns(tuple(all_unknowns), basis[0])
 
 
 def _directions(effects: Array, sigma: Array, mask: npt.NDArray[np.bool_]) -> Array:
