@@ -62,7 +62,7 @@ coverage: $(BUILT)
 LOWEST := .venv-lowest
 test-lowest: $(BUILT)
 	@test -x $(LOWEST)/bin/python || "$(PYTHON)" -m venv $(LOWEST)
-	$(PY) tests/lowest_versions.py pyproject.toml > $(LOWEST)/requirements.txt
+	$(PY) tests/support/lowest_versions.py pyproject.toml > $(LOWEST)/requirements.txt
 	$(LOWEST)/bin/python -m pip install --quiet --requirement $(LOWEST)/requirements.txt
 	@printf '#!/bin/sh\nexec "$(CURDIR)/$(LOWEST)/bin/python" -m mascarin.cli "$$@"\n' > $(LOWEST)/bin/mascarin
 	@chmod +x $(LOWEST)/bin/mascarin
@@ -105,9 +105,9 @@ vendor-three:
 	cp packaging/three/node_modules/three/LICENSE $(THREE)/three.LICENSE
 	cd $(THREE) && sha256sum --check $(CURDIR)/packaging/three/three.sha256
 
-# Bounded by the counts: those of FUZZ (see tests/fuzz_campaign.py --help), and calls of each function of the engine.
+# Bounded by the counts: those of FUZZ (see tests/robustness/fuzz_campaign.py --help), and calls of each function of the engine.
 fuzz: $(BUILT)
-	$(PY) -u tests/fuzz_campaign.py $(FUZZ)
+	$(PY) -u tests/robustness/fuzz_campaign.py $(FUZZ)
 	$(PY) fuzz/calls.py target/fuzz/calls
 	cargo run --quiet --release --manifest-path fuzz/Cargo.toml --target-dir target/fuzz --bin campaign -- \
 		target/fuzz/calls $(FUZZ_CALLS) 1

@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from diagnosis import LAST, PERIODS, WEATHER, ZONE, experiment
 from numpy.typing import NDArray
 
+from diagnosis import LAST, PERIODS, WEATHER, ZONE, experiment
 from mascarin import Study
 from mascarin.examples import STUDIES
 from mascarin.linear_algebra import one_thread

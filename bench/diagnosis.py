@@ -202,7 +202,7 @@ def summary(folder: Path) -> None:
 
 def arrays(count: int) -> None:
     """Rate of accusations in drawn records, the covariance of the errors estimated from each."""
-    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
     from diagnosis_support import drawn
     from mascarin.diagnosis import diagnose
 

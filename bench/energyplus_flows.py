@@ -1,4 +1,4 @@
-"""Files of ``tests/idf_flows.py`` for EnergyPlus, and the table of its results that the tests read.
+"""Files of ``tests/support/idf_flows.py`` for EnergyPlus, and the table of its results that the tests read.
 
     python bench/energyplus_flows.py write FOLDER      # FOLDER/NAME.idf; run EnergyPlus 25.2 on each
     python bench/energyplus_flows.py read FOLDER       # FOLDER/NAME/eplusout.csv of each run
@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests" / "support"))
 from idf_flows import FLOWS  # noqa: E402
 
 TABLE = ROOT / "tests" / "data" / "energyplus_flows.csv"

@@ -27,10 +27,10 @@ from pathlib import Path
 from typing import Any
 
 import cell
-import energyplus
 import numpy as np
 import pandas as pd
 
+import energyplus
 import mascarin as mc
 from mascarin.building import Building
 from mascarin.building.geometry import parents

@@ -33,13 +33,13 @@ from functools import partial
 from pathlib import Path
 
 import cell
-import energyplus
 import naive
 import numpy as np
 import numpy.typing as npt
 import page
 import pandas as pd
 
+import energyplus
 from mascarin.building import Building
 from mascarin.building.engine_input.mesh import choose
 from mascarin.simulation.simulation import Simulation

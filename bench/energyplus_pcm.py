@@ -21,12 +21,12 @@ from pathlib import Path
 from typing import Any
 
 import cell
-import energyplus
 import numpy as np
 import numpy.typing as npt
 import page
 import pandas as pd
 
+import energyplus
 from mascarin.building import Building
 from mascarin.building.engine_input.mesh import choose
 from mascarin.building.parts.materials.material import PhaseChangeMaterial

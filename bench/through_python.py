@@ -21,11 +21,11 @@ from pathlib import Path
 from typing import Any
 
 import cell
-import energyplus
 import page
 import pandas as pd
 from engine_speed import MODELS
 
+import energyplus
 from mascarin.examples import FOLDER
 
 HERE = Path(__file__).resolve().parent
