@@ -35,17 +35,18 @@ impl<S: Real> Response<S> {
         }
     }
 
-    /// One watt of a load, of the sign of the present one, into the air of a zone and onto its surfaces.
+    /// One watt of a load, of the sign of the present one, into the air of a zone and onto its surfaces. Whether all of it goes into the air.
     #[inline(always)]
-    fn set_unit(&mut self, model: &Model<'_, S>, (zone, load): (usize, S)) {
+    fn set_unit(&mut self, model: &Model<'_, S>, (zone, load): (usize, S)) -> bool {
         self.right.fill(S::zero());
         let (plan, numbers) = (&model.plan.zones[zone], &model.coefficients.zones[zone]);
         self.right[plan.air_row] = S::one();
-        let Some(radiated) = numbers.radiated_part(load) else { return };
+        let Some(radiated) = numbers.radiated_part(load) else { return true };
         self.right[plan.air_row] = S::one() - radiated;
         for (&surface, &share) in plan.surfaces.iter().zip(&numbers.radiant_shares) {
             self.right[model.plan.row(surface)] = share * radiated;
         }
+        false
     }
 
     /// Response of the stage just solved, of a length [s], to the load of a zone, of which the present value [W] tells
@@ -59,13 +60,17 @@ impl<S: Real> Response<S> {
         stage: usize,
         (length, ratio): (f64, f64),
     ) {
-        self.set_unit(model, of_zone);
+        let into_air = self.set_unit(model, of_zone);
         if stage > 0 {
             self.carry_over(model, system, length, ratio);
         } else {
             self.known.fill(S::zero());
         }
-        system.solve_again(&mut self.right);
+        if into_air && stage == 0 {
+            system.solve_for_airs(&mut self.right);
+        } else {
+            system.solve_again(&mut self.right);
+        }
         self.set_temperatures(model, system, stage, ratio);
     }
 
@@ -77,8 +82,11 @@ impl<S: Real> Response<S> {
         system: &BuildingSystem<'_, S>,
         of_zone: (usize, S),
     ) {
-        self.set_unit(model, of_zone);
-        system.solve_again(&mut self.right);
+        if self.set_unit(model, of_zone) {
+            system.solve_airs_alone(&mut self.right);
+        } else {
+            system.solve_again(&mut self.right);
+        }
         let last = self.stages.len() - 1;
         for (air, plan) in self.stages[last].air.iter_mut().zip(&model.plan.zones) {
             *air = self.right[plan.air_row];
