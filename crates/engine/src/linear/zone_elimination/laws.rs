@@ -4,7 +4,7 @@
 //! fill a register ([`Chunk`]). A register may hold surfaces of several correlations: each correlation is computed for all
 //! of them, and a flag selects those that it belongs to.
 
-use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySide, SideId};
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
@@ -37,9 +37,6 @@ pub(super) struct Laws<S> {
     pub(super) emission: [Vec<S>; 2],
     /// What the wind drives, see [`SurfaceConditions`](crate::weather::conditions::SurfaceConditions).
     forced: [Vec<S>; 2],
-    /// Whether it is to be read: once, or in each stage where something changes it.
-    reads_forced: bool,
-    forced_changes: bool,
     /// Two further parts, which laws that are written as text have; none if no surface has such a law.
     forced_of_text: Option<[Vec<S>; 2]>,
     /// Temperature of the air in front of each surface [degC].
@@ -63,8 +60,6 @@ impl<S: Real> Laws<S> {
             convection: [zeros(), zeros()],
             emission: [zeros(), zeros()],
             forced: [zeros(), zeros()],
-            reads_forced: true,
-            forced_changes: false,
             forced_of_text: None,
             air: zeros(),
             by_wind: Vec::new(),
@@ -129,13 +124,6 @@ impl<S: Real> Laws<S> {
                 (self.convection[0][i], self.convection[1][i]) = (S::zero(), S::zero());
             }
         }
-        let changes = |surface: SideId| {
-            let of = &numbers.surfaces[surface];
-            let windy = of.exposure.wind && matches!(of.boundary, Boundary::Outdoors(_));
-            convection(surface)
-                .is_some_and(|law| law.is_text() || law.measured().is_some() || (windy && law.windy()))
-        };
-        self.forced_changes = (0..self.count).any(|place| changes(self.surface(place)));
         if self.surfaces().any(|surface| convection(surface).is_some_and(SurfaceConvection::is_text)) {
             self.forced_of_text = Some(self.forced.clone());
         }
@@ -191,10 +179,9 @@ impl<S: Real> Laws<S> {
     /// Reads the wind at the surfaces.
     #[inline(always)]
     pub(super) fn set_wind(&mut self, conditions: &Conditions<S>) {
-        if !self.reads_forced || (self.nonlinear.is_empty() && self.by_wind.is_empty()) {
+        if self.nonlinear.is_empty() && self.by_wind.is_empty() {
             return;
         }
-        self.reads_forced = self.forced_changes;
         let places = &self.places[..self.count];
         let [first, second] = &mut self.forced;
         for (&place, (first, second)) in places.iter().zip(first.iter_mut().zip(second)) {
