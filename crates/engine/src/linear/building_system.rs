@@ -194,33 +194,30 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         load_residual_before
     }
 
-    /// Solves for the unknowns that [`Self::solve`] does not compute. False in the lanes where a wall that touches no zone is not a
-    /// number.
+    /// Solves for the unknowns that [`Self::solve`] does not compute, and copies laws and exterior surfaces of the zone fronts to
+    /// others. False in the lanes where a wall that touches no zone is not a number.
     #[inline(always)]
-    pub(crate) fn finish(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) -> S::Mask {
+    pub(crate) fn finish(
+        &mut self,
+        model: &Model<'_, S>,
+        laws: &mut BySide<SurfaceLaws<S>>,
+        solution: &mut Unknowns<S>,
+    ) -> S::Mask {
         if !model.parts.nonlinear_balances && self.thick_walls.is_empty() {
             self.resolve_linear_walls(model, solution);
         }
+        if !model.parts.balances_stay() {
+            self.zone_fronts.write_exterior_laws(laws);
+        }
         self.zone_fronts.write_windows(&solution.cells, &mut self.walls);
+        if S::DERIVATIVES || model.loads_by_responses() {
+            self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
+        }
         let mut sum = S::zero();
         for &w in &model.parts.detached_walls {
             sum += solution.surfaces[SideId::outside(w)] + solution.surfaces[SideId::inside(w)];
         }
         sum.abs().lt(S::constant(f64::MAX))
-    }
-
-    /// Writes the laws of the exterior surfaces that the zone fronts have linearised: the energy balance reads them.
-    #[inline(always)]
-    pub(crate) fn write_exterior_laws(&self, model: &Model<'_, S>, laws: &mut BySide<SurfaceLaws<S>>) {
-        if !model.parts.balances_stay() {
-            self.zone_fronts.write_exterior_laws(laws);
-        }
-    }
-
-    /// Writes the exterior surfaces that the zone fronts have eliminated: responses to loads read them.
-    #[inline(always)]
-    pub(crate) fn write_exterior_surfaces(&mut self) {
-        self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
     }
 
     /// Assembles the linear walls, and convection and radiation in zones, and eliminates the surfaces of the former; without

@@ -80,7 +80,7 @@ impl<'a> StageMatrix<'a> {
         if !model.parts.balances_stay() || new {
             system.zone_fronts.copy_laws(&laws.surfaces);
             system.assemble_linear(&inputs, true, None);
-            system.write_exterior_surfaces();
+            system.zone_fronts.write_exterior_surfaces(&mut system.exterior, &mut system.inverses);
         }
         system.assemble_nonlinear(&inputs);
         system.coupled.solve_rest();

@@ -133,17 +133,11 @@ impl<'a, S: Real> StageSolver<'a, S> {
         system.begin_stage(&inputs(stage, linearisation, start), iterate, stage.index(), &stage.state.cells);
     }
 
-    /// One linear solve at the iterate. Who reads the laws of exterior surfaces writes them, see [`Self::write_exterior_laws`].
+    /// One linear solve at the iterate.
     #[inline(always)]
     fn solve_once(&mut self, stage: &Stage<'_, S>) -> S::Mask {
         self.solve_linearised(stage, None);
-        self.system.finish(stage.model, &mut self.solution)
-    }
-
-    /// Writes the laws of the exterior surfaces, as linearised for the last linear solve, for the energy balance.
-    #[inline(always)]
-    pub(super) fn write_exterior_laws(&mut self, model: &Model<'_, S>) {
-        self.system.write_exterior_laws(model, &mut self.linearisation.laws.surfaces);
+        self.finish(stage)
     }
 
     /// Linearises everything about the iterate and solves; `outer` as in [`Linearisation::linearise_wall`].
@@ -208,8 +202,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
     /// number; of all other walls the iteration has noticed.
     #[inline(always)]
     pub(super) fn finish(&mut self, stage: &Stage<'_, S>) -> S::Mask {
-        self.write_exterior_laws(stage.model);
-        self.system.finish(stage.model, &mut self.solution)
+        self.system.finish(stage.model, &mut self.linearisation.laws.surfaces, &mut self.solution)
     }
 
     /// Marks lanes as failed: each is run again alone; the others go on. An error where none is left.

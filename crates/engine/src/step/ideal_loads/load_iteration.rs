@@ -215,9 +215,6 @@ impl<S: Real> Stepper<'_, S> {
             {
                 sound = solver.solve(&stage, search)?;
             }
-            if may_end || self.residuals.is_some() {
-                solver.write_exterior_laws(model);
-            }
             known.keep(&solver.solution);
             let moved = S::select(sound, solver.change(model), S::constant(f64::INFINITY));
             change = change.max(moved);
@@ -225,7 +222,6 @@ impl<S: Real> Stepper<'_, S> {
                 accepted = accepted & solver.small_linearization_error(&stage, moved);
             }
             if responds {
-                solver.system.write_exterior_surfaces();
                 let loads = (index, &solver.start.load[..]);
                 ideal_loads.respond(model, &solver.system, loads, (length_of_stage, tableau.ratio));
             }

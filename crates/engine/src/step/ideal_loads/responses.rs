@@ -35,18 +35,17 @@ impl<S: Real> Response<S> {
         }
     }
 
-    /// One watt of a load, of the sign of the present one, into the air of a zone and onto its surfaces. Whether all of it goes into the air.
+    /// One watt of a load, of the sign of the present one, into the air of a zone and onto its surfaces.
     #[inline(always)]
-    fn set_unit(&mut self, model: &Model<'_, S>, (zone, load): (usize, S)) -> bool {
+    fn set_unit(&mut self, model: &Model<'_, S>, (zone, load): (usize, S)) {
         self.right.fill(S::zero());
         let (plan, numbers) = (&model.plan.zones[zone], &model.coefficients.zones[zone]);
         self.right[plan.air_row] = S::one();
-        let Some(radiated) = numbers.radiated_part(load) else { return true };
+        let Some(radiated) = numbers.radiated_part(load) else { return };
         self.right[plan.air_row] = S::one() - radiated;
         for (&surface, &share) in plan.surfaces.iter().zip(&numbers.radiant_shares) {
             self.right[model.plan.row(surface)] = share * radiated;
         }
-        false
     }
 
     /// Response of the stage just solved, of a length [s], to the load of a zone, of which the present value [W] tells
@@ -60,17 +59,13 @@ impl<S: Real> Response<S> {
         stage: usize,
         (length, ratio): (f64, f64),
     ) {
-        let into_air = self.set_unit(model, of_zone);
+        self.set_unit(model, of_zone);
         if stage > 0 {
             self.carry_over(model, system, length, ratio);
         } else {
             self.known.fill(S::zero());
         }
-        if into_air && stage == 0 {
-            system.solve_for_airs(&mut self.right);
-        } else {
-            system.solve_again(&mut self.right);
-        }
+        system.solve_again(&mut self.right);
         self.set_temperatures(model, system, stage, ratio);
     }
 
@@ -82,11 +77,8 @@ impl<S: Real> Response<S> {
         system: &BuildingSystem<'_, S>,
         of_zone: (usize, S),
     ) {
-        if self.set_unit(model, of_zone) {
-            system.solve_airs_alone(&mut self.right);
-        } else {
-            system.solve_again(&mut self.right);
-        }
+        self.set_unit(model, of_zone);
+        system.solve_again(&mut self.right);
         let last = self.stages.len() - 1;
         for (air, plan) in self.stages[last].air.iter_mut().zip(&model.plan.zones) {
             *air = self.right[plan.air_row];
