@@ -3,7 +3,7 @@
 //! A wall has two surfaces, its outside and its inside. A wall is named by its position in the description; a surface by
 //! [`SideId`].
 
-use core::ops::{Deref, DerefMut, Index, IndexMut};
+use core::ops::{Deref, DerefMut, Index, IndexMut, Range};
 
 /// One of the two surfaces of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -89,6 +89,18 @@ impl<T> BySide<T> {
     /// All surfaces with their values.
     pub fn entries(&self) -> impl Iterator<Item = (SideId, &T)> {
         self.0.iter().enumerate().map(|(index, value)| (SideId(index), value))
+    }
+
+    /// The values of neighbouring surfaces, by their places.
+    #[inline(always)]
+    pub(crate) fn places(&self, places: &Range<usize>) -> &[T] {
+        &self.0[places.clone()]
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    pub(crate) fn places_mut(&mut self, places: &Range<usize>) -> &mut [T] {
+        &mut self.0[places.clone()]
     }
 
     /// All surfaces.

@@ -100,12 +100,24 @@ pub(crate) struct Parts {
     /// Surfaces whose laws are linearised or change with the wind: all of them, and those that no zone front eliminates.
     pub(crate) surfaces: VariableSurfaces,
     pub(crate) other_surfaces: VariableSurfaces,
-    /// Surfaces at which something is linearised: convection, radiation or the wall behind; and those of thick walls.
-    pub(crate) linearised: Vec<SideId>,
+    /// Places of the surfaces at which something is linearised: convection, radiation or the wall behind; and those of thick walls.
+    pub(crate) linearised: Vec<Range<usize>>,
     /// Whether the heat balance of a surface of a linear wall is nonlinear.
     pub(crate) nonlinear_balances: bool,
     /// Whether the wind changes the slope of such a balance.
     pub(crate) wind_changes_balances: bool,
+}
+
+/// Surfaces in order, those that follow each other together.
+fn neighbours(surfaces: impl Iterator<Item = SideId>) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for place in surfaces.map(SideId::index) {
+        match ranges.last_mut() {
+            Some(last) if last.end == place => last.end += 1,
+            _ => ranges.push(place..place + 1),
+        }
+    }
+    ranges
 }
 
 /// Surfaces whose laws change during a run.
@@ -160,7 +172,7 @@ impl Parts {
                 || surfaces.nonlinear.contains(surface)
                 || surfaces.radiant.contains(surface)
         };
-        parts.linearised = plan.surfaces.ids().filter(linearised).collect();
+        parts.linearised = neighbours(plan.surfaces.ids().filter(linearised));
         parts.other_surfaces = parts
             .surfaces
             .filter(|surface| exterior(surface) && !plan.walls[surface.wall()].condensed_in_zone);

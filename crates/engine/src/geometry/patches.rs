@@ -9,6 +9,9 @@ use super::polygon::{common_area, project};
 use super::shading::Receiver;
 use super::surface::PlaneSurface;
 
+/// Corners that most polygons have at most after they are clipped.
+const CORNERS: usize = 16;
+
 /// A surface of a zone on which a beam may end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Target {
@@ -69,7 +72,9 @@ impl BeamTracer {
             return;
         }
         let sunlit = self.window.sunlit_pieces(sun);
-        let (mut projected, mut scratch) = (Vec::new(), [Vec::new(), Vec::new()]);
+        // Room for a polygon of some corners: none of them grows in small steps.
+        let room = || Vec::with_capacity(CORNERS);
+        let (mut projected, mut scratch) = (room(), [room(), room()]);
         for (Target { normal, pieces }, fraction) in self.targets.iter().zip(fractions.iter_mut()) {
             if dot(*normal, sun) <= 0.0 {
                 continue;

@@ -73,7 +73,7 @@ impl<S: Real> PhysicalLimits<S> {
     pub(crate) fn new(state: &State<S>, scheme: Scheme) -> Self {
         let overshoot = if scheme.weights().len() > 1 { OVERSHOOT } else { 0.0 };
         Self {
-            bounds: [lowest(state), highest(state)],
+            bounds: state.extremes(),
             supplied: S::Mask::splat(true),
             overshoot,
             excess: S::zero(),
@@ -94,7 +94,8 @@ impl<S: Real> PhysicalLimits<S> {
         rows: [&[f64]; 2],
         (action, step): (Action, usize),
     ) -> Result<(), EngineError> {
-        let (coldest, row) = (lowest(state), rows[1]);
+        let (ends, row) = (state.extremes(), rows[1]);
+        let coldest = ends[0];
         let mut impossible = coldest.lt(S::constant(-KELVIN));
         for &vapour in &state.vapour[..state.vapour.len().min(state.air.len())] {
             impossible = impossible | vapour.lt(S::constant(NO_VAPOUR.of::<S>()));
@@ -111,7 +112,7 @@ impl<S: Real> PhysicalLimits<S> {
             }
             stepper.mark_failed(impossible);
         }
-        self.compare_with_causes(stepper, state, rows, coldest, step);
+        self.compare_with_causes(stepper, state, rows, ends, step);
         Ok(())
     }
 
@@ -122,7 +123,7 @@ impl<S: Real> PhysicalLimits<S> {
         stepper: &Stepper<'_, S>,
         state: &State<S>,
         rows: [&[f64]; 2],
-        coldest: S,
+        [coldest, hottest]: [S; 2],
         step: usize,
     ) {
         self.widen(stepper, rows);
@@ -132,7 +133,6 @@ impl<S: Real> PhysicalLimits<S> {
         let mut excess = (self.bounds[0] - slack) - coldest;
         // What follows changes the lanes that are not heated only, so that a lane does not depend on the others.
         if (!heated).any() {
-            let hottest = highest(state);
             // The heat that was supplied in the step before is still on its way.
             let settling = self.supplied & !heated;
             self.bounds[1] = S::select(settling, self.bounds[1].max(hottest), self.bounds[1]);
@@ -268,16 +268,6 @@ fn name_impossible<S: Real>(
 #[inline(always)]
 fn temperatures<S: Real>(state: &State<S>) -> impl Iterator<Item = S> {
     state.cells.iter().chain(state.surfaces.iter()).chain(&state.air).copied()
-}
-
-#[inline(always)]
-fn lowest<S: Real>(state: &State<S>) -> S {
-    temperatures(state).fold(S::constant(f64::INFINITY), S::min)
-}
-
-#[inline(always)]
-fn highest<S: Real>(state: &State<S>) -> S {
-    temperatures(state).fold(S::constant(f64::NEG_INFINITY), S::max)
 }
 
 /// Lanes where sun, gains or heating warm the building in the last stage of a step, and lanes where it is cooled.

@@ -127,8 +127,11 @@ impl<S: Real> Unknowns<S> {
         ratio: f64,
         memory: &[PcmHistory<S>],
     ) {
-        for &surface in &model.parts.linearised {
-            self.surfaces[surface] = line(from.surfaces[surface], to.surfaces[surface], ratio);
+        for surfaces in &model.parts.linearised {
+            let ends = from.surfaces.places(surfaces).iter().zip(to.surfaces.places(surfaces));
+            for (guess, (&from, &to)) in self.surfaces.places_mut(surfaces).iter_mut().zip(ends) {
+                *guess = line(from, to, ratio);
+            }
         }
         for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
             *guess = line(from, to, ratio);

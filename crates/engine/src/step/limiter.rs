@@ -23,9 +23,9 @@ impl<S: Real> StageSolver<'_, S> {
         let model = stage.model;
         // The apparent capacity is a constant of the step: there is nothing to cross.
         let limits = stage.tableau.storage == StorageRule::Enthalpy;
-        for &surface in &model.parts.linearised {
-            let old = self.iterate.surfaces[surface];
-            self.iterate.surfaces[surface] = S::select(active, self.solution.surfaces[surface], old);
+        for surfaces in &model.parts.linearised {
+            let solution = self.solution.surfaces.places(surfaces);
+            blend(active, self.iterate.surfaces.places_mut(surfaces), solution);
         }
         blend(active, &mut self.iterate.air, &self.solution.air);
         for (&w, cells) in model.parts.nonlinear_walls.iter().zip(&model.parts.nonlinear_cells) {

@@ -13,7 +13,7 @@ use crate::building::plan::SideRole;
 use crate::linear::building_system::BuildingSystem;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::StorageRule;
-use crate::number::real::{Mask, Real};
+use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::convection::natural::ROUND_OFF;
 use crate::physics::doors;
 use crate::step::stage::Stage;
@@ -28,6 +28,9 @@ const CONVECTION: f64 = 0.6;
 /// More than the heat transfer coefficients of natural convection on the two sides of equal temperatures, where correlations
 /// for warm and for cold plates meet [W/(m2 K)].
 const SIDES: f64 = 2.0;
+
+/// What rounding adds to the change of a temperature difference [K].
+const ROUNDING: ByPrecision = ByPrecision { double: 1e-11, single: 1e-3 };
 
 /// Parts of a building whose laws are nonlinear.
 #[derive(Debug, Clone)]
@@ -65,6 +68,15 @@ impl<S: Real> Limit<S> {
             linearization_error.scale(1.0 / SIDES) / bend,
         );
         Self { linearization_error, cube: root * root * root, across }
+    }
+
+    /// Square of a temperature difference from which on the remainder of natural convection is accepted [K2], where no temperature has
+    /// changed by more than `change` [K]: it is smooth enough there, and too far from zero to have changed its sign.
+    #[inline(always)]
+    fn far(&self, change: S) -> S {
+        let most = change.scale(2.0) + S::constant(ROUNDING.of::<S>());
+        let square = most * most;
+        (square * square * square / self.cube).max(square)
     }
 
     /// Where the remainder of natural convection is accepted; temperature difference from surface to air at the iterate
@@ -132,15 +144,20 @@ impl<S: Real> NonlinearLaws<S> {
         if !small.any() {
             return small;
         }
+        let far = self.limit.far(change);
         for &surface in &self.exterior {
             let air = stage.conditions.surfaces[surface].temperature;
-            let [before, after] = [old.surfaces[surface] - air, new.surfaces[surface] - air];
-            small = small & self.limit.accepts_convection(before, after);
+            let after = new.surfaces[surface] - air;
+            if (!far.lt(after * after)).any() {
+                small = small & self.limit.accepts_convection(old.surfaces[surface] - air, after);
+            }
         }
         for &(surface, zone) in &self.interior {
-            let before = old.surfaces[surface] - old.air[zone];
             let after = new.surfaces[surface] - new.air[zone];
-            small = small & self.limit.accepts_convection(before, after);
+            if (!far.lt(after * after)).any() {
+                let before = old.surfaces[surface] - old.air[zone];
+                small = small & self.limit.accepts_convection(before, after);
+            }
         }
         for (door, &whole) in stage.model.coefficients.doors.iter().zip(&stage.conditions.doors) {
             let [zone, other] = door.between;
@@ -195,5 +212,32 @@ impl<S: Real> NonlinearLaws<S> {
     ) -> S::Mask {
         let walls = &stage.model.parts.nonlinear_walls;
         self.accepts(stage, change, system, places) & self.accepts_evaluated(stage, walls, system, places[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From [`Limit::far`] on nothing has to be looked at: the remainder is accepted at any temperature difference before the change. Closer to
+    /// zero it is not always.
+    #[test]
+    fn far_from_zero_the_remainder_of_convection_is_accepted() {
+        let power = |exponent: f64| Real::powf(10.0_f64, exponent);
+        let (mut beyond, mut refused) = (0, 0);
+        for k in 0..20 * 30 * 40 {
+            let [error, change, after] = [k % 20, k / 20 % 30, k / 600].map(f64::from);
+            let limit = Limit::new(power(-8.5 + 0.23 * error), 1.0);
+            let (change, after) = (power(-7.0 + 0.27 * change), power(-4.0 + 0.13 * after));
+            for moved in [-2.0 * change, -change, change, 2.0 * change] {
+                let accepted = limit.accepts_convection(after - moved, after);
+                if limit.far(change) < after * after {
+                    beyond += 1;
+                    assert!(accepted, "{change} K to {after} K");
+                }
+                refused += usize::from(!accepted);
+            }
+        }
+        assert!(beyond > 10_000 && refused > 10_000, "{beyond}, {refused}");
     }
 }

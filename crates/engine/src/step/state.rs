@@ -7,7 +7,8 @@ use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::unknowns::Temperatures;
-use crate::number::real::Real;
+use crate::number::real::{Chunk, ChunkTask, Real};
+use crate::number::simd::WIDTH;
 use crate::physics::pcm::{HISTORY_NUMBERS, PcmHistory};
 use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
 
@@ -302,6 +303,16 @@ impl<S: Real> State<S> {
         }
     }
 
+    /// The lowest and the highest of all temperatures [degC].
+    // One copy only.
+    #[inline(never)]
+    pub(crate) fn extremes(&self) -> [S; 2] {
+        S::vectorised(
+            #[inline(always)]
+            || S::in_chunks(Extremes(self)),
+        )
+    }
+
     /// Largest change of a cell or an air against another state [K]; of humidity, see `AS_KELVIN` and `CONTENT_AS_KELVIN`.
     #[inline(always)]
     pub fn distance(&self, other: &Self) -> S {
@@ -318,6 +329,34 @@ impl<S: Real> State<S> {
             largest = largest.max(as_kelvin);
         }
         largest
+    }
+}
+
+/// The lowest and the highest temperature of a state, of neighbours at once: every step asks for them.
+struct Extremes<'r, S>(&'r State<S>);
+
+impl<S: Real> ChunkTask<S> for Extremes<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) -> [S; 2] {
+        let wider = |[low, high]: [S; 2], temperature: S| [low.min(temperature), high.max(temperature)];
+        let mut all = [S::constant(f64::INFINITY), S::constant(f64::NEG_INFINITY)];
+        let [mut low, mut high]: [V; 2] = all.map(V::filled);
+        for temperatures in [&self.0.cells[..], &self.0.surfaces, &self.0.air] {
+            let chunks = temperatures.chunks_exact(S::CHUNK);
+            all = chunks.remainder().iter().copied().fold(all, wider);
+            for chunk in chunks {
+                let chunk = V::load(chunk);
+                (low, high) = (low.min(chunk), high.max(chunk));
+            }
+        }
+        let mut parts = [S::zero(); WIDTH];
+        let parts = &mut parts[..S::CHUNK];
+        low.store(parts);
+        all[0] = parts.iter().copied().fold(all[0], S::min);
+        high.store(parts);
+        all[1] = parts.iter().copied().fold(all[1], S::max);
+        all
     }
 }
 
@@ -340,5 +379,40 @@ fn vapour_at<S: Real>(model: &Model<'_, S>, air: &[S], row: &[f64]) -> Vec<S> {
 pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
     for (a, &b) in mine.iter_mut().zip(theirs) {
         *a = S::select(mask, b, *a);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::ids::SideId;
+
+    /// Wherever they are: among 19 cells, 10 surfaces or 3 airs, of which registers hold eight.
+    #[test]
+    fn extremes_of_a_state() {
+        let nothing = PcmHistory::new(0.0, 20.0);
+        let state = State {
+            cells: vec![20.0; 19],
+            enthalpy: vec![0.0; 19],
+            memory: vec![nothing; 19],
+            surfaces: vec![20.0; 10].into(),
+            air: vec![20.0; 3],
+            load: vec![0.0; 3],
+            vapour: Vec::new(),
+            opened: Vec::new(),
+            unchanged: Vec::new(),
+        };
+        assert_eq!(state.extremes(), [20.0; 2]);
+        for place in 0..32 {
+            for (temperature, expected) in [(-30.0, [-30.0, 20.0]), (60.0, [20.0, 60.0])] {
+                let mut state = state.clone();
+                match place {
+                    0..19 => state.cells[place] = temperature,
+                    19..29 => state.surfaces[SideId::from_index(place - 19)] = temperature,
+                    _ => state.air[place - 29] = temperature,
+                }
+                assert_eq!(state.extremes(), expected, "{place}");
+            }
+        }
     }
 }

@@ -169,14 +169,15 @@ impl<S: Real> ZoneFront<S> {
             let (offset, slope) = (laws.emission[0][eliminated + i], laws.emission[1][eliminated + i]);
             *value = if eliminated + i == surfaces { unknowns[row] } else { offset + slope * unknowns[row] };
         }
-        let rows = factors.rows.chunks_exact(stride).zip(&factors.inverse_pivots);
-        for (k, (row, &inverse)) in rows.enumerate().take(eliminated).rev() {
+        let known = &mut emissions[..=surfaces];
+        for (k, &inverse) in factors.inverse_pivots[..eliminated].iter().enumerate().rev() {
+            let (entries, right) = factors.rows[k * stride..][..surfaces + 2].split_at(surfaces + 1);
             // The value that was computed last is subtracted last: the other products need not wait for it.
-            let mut sum = row[surfaces + 1];
-            for (&entry, &value) in row[k + 1..=surfaces].iter().zip(&emissions[k + 1..=surfaces]).rev() {
+            let mut sum = right[0];
+            for (&entry, &value) in entries[k + 1..].iter().zip(&known[k + 1..]).rev() {
                 sum = sum - entry * value;
             }
-            emissions[k] = sum * inverse;
+            known[k] = sum * inverse;
         }
         for start in (0..eliminated).step_by(S::CHUNK) {
             let temperature: V = (part!(emissions, start) - part!(laws.emission[0], start))
@@ -245,8 +246,8 @@ impl<S: Real> ZoneFront<S> {
     #[inline(always)]
     pub(super) fn back<P: Product<S, R>, R: Real>(&self, values: &mut [R], place: impl Fn(usize) -> usize) {
         let Layout { surfaces, eliminated, stride, .. } = self.layout;
-        let rows = self.factors.rows.chunks_exact(stride).zip(&self.factors.inverse_pivots);
-        for (k, (row, &inverse)) in rows.enumerate().take(eliminated).rev() {
+        for (k, &inverse) in self.factors.inverse_pivots[..eliminated].iter().enumerate().rev() {
+            let row = &self.factors.rows[k * stride..][..=surfaces];
             let mut sum = values[place(k)] - P::of(row[surfaces], values[place(surfaces)]);
             let entries = row[k + 1..surfaces].iter().zip(&self.laws.emission[1][k + 1..surfaces]);
             for (j, (&entry, &slope)) in (k + 1..surfaces).zip(entries) {

@@ -63,8 +63,8 @@ impl<S: Real> LoadSensitivity<S> {
             SideRole::Exterior => None,
         };
         let near = |surface: SideId| of_surface(surface).or_else(|| of_surface(surface.opposite()));
-        let linearised = model.parts.linearised.iter();
-        let surfaces: Vec<_> = linearised.filter_map(|&surface| Some((surface, near(surface)?))).collect();
+        let linearised = model.parts.linearised.iter().cloned().flatten().map(SideId::from_index);
+        let surfaces: Vec<_> = linearised.filter_map(|surface| Some((surface, near(surface)?))).collect();
         let of_window = |&w: &usize| Some((model.cells(w), near(SideId::inside(w))?));
         let cells: Vec<_> = plan
             .windows
