@@ -110,7 +110,7 @@ impl Case {
     pub fn run(&self, steps: Option<usize>) -> Result<(), EngineError> {
         let run =
             simulate(&self.plan, &self.values, &self.forcing(steps), &self.options, &RunControl::default())?;
-        assert!(run.ledger.closure() < 1e-10, "energy closes");
+        assert!(run.energy_balance.closure() < 1e-10, "energy closes");
         Ok(())
     }
 
