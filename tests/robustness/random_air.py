@@ -289,8 +289,33 @@ def controls(draw: Draw, zones: list[str]) -> Json:
         for key in ("minimum_open_time", "minimum_closed_time"):
             if draw.chance(0.3):
                 control[key] = draw.of(0, 10, 45, draw.whole(1, 240))
+        # Without a draw of their own, so that cases keep their numbers.
+        if at == 1:
+            for key in ("indoor", "outdoor"):
+                if key in control:
+                    opens = four(control[key]["open"] + 6.0)
+                    control[f"{key}_below"] = {"open": opens, "close": four(opens + 1.5)}
         controls_by_name[f"control_{at}"] = control
     return controls_by_name
+
+
+def controlled_flows(tree: Json) -> None:
+    """Schedules and controls of infiltration and ventilation, without a draw of their own."""
+    controls_by_name = tree.get("controls", {})
+    if len(controls_by_name) < 2:
+        return
+    fractions = sorted(
+        name for name, entry in tree.get("schedules", {}).items() if entry["kind"] == "fraction"
+    )
+    keys = {"control": "control_1"} | ({"schedule": fractions[0]} if fractions else {})
+    for entry in tree["zones"].values():
+        infiltration = entry.get("infiltration", 0.0)
+        if isinstance(infiltration, int | float):
+            entry["infiltration"] = {"constant": infiltration} | keys
+        elif "column" not in infiltration and "value" not in infiltration:
+            entry["infiltration"] = {**infiltration, **keys}
+        for flow in entry.get("ventilation", {}).values():
+            flow["control"] = "control_1"
 
 
 # --- humidity -----------------------------------------------------------------------------------------------

@@ -437,6 +437,11 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "minimum_open_time": {"value": 30, "range": [10, 60]},
             "minimum_closed_time": {"value": 40, "range": [0, 600]},
         },
+        "cold": {
+            "zone": "attic",
+            "indoor_below": {"open": 24, "close": 26},
+            "outdoor_below": {"open": 18, "close": 20},
+        },
         "dry": {"zone": "attic", "rain": {"column": "T_out", **_band(25, 26, 0.9)}},
     },
     "humidity": {
@@ -532,4 +537,12 @@ def everything() -> list[Building]:
     freedom = building.replace(FREEDOM)
     soil = {"kind": "soil", "mean": 12, "amplitude": 8, "depth": 1.5, "coldest_day": 40}
     on_soil = building.replace({"surfaces.floor.outside": {"imposed": soil}})
-    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), freedom, on_soil, *melting]
+    edge = {"psi": 0.1, "length": 5, "excess": {"west": 0.5}}
+    converted = building.replace(
+        {
+            "dimensions": {"areas": "external", "bridges": "internal"},
+            "zones.room.thermal_bridges": {"edge": edge},
+        }
+    )
+    further = [freedom, on_soil, converted]
+    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *further, *melting]

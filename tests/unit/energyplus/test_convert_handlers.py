@@ -88,7 +88,7 @@ def test_every_section_of_a_description_can_be_written(tmp_path: Path) -> None:
     for name in reversed(names):
         context.section(name)["part"] = {}
     assert list(context.ordered()) == names == list(SECTIONS)
-    with pytest.raises(KeyError, match="expected one of site, weather, materials"):
+    with pytest.raises(KeyError, match="expected one of site, weather, dimensions, materials"):
         context.section("sensor")
 
 

@@ -24,8 +24,8 @@ from mascarin.errors import InputError
 
 HERE = Path(__file__).resolve().parents[2]
 SMALL = HERE / "idf_small"
-#: Rms of the hourly air temperature of January and July that a carried feature may differ [K]: what is asked of
-#: models with steady gains.
+#: Rms of the hourly air temperature of January and July that a carried feature may differ [K]: what is asked
+#: of models with steady gains.
 USUAL = 0.2
 #: The same where more is known, with the reason.
 LARGER = {

@@ -166,6 +166,15 @@ ConvertedTransmittance = Annotated[
         Limits(at_least=-1e4, at_most=1e4),
     ),
 ]
+AreaExcess = Annotated[
+    Number,
+    Quantity(
+        "m2",
+        "Area of the surface as described less its area in the dimensions of psi or chi, at this bridge",
+        Fixed("it belongs to the areas, which are structural"),
+        Limits(at_least=-1e5, at_most=1e5),
+    ),
+]
 BridgeNumber = Annotated[
     Number,
     Quantity(

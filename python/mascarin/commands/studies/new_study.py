@@ -46,10 +46,12 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
     """
     from mascarin.examples import STUDIES
 
-    if example not in STUDIES:
+    # A study that extends the one beside it is no start of its own.
+    folders = [name for name, file in STUDIES.items() if file.name == _STUDY]
+    if example not in folders:
         raise InputError(
-            f"--example: found '{example}', expected one of {', '.join(STUDIES)}. "
-            f"{did_you_mean(example, STUDIES)}".rstrip()
+            f"--example: found '{example}', expected one of {', '.join(folders)}. "
+            f"{did_you_mean(example, folders)}".rstrip()
         )
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: is a file; expected a new folder: choose another name")

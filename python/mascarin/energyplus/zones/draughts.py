@@ -12,10 +12,10 @@ from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.energyplus.zones.zones import Zone
-from mascarin.physics import STANDARD_PRESSURE
+from mascarin.physics import standard_density
 
 #: Temperature of standard air [K], and the gas constant of air in EnergyPlus [J/(kg K)].
-_STANDARD_TEMPERATURE, _GAS_CONSTANT = 293.15, 287.0
+_STANDARD_TEMPERATURE, _STANDARD_AIR = 293.15, 288.15
 #: Temperature difference [K] and wind at the mast [m/s] at which a flow that cannot be a law is taken.
 _USUAL_DIFFERENCE, _USUAL_WIND = 10.0, 4.0
 #: Conditions of ventilation: key of the control, field of EnergyPlus, limit beyond which it never acts.
@@ -87,9 +87,8 @@ def density_of(context: Context, item: IdfObject, *, usual: str = "outdoors") ->
     if word != "standard":
         return "outdoors"
     altitude = float(context.section("site").get("altitude", 0.0))
-    # ASHRAE Handbook of Fundamentals 2017, ch. 1, eq. 3.
-    pressure = STANDARD_PRESSURE * (1.0 - 2.25577e-5 * altitude) ** 5.2559
-    return round(float(pressure) / (_GAS_CONSTANT * _STANDARD_TEMPERATURE), 5)
+    # Standard air of EnergyPlus has 20 degC; that of the engine 15 degC at the same pressure.
+    return round(standard_density(altitude) * _STANDARD_AIR / _STANDARD_TEMPERATURE, 5)
 
 
 def conditioned(context: Context, zone: Zone, draught: Draught) -> Iterator[Draught]:

@@ -18,6 +18,7 @@ from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
 from mascarin.energyplus.model.year import Year, combined
 from mascarin.energyplus.zones.zones import Zone
+from mascarin.physics import STANDARD_PRESSURE
 
 _CRACKS: Final = (
     "AirflowNetwork:MultiZone:Surface:Crack",
@@ -152,7 +153,7 @@ def _leak(context: Context, item: IdfObject) -> tuple[float, float]:
 
 
 #: Temperature [degC] and pressure [Pa] of the air for which EnergyPlus takes the coefficient of a crack.
-_REFERENCE_AIR: Final = (20.0, 101325.0)
+_REFERENCE_AIR: Final = (20.0, STANDARD_PRESSURE)
 #: Difference of density below which air passes one way only, that is not worth a word. [kg/m3]
 _SMALL_DIFFERENCE: Final = 1e-3
 

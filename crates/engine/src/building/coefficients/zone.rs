@@ -67,7 +67,7 @@ pub struct ZoneCoefficients<S> {
 }
 
 impl<S: Real> ZoneCoefficients<S> {
-    /// Evaluates a zone at a parameter vector.
+    /// Evaluates a zone at a parameter vector. Long because it fills every number of a zone.
     pub(crate) fn new(
         plan: &Plan,
         index: usize,

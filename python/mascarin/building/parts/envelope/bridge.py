@@ -51,10 +51,10 @@ class ThermalBridge(Part):
         description="Dimensions that psi or chi belongs to: internal, overall_internal or external; any: the "
         "same in all, as the edge of a glass; none: those of the building",
     )
-    excess: dict[Name, float] = Field(
+    excess: dict[Name, q.AreaExcess] = Field(
         default_factory=dict,
         description="Surface -> its area as described less its area in the dimensions of psi or chi, at this "
-        "bridge; it is converted by psi - sum U dA / l [m2]",
+        "bridge; it is converted by psi - sum U dA / l. [m2]",
     )
     converted: q.ConvertedTransmittance | None = None
 
