@@ -10,6 +10,7 @@ import pytest
 
 import report_example
 from mascarin.pages.study import write
+from mascarin.pages.study.page import coverage_facts
 from mascarin.pages.study.sections import summary
 
 if TYPE_CHECKING:
@@ -53,12 +54,16 @@ def test_the_verdict_counts_the_criteria(values: tuple[float, float], said: str)
 def test_the_verdict_says_what_bands_hold_and_what_contradicts() -> None:
     fitted = {"a.b": {"fitted": 1.0, "nominal": 2.0}}
     band = {"room_air": {"confidence": 0.95, "held": {"blind": 0.61}}}
-    good = summary.verdict(study(parameters=fitted, band=band))[-1]
-    assert good.startswith("61\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
+    # The second sensor has three times as many values: they count, in the head of the page as well.
+    band["steel"] = {"confidence": 0.95, "held": {"blind": 0.81}}
+    sensors = {key: {"blind": {"fitted": {"n": n}}} for key, n in (("room_air", 100), ("steel", 300))}
+    complete = study(parameters=fitted, band=band, sensors=sensors)
+    good = summary.verdict(complete)[-1]
+    [fact] = coverage_facts(complete)
+    assert good.startswith(fact["value"])
+    assert good.startswith("76\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
     assert "no contradiction" in good
-    bad = summary.verdict(study(parameters=fitted, band=band, contradictions=[{"text": "x"}, {"text": "y"}]))[
-        -1
-    ]
+    bad = summary.verdict(complete | {"contradictions": [{"text": "x"}, {"text": "y"}]})[-1]
     assert "contradicts its data or what is known 2 times" in bad
     assert "no contradiction" not in bad
     assert summary.verdict(study()) == []

@@ -169,10 +169,9 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "airflownetwork:multizone:windpressurecoefficientvalues": {
         "airflownetwork_multizone_windpressurecoefficientarray_name": "of which there is one",
     },
-    "windowmaterial:blind": {"slat_*": "listed with the blind", "*_slat_*": "listed with the blind"},
     "windowmaterial:shade": {
-        "thickness": "listed with the control",
-        "conductivity": "listed with the control",
+        "thickness": "of a shade whose edges are closed: read there",
+        "conductivity": "of a shade whose edges are closed: read there",
     },
     "windowmaterial:screen": {"angle_of_resolution_*": "a report"},
     "windowshadingcontrol": {

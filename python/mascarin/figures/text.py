@@ -130,6 +130,12 @@ def percent(value: float | None, digits: int = 1) -> str:
     return NONE if value is None else f"{fixed(100.0 * value, digits)}\u00a0%"
 
 
+def span(values: Sequence[float]) -> str:
+    """Lowest and highest of some numbers, or the one number that all are."""
+    low, high = fixed(min(values)), fixed(max(values))
+    return low if low == high else f"{low}–{high}"
+
+
 def span_of(start: datetime, end: datetime) -> str:
     """Span of time in words; whole days by their dates."""
     full_days = start.time() == end.time() and start.hour == start.minute == 0

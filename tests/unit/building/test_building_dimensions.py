@@ -80,8 +80,10 @@ def test_conductances_by_destination_are_those_by_hand() -> None:
 def test_the_heat_loss_coefficient_has_the_pressure_test() -> None:
     room = building()
     assert heat_loss(room).destinations["infiltration"] == pytest.approx(10.0 * 0.7)
-    rows = [one for one in conductances(room) if not one.destination.startswith("zone ")]
-    assert heat_loss(room).total == pytest.approx(sum(one.value for one in rows))
+    rows = [
+        conductance for conductance in conductances(room) if not conductance.destination.startswith("zone ")
+    ]
+    assert heat_loss(room).total == pytest.approx(sum(conductance.value for conductance in rows))
 
 
 def test_a_pressure_test_by_stack_and_wind_is_the_law_of_the_engine() -> None:
@@ -96,8 +98,12 @@ def test_a_pressure_test_by_stack_and_wind_is_the_law_of_the_engine() -> None:
 
 def test_partitions_and_air_between_zones_stand_once() -> None:
     paths = {"door": {"between": ["a", "b"], "flow": 0.01}}
-    between = [one for one in conductances(building(air_paths=paths)) if one.destination.startswith("zone ")]
-    assert {one.element: one.value for one in between} == pytest.approx(
+    between = [
+        conductance
+        for conductance in conductances(building(air_paths=paths))
+        if conductance.destination.startswith("zone ")
+    ]
+    assert {conductance.element: conductance.value for conductance in between} == pytest.approx(
         {"partition": 9.0 * U_IN, "door": 12.0}
     )
 
@@ -105,7 +111,9 @@ def test_partitions_and_air_between_zones_stand_once() -> None:
 def test_check_and_view_show_the_same_conductances(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     room = building()
     lines = room.check()
-    total = sum(one.value for one in conductances(room) if one.destination == "outdoors")
+    total = sum(
+        conductance.value for conductance in conductances(room) if conductance.destination == "outdoors"
+    )
     assert any(line.startswith(f"heat loss to outdoors: {total:.2f} W/K (surfaces ") for line in lines)
     assert any("infiltration 2.00 W/K" in line for line in lines if line.startswith("zone a:"))
     page = render(room)

@@ -30,12 +30,12 @@ def test_beside_energyplus(name: str, tmp_path: Path, chicago: mc.Climate) -> No
     text, limit = FLOWS[name]
     path = tmp_path / f"{name}.idf"
     path.write_text(text, encoding="utf-8")
-    found = convert(path)
+    conversion = convert(path)
     run = mc.simulate(
-        found.building,
+        conversion.building,
         chicago,
-        start=found.start,
-        end=found.end,
+        start=conversion.start,
+        end=conversion.end,
         step="15min",
         outputs=["room.air_temperature"],
     )
@@ -44,4 +44,4 @@ def test_beside_energyplus(name: str, tmp_path: Path, chicago: mc.Climate) -> No
     reference = pd.read_csv(TABLE, comment="#")[name].to_numpy()
     difference = float(np.sqrt(np.mean((air - reference) ** 2)))
     assert difference < limit
-    assert found.complete
+    assert conversion.complete

@@ -136,6 +136,8 @@ def device_values(context: Context, item: IdfObject) -> Section:
         emissivity = item.number("front_side_slat_infrared_hemispherical_emissivity") or 0.9
         if (item.number("slat_beam_solar_transmittance") or 0.0) > 0.0:
             context.findings.approximated(item, "slats that transmit", "opaque slats: a little less sun")
+        # The finding speaks of all that is left of the slats.
+        item.fields.pass_over("*slat_*")
         context.findings.approximated(
             item,
             "a blind of slats",

@@ -14,7 +14,7 @@ from mascarin.energyplus.model.year import Year, combined, constant
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import standard_density
 
-#: Temperature of standard air [K], and the gas constant of air in EnergyPlus [J/(kg K)].
+#: Temperature of standard air in EnergyPlus (20 degC) and in the engine (15 degC, ISO 2533). [K]
 _STANDARD_TEMPERATURE, _STANDARD_AIR = 293.15, 288.15
 #: Temperature difference [K] and wind at the mast [m/s] at which a flow that cannot be a law is taken.
 _USUAL_DIFFERENCE, _USUAL_WIND = 10.0, 4.0
@@ -27,7 +27,7 @@ _CONDITIONS: Final = (
     ("outdoor_below", "maximum_outdoor_temperature", 60.0),
     ("wind", "maximum_wind_speed", 40.0),
 )
-#: Sets of scheduled limits that are carried over; of more, the most frequent ones would hardly be found.
+#: Sets of scheduled limits that are carried over; of more, each would hold for a few hours alone.
 _MOST_SETS: Final = 12
 
 

@@ -19,6 +19,7 @@ from mascarin.pages.study.data.labels import (
     short_periods,
     unit_of,
 )
+from mascarin.pages.study.data.main_results import coverage, judged_criteria, scatter
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.figures.comparison_data import model_looks
 from mascarin.pages.study.sections import (
@@ -120,8 +121,7 @@ def _created(raw: str | None) -> str:
 def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
     """Main results for the head of the page."""
     facts: list[dict[str, str]] = []
-    criteria = study.get("criteria", [])
-    judged = [c for c in criteria if c.get("model", "fitted") == main_model(study)] or criteria
+    judged = judged_criteria(study)
     if judged:
         met = sum(1 for c in judged if c.get("passed"))
         kind = "pass" if met == len(judged) else "fail"
@@ -157,62 +157,35 @@ def coverage_facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
     study : mapping
         As in :class:`~mascarin.pages.study.data.schema.Study`.
     """
-    bands = study.get("band", {})
-    for period in reversed(list(study.get("periods", {}))):
-        held = {
-            sensor: (float(share), _values(study, sensor, period))
-            for sensor, entry in bands.items()
-            if (share := entry.get("held", {}).get(period)) is not None
-        }
-        count = sum(n for _, n in held.values())
-        if not count:
-            continue
-        asked = {float(bands[sensor].get("confidence", 0.95)) for sensor in held}
-        lowest = min(held, key=lambda sensor: held[sensor][0])
-        note = f"asked: {_percents(asked)}; {period_label(study, period).lower()}, all sensors"
-        if len(held) > 1:
-            note += f"; lowest: {label_of(study, lowest)}, {text.percent(held[lowest][0], 0)}"
-        share = sum(part * n for part, n in held.values()) / count
-        return [_fact("Coverage of the prediction bands", text.percent(share, 0), note)]
-    return []
+    covered = coverage(study)
+    if covered is None:
+        return []
+    period = period_label(study, covered.period).lower()
+    note = f"asked: {_percents(covered.asked)}; {period}, all sensors"
+    if len(covered.shares) > 1:
+        lowest = min(covered.shares, key=covered.shares.__getitem__)
+        note += f"; lowest: {label_of(study, lowest)}, {text.percent(covered.shares[lowest], 0)}"
+    return [_fact("Coverage of the prediction bands", text.percent(covered.share, 0), note)]
 
 
 def _percents(shares: Collection[float]) -> str:
     return " and ".join(f"{100.0 * share:g}\u00a0%" for share in sorted(shares))
 
 
-def _values(study: Mapping[str, Any], sensor: str, period: str) -> int:
-    """Number of compared values."""
-    metrics = study.get("sensors", {}).get(sensor, {}).get(period, {})
-    return int(metrics.get(main_model(study), {}).get("n", 0))
-
-
 def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
     """Standard deviation of the error over the sensors in the last period with metrics, for each unit."""
-    model = main_model(study)
-    sensors = study.get("sensors", {})
-    for period in reversed(list(study.get("periods", {}))):
-        by_unit: dict[str, list[float]] = {}
-        for sensor, periods in sensors.items():
-            sd = periods.get(period, {}).get(model, {}).get("sd")
-            if sd is not None:
-                by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(sd))
-        label = period_label(study, period).lower()
-        if by_unit:
-            return [
-                _fact(
-                    f"Error of the {model_label(study, model)} model",
-                    f"{_span(values)}\u00a0{unit}".strip(),
-                    f"standard deviation, {label}",
-                )
-                for unit, values in by_unit.items()
-            ]
-    return []
-
-
-def _span(values: Sequence[float]) -> str:
-    low, high = text.fixed(min(values)), text.fixed(max(values))
-    return low if low == high else f"{low}–{high}"
+    scattered = scatter(study)
+    if scattered is None:
+        return []
+    period, by_unit = scattered
+    return [
+        _fact(
+            f"Error of the {model_label(study, main_model(study))} model",
+            f"{text.span(values)}\u00a0{unit}".strip(),
+            f"standard deviation, {period_label(study, period).lower()}",
+        )
+        for unit, values in by_unit.items()
+    ]
 
 
 def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:

@@ -206,17 +206,17 @@ def conductance_table(fit: Calibration) -> dict[str, Any] | None:
     described, calibrated = (
         by_destination(conductances(each)) for each in (building, building.replace(values))
     )
-    after = {(one.destination, one.kind, one.element, one.zone): one.value for one in calibrated}
+    after = {(row.destination, row.kind, row.element, row.zone): row.value for row in calibrated}
     rows = [
         [
-            one.destination,
-            one.element,
-            "" if one.element == SUM else one.kind,
-            "" if one.element == SUM else one.zone,
-            one.value,
-            after.get((one.destination, one.kind, one.element, one.zone)),
+            row.destination,
+            row.element,
+            "" if row.element == SUM else row.kind,
+            "" if row.element == SUM else row.zone,
+            row.value,
+            after.get((row.destination, row.kind, row.element, row.zone)),
         ]
-        for one in described
+        for row in described
     ]
     return (
         {

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 TITLE = "Transfer of the calibration"
 
 
-def transferred(study: StudyContext, found: Calibrated) -> dict[str, Any]:
+def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, Any]:
     """Compare every study of ``transfer`` before and after the estimates are put into its building.
 
     Parameters
     ----------
     study : StudyContext
         Names the other studies.
-    found : Calibrated
+    calibrated : Calibrated
         Its calibration. Tied factors act on the values of the other building.
 
     Returns
@@ -39,9 +39,11 @@ def transferred(study: StudyContext, found: Calibrated) -> dict[str, Any]:
     """
     if not study.inputs.transfer:
         return {}
-    own = building_with_posterior(study, found.run, found.fit, found.intervals, found.combination)
+    own = building_with_posterior(
+        study, calibrated.run, calibrated.fit, calibrated.intervals, calibrated.combination
+    )
     return {
-        name: _compared(StudyContext(inputs), found.fit, own)
+        name: _compared(StudyContext(inputs), calibrated.fit, own)
         for name, inputs in study.inputs.transfer.items()
     }
 
@@ -87,10 +89,10 @@ def _unit(run: ModelRun, number: int) -> str:
     return run.results.outputs[number].unit.replace("degC", "K")
 
 
-def transfer_table(study: StudyContext, found: dict[str, Any]) -> dict[str, Any]:
+def transfer_table(study: StudyContext, transfer: dict[str, Any]) -> dict[str, Any]:
     """Errors before and after, and what the bands hold, as a table of the report."""
     rows = []
-    for name, entry in found.items():
+    for name, entry in transfer.items():
         sensors = study.inputs.transfer[name].plan.sensors
         for sensor, periods in entry["sensors"].items():
             for period, scores in periods.items():
@@ -133,6 +135,6 @@ def transfer_table(study: StudyContext, found: dict[str, Any]) -> dict[str, Any]
     }
 
 
-def transfer_notes(found: dict[str, Any]) -> list[str]:
+def transfer_notes(transfer: dict[str, Any]) -> list[str]:
     """Where the bands extrapolate, and what was not transferred, in sentences."""
-    return [f"{name}: {word}" for name, entry in found.items() for word in entry["words"]]
+    return [f"{name}: {word}" for name, entry in transfer.items() for word in entry["words"]]

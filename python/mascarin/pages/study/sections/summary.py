@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, Final
 
 from markupsafe import Markup
@@ -12,12 +12,11 @@ from mascarin.figures import text
 from mascarin.figures.svg.chart import Svg
 from mascarin.pages.study.data.labels import (
     label_of,
-    main_model,
     note_words,
     parameter_label,
     period_label,
-    unit_of,
 )
+from mascarin.pages.study.data.main_results import coverage, judged_criteria, scatter
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.sections import curves
 from mascarin.pages.study.sections.energy import ledger_bars
@@ -52,13 +51,6 @@ def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
     }
 
 
-def _judged(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Criteria of the model that is shown."""
-    criteria = list(study.get("criteria", []))
-    model = main_model(study)
-    return [c for c in criteria if c.get("model", "fitted") == model] or criteria
-
-
 def verdict(study: Mapping[str, Any]) -> list[str]:
     """What was reached, in two sentences.
 
@@ -76,7 +68,7 @@ def verdict(study: Mapping[str, Any]) -> list[str]:
 
 
 def _criteria_words(study: Mapping[str, Any]) -> str:
-    judged = _judged(study)
+    judged = judged_criteria(study)
     if not judged:
         return ""
     met = sum(1 for criterion in judged if criterion.get("passed"))
@@ -90,38 +82,28 @@ def _criteria_words(study: Mapping[str, Any]) -> str:
 
 def _scatter_words(study: Mapping[str, Any]) -> str:
     """The standard deviation of the error in the last judged period."""
-    model = main_model(study)
-    for period in reversed(list(study.get("periods", {}))):
-        by_unit: dict[str, list[float]] = {}
-        for sensor, periods in study.get("sensors", {}).items():
-            deviation = periods.get(period, {}).get(model, {}).get("sd")
-            if deviation is not None:
-                unit = units.difference(unit_of(study, sensor))
-                by_unit.setdefault(unit, []).append(float(deviation))
-        if by_unit:
-            words = " and ".join(
-                f"{_span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
-            )
-            name = period_label(study, period).lower()
-            return f"; its error has a standard deviation of {words} by sensor ({name})"
-    return ""
-
-
-def _span(values: Sequence[float]) -> str:
-    low, high = text.fixed(min(values)), text.fixed(max(values))
-    return low if low == high else f"{low} to {high}"
+    scattered = scatter(study)
+    if scattered is None:
+        return ""
+    period, by_unit = scattered
+    words = " and ".join(
+        f"{text.span(values)}\u00a0{unit}".strip("\u00a0") for unit, values in by_unit.items()
+    )
+    return (
+        f"; its error has a standard deviation of {words} by sensor ({period_label(study, period).lower()})"
+    )
 
 
 def _trust_words(study: Mapping[str, Any]) -> str:
     """How far bands and intervals can be trusted."""
     contradictions = len(study.get("contradictions", []))
-    coverage = _coverage(study)
+    covered = coverage(study)
     parts = []
-    if coverage is not None:
-        share, period, asked = coverage
+    if covered is not None:
+        period = period_label(study, covered.period).lower()
         parts.append(
-            f"{text.percent(share, 0)} of the values of {period_label(study, period).lower()} lie in its "
-            f"prediction bands of {text.percent(asked, 0)}"
+            f"{text.percent(covered.share, 0)} of the values of {period} lie in its prediction bands of "
+            f"{text.percent(min(covered.asked), 0)}"
         )
     if contradictions:
         times = "once" if contradictions == 1 else f"{contradictions} times"
@@ -132,21 +114,6 @@ def _trust_words(study: Mapping[str, Any]) -> str:
         return ""
     sentence = "; ".join(parts)
     return f"{sentence[0].upper()}{sentence[1:]}."
-
-
-def _coverage(study: Mapping[str, Any]) -> tuple[float, str, float] | None:
-    """Mean part inside the bands, period, and what was asked; each sensor counts alike."""
-    bands = study.get("band", {})
-    for period in reversed(list(study.get("periods", {}))):
-        shares = [
-            float(share)
-            for entry in bands.values()
-            if (share := entry.get("held", {}).get(period)) is not None
-        ]
-        if shares:
-            asked = min(float(entry.get("confidence", 0.95)) for entry in bands.values())
-            return sum(shares) / len(shares), period, asked
-    return None
 
 
 def next_steps(study: Mapping[str, Any]) -> list[str]:
@@ -186,7 +153,7 @@ def _bounds(study: Mapping[str, Any]) -> list[str]:
 
 def _largest_miss(study: Mapping[str, Any]) -> list[str]:
     """The criterion that is missed by most."""
-    missed = [c for c in _judged(study) if not c.get("passed") and c.get("value") is not None]
+    missed = [c for c in judged_criteria(study) if not c.get("passed") and c.get("value") is not None]
     if not missed:
         return []
 
@@ -222,7 +189,7 @@ def criteria_matrix(study: Mapping[str, Any]) -> dict[str, Any] | None:
     study : mapping
         As in :class:`~mascarin.pages.study.data.schema.Study`.
     """
-    judged = _judged(study)
+    judged = judged_criteria(study)
     if not judged:
         return None
     sensors = list(dict.fromkeys(str(c.get("sensor", "")) for c in judged))
