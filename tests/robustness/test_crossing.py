@@ -40,7 +40,10 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
     ("supercooling", "linear model"): "phase change",
     ("humidity", "linear model"): "heating or cooling",
     ("vents", "linear model"): "vent casement is not linear",
-    ("controls", "linear model"): "vent casement is not linear",
+    (
+        "controls",
+        "linear model",
+    ): "infiltration of zone room, that a density, a schedule or a control changes",
     ("openings", "linear model"): "opening slit is not linear",
     ("blinds", "linear model"): "window pane is not linear",
     ("loads", "linear model"): "heating or cooling",

@@ -141,8 +141,19 @@ def _vents(tree: Json) -> None:
 
 def _controls(tree: Json) -> None:
     _vents(tree)
-    tree["controls"] = {"warmth": {"zone": "room", "indoor": {"open": 27, "close": 25}}}
+    tree["controls"] = {
+        "warmth": {"zone": "room", "indoor": {"open": 27, "close": 25}},
+        "mild": {
+            "zone": "room",
+            "indoor_below": {"open": 32, "close": 34},
+            "outdoor_below": {"open": 29, "close": 31},
+        },
+    }
     tree["vents"]["casement"]["control"] = "warmth"
+    tree["schedules"] = {"half": {"kind": "fraction", "value": 0.5}}
+    room = tree["zones"]["room"]
+    room["infiltration"] = {"constant": 0.5, "schedule": "half", "control": "mild"}
+    room["ventilation"] = {"fan": {"flow": 0.01, "control": "warmth"}}
 
 
 def _openings(tree: Json) -> None:
