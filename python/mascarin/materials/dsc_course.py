@@ -44,6 +44,16 @@ class Course:
         """The same with the other sign of heat."""
         return replace(self, enthalpy=-self.enthalpy)
 
+    @property
+    def _sign(self) -> float:
+        return 1.0 if self.temperature[-1] > self.temperature[0] else -1.0
+
+    @property
+    def first_passes(self) -> npt.NDArray[np.bool_]:
+        """Rows at which a temperature is reached for the first time, shape (N,)."""
+        along = self._sign * self.temperature
+        return np.concatenate([[True], along[1:] > np.maximum.accumulate(along)[:-1]])
+
     def specific_heat(self) -> tuple[Array, Array]:
         """Apparent specific heat over a rising temperature.
 
@@ -55,10 +65,8 @@ class Course:
         temperature, heat : ndarray, shape (M,)
             [degC], [J/(kg K)]
         """
-        sign = 1.0 if self.temperature[-1] > self.temperature[0] else -1.0
-        along = sign * self.temperature
-        passed = np.concatenate([[True], along[1:] > np.maximum.accumulate(along)[:-1]])
-        along, enthalpy = along[passed], self.enthalpy[passed]
+        sign, passed = self._sign, self.first_passes
+        along, enthalpy = sign * self.temperature[passed], self.enthalpy[passed]
         width = max(float(np.median(np.diff(along))), float(np.ptp(along)) / _MOST)
         grid = np.linspace(along[0], along[-1], max(round(float(np.ptp(along)) / width), 1) + 1)
         heat = sign * np.gradient(np.interp(grid, along, enthalpy), grid)

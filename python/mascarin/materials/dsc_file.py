@@ -254,7 +254,7 @@ def _scan(
         # The factor is that to an apparent specific heat at the rate of the run; a flow has it per kelvin.
         flow = values[:, 1] * (factor * rate / 60.0)
         course = course_of(_seconds(values, time), values[:, 0], flow)
-        t, heat = course.specific_heat()
+        t, heat = _heat_along(course, f"{location}: {direction}")
     elif signal.quantity == "enthalpy":
         heat = np.gradient(raw * factor, t)
         if heat.mean() < 0.0:
@@ -294,6 +294,17 @@ def _scan(
         recalescence(values[:, 0], direction),
         course,
     )
+
+
+def _heat_along(course: Course, location: str) -> tuple[Array, Array]:
+    """Temperature and apparent specific heat of a run that goes on in its direction."""
+    reached = int(course.first_passes.sum())
+    if reached < LEAST_ROWS:
+        raise InputError(
+            f"{location}: found {reached} temperatures that go on in the direction of the run; expected at "
+            f"least {LEAST_ROWS}. Remove rows before it or after it, or name its segment"
+        )
+    return course.specific_heat()
 
 
 def _upside_down(heat: Array) -> bool:

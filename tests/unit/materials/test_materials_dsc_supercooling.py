@@ -111,3 +111,12 @@ def test_what_cannot_be_seen_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="found heating; expected a heating run, and a cooling run"):
         from_dsc(file).description(supercooling=True)
     assert "hysteresis" not in from_dsc(file).description()
+
+
+def test_a_first_row_that_is_far_away_is_refused(tmp_path: Path) -> None:
+    seconds, temperature, flow = heated(15.0, 42.0)
+    temperature[0] = 60.0
+    file = tmp_path / "glitch.csv"
+    file.write_text(table(seconds, temperature, flow), encoding="utf-8")
+    with pytest.raises(InputError, match="expected"):
+        from_dsc(file)
