@@ -21,6 +21,9 @@ use super::surfaces::{Tangent, Uptake};
 
 /// Solutions of a stage at most: plants and saturation begin or end in some zones from one to the next, and lines are drawn anew.
 const MAX_SOLUTIONS: usize = 30;
+/// Sweeps over the zones where modes cycle, before the next solutions, and how often this is repeated at most.
+const SWEEPS: usize = 40;
+const MAX_ROUNDS: usize = 30;
 /// How far the line of a vapour pressure may be from it at the solution [Pa].
 const PRESSURE: ByPrecision = ByPrecision { double: 1e-6, single: 0.1 };
 
@@ -344,14 +347,24 @@ impl<'a, S: Real> VapourBalances<'a, S> {
     }
 
     /// Humidity ratios, and what plants and saturation take away: an active-set method (Hintermueller, Ito & Kunisch 2002,
-    /// doi:10.1137/S1052623401383558), which ends after a few solutions for an M-matrix.
+    /// doi:10.1137/S1052623401383558), which ends after a few solutions.
     #[inline(always)]
     fn solve(&mut self, humidity: &HumidityCoefficients<S>, start: &[S], place: Place) {
         self.modes.fill(Mode::idle());
         self.assemble(humidity, start, place);
+        let open = self.follow_modes(humidity, start, place);
+        if open.any() {
+            self.leave_cycle(humidity, start, place, open);
+        }
+    }
+
+    /// Solutions until no zone changes its mode; where some still do.
+    #[inline(always)]
+    fn follow_modes(&mut self, humidity: &HumidityCoefficients<S>, start: &[S], place: Place) -> S::Mask {
+        let mut changed = S::Mask::splat(false);
         for _ in 0..MAX_SOLUTIONS {
             self.solve_in_modes(place.stage);
-            let mut changed = S::Mask::splat(false);
+            changed = S::Mask::splat(false);
             for (z, (limits, zone)) in self.limits.iter().zip(&humidity.zones).enumerate() {
                 let plants = zone.has_plants();
                 let next = limits.mode(plants, self.reached[z], self.removed[z], self.diagonal[z]);
@@ -369,6 +382,61 @@ impl<'a, S: Real> VapourBalances<'a, S> {
             if !changed.any() {
                 break;
             }
+        }
+        changed
+    }
+
+    /// Modes of the lanes in which those of several zones change each other for ever, then solutions from there.
+    ///
+    /// What is taken away bends both ways, so the active-set method may cycle. Zone after zone, each with the solution of its own balance
+    /// beside those of the others (nonlinear Gauss-Seidel), the ratios converge from any start: the matrix is an M-matrix, and what is
+    /// taken away never falls with the ratio (Ortega & Rheinboldt 1970, doi:10.1137/1.9780898719468, 13.1).
+    #[cold]
+    #[inline(never)]
+    fn leave_cycle(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        start: &[S],
+        place: Place,
+        mut open: S::Mask,
+    ) {
+        let mut ratios: Vec<S> =
+            (0..humidity.zones.len()).map(|z| self.held(start, z, place.ratio)).collect();
+        for _ in 0..MAX_ROUNDS {
+            for _ in 0..SWEEPS {
+                self.solve_zone_by_zone(humidity, place.stage, &mut ratios, open);
+            }
+            open = self.follow_modes(humidity, start, place);
+            if !open.any() {
+                return;
+            }
+        }
+    }
+
+    /// The balance of each zone beside the ratios of the others, in the open lanes: its ratio and its mode.
+    fn solve_zone_by_zone(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        stage: usize,
+        ratios: &mut [S],
+        open: S::Mask,
+    ) {
+        let Self { plan, flows, diagonal, right, modes, limits, .. } = self;
+        for (z, (limits, zone)) in limits.iter().zip(&humidity.zones).enumerate() {
+            let mut brought = right[z];
+            for (&[from, to], &carried) in plan.carries.iter().zip(&flows[stage].carried) {
+                if to == z && from != z {
+                    brought += carried * ratios[from];
+                }
+            }
+            let mode = limits.mode(zone.has_plants(), S::zero(), brought, diagonal[z]);
+            let free = (brought - mode.value) / diagonal[z];
+            ratios[z] = S::select(open, S::select(mode.held, mode.value, free), ratios[z]);
+            let before = modes[z];
+            modes[z] = Mode {
+                held: (open & mode.held) | (!open & before.held),
+                value: S::select(open, mode.value, before.value),
+            };
         }
     }
 
