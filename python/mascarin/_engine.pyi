@@ -35,7 +35,7 @@ __all__ = [
     "function_values",
     "globe_temperature",
     "humidity_ratio",
-    "imposed_temperature",
+    "imposed",
     "interrupt",
     "law_table",
     "leakage_air_changes",
@@ -125,7 +125,9 @@ def liquid_fraction(curve: str, values: _Array, temperature: _Array) -> _Array:
 def melting_reach(curve: str, values: _Array) -> tuple[float, float]:
     """Temperatures where melting starts and is complete, without tails [degC]."""
 
-def imposed_temperature(kind: str, numbers: list[tuple[str, float]], day: float, outdoor_air: float) -> float:
+def imposed(
+    kind: str, numbers: list[tuple[str, float]], day: float, outdoor_air: float
+) -> tuple[float, float | None, float | None]:
     """Temperature of a law of what a side is in contact with. [degC]"""
 
 def leakage_air_changes(kind: str, numbers: list[tuple[str, float]], wind: float, difference: float) -> float:

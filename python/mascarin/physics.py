@@ -385,7 +385,7 @@ def imposed_temperature(kind: str, numbers: Mapping[str, float], day: float, out
     8.0
     """
     try:
-        return _engine.imposed_temperature(kind, list(numbers.items()), day, outdoor_air)
+        return _engine.imposed(kind, list(numbers.items()), day, outdoor_air)[0]
     except _engine.EngineInputError as error:
         raise InputError(f"imposed temperature: {error}") from None
 

@@ -152,6 +152,8 @@ def beyond(draw: Draw, schedules: Schedules) -> Json:
         law = draw.one(laws)
         numbers = numbers_of(draw, law)
         coefficient: Json = {"convection": film(draw, "given")} if draw.chance(0.5) else {}
+        if law.gives_coefficient:
+            coefficient = {}
         return {"imposed": {"kind": law.kind, **numbers}} | coefficient
     side: Json = (
         {"measured": draw.of("T_a", "T_b", ["T_a", "T_b"])}

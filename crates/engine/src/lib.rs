@@ -37,7 +37,7 @@ pub use step::{Counters, Scheme, state};
 pub mod laws {
     pub use crate::physics::convection::table as convection;
     pub use crate::physics::diffuse::table as diffuse;
-    pub use crate::physics::imposed::{table as imposed, temperature_on as imposed_temperature};
+    pub use crate::physics::imposed::{imposed_on, table as imposed};
     pub use crate::physics::law_row::{
         Alternative, Choice, CloudKind, Default, LawEntry, LawParameter, LawRange, LawRow, Limits, Sides,
         Tilt,

@@ -111,13 +111,17 @@ fn moist_air(temperature: f64, humidity: f64, pressure: f64) -> (f64, f64) {
     (density, heat)
 }
 
-/// Temperature of a law of `physics/imposed` on a day of the year, with outdoor air [degC].
+/// Temperature [degC], heat [W/m2] and coefficient [W/(m2 K)] of a law of `physics/imposed` on a day of the year, with outdoor air [degC].
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands lists over by value")]
-fn imposed_temperature(kind: &str, numbers: Vec<(String, f64)>, day: f64, outdoor_air: f64) -> PyResult<f64> {
+fn imposed(
+    kind: &str,
+    numbers: Vec<(String, f64)>,
+    day: f64,
+    outdoor_air: f64,
+) -> PyResult<(f64, Option<f64>, Option<f64>)> {
     let numbers: Vec<_> = numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    mascarin_engine::laws::imposed_temperature(kind, &numbers, day, outdoor_air)
-        .map_err(EngineInputError::new_err)
+    mascarin_engine::laws::imposed_on(kind, &numbers, day, outdoor_air).map_err(EngineInputError::new_err)
 }
 
 /// Air changes [1/h] of a law of `physics/leakage` at a wind [m/s] and a difference between outdoors and the zone [K].
@@ -182,7 +186,7 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(standard_pressure, module)?)?;
     module.add_function(wrap_pyfunction!(standard_density, module)?)?;
     module.add_function(wrap_pyfunction!(moist_air, module)?)?;
-    module.add_function(wrap_pyfunction!(imposed_temperature, module)?)?;
+    module.add_function(wrap_pyfunction!(imposed, module)?)?;
     module.add_function(wrap_pyfunction!(leakage_air_changes, module)?)?;
     module.add_function(wrap_pyfunction!(liquid_fraction, module)?)?;
     module.add_function(wrap_pyfunction!(melting_reach, module)?)?;

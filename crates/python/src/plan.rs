@@ -30,9 +30,8 @@ pub struct Plan {
     pub plan: EnginePlan,
 }
 
-/// Records, closures, how far temperatures are outside of their causes, and failures of an ensemble.
-type EnsembleArrays<'py> =
-    (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
+/// Records of an ensemble, by what members are judged, and failures.
+type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, [Bound<'py, PyArray1<f64>>; 3], Bound<'py, PyList>);
 
 /// Records and their slopes.
 type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
@@ -124,8 +123,8 @@ impl Plan {
         })
     }
 
-    /// Members (rows of `values`), in single precision to screen many: records (members x rows x outputs), closures, how far
-    /// temperatures are outside of their causes [K], failures.
+    /// Members (rows of `values`), in single precision to screen many: records (members x rows x outputs); closures, how far
+    /// temperatures are outside of their causes [K], and steps in which a law as text did not hold; failures.
     #[pyo3(signature = (values, forcing, options, report=None, single=false))]
     fn ensemble<'py>(
         &self,
@@ -150,9 +149,9 @@ impl Plan {
             let records =
                 PyArray1::from_vec(py, result.records).reshape([members, rows, options.outputs.len()])?;
             let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
-            let [closure, outside] =
-                [result.closure, result.outside].map(|numbers| PyArray1::from_vec(py, numbers));
-            Ok((records, closure, outside, PyList::new(py, failures)?))
+            let judged = [result.closure, result.outside, result.beyond_validity];
+            let judged = judged.map(|numbers| PyArray1::from_vec(py, numbers));
+            Ok((records, judged, PyList::new(py, failures)?))
         })
     }
 

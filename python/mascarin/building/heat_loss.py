@@ -141,8 +141,10 @@ def _destination(surface: Surface) -> str | None:
     if surface.outside.zone is not None or surface.outside.closed or surface.inside.closed:
         return None
     faces = surface.outside.faces
-    if faces == "imposed":
-        return "ground"
+    if surface.outside.imposed is not None:
+        row = surface.outside.imposed.row
+        # A heated side loses no heat to what heats it.
+        return None if row.gives_heat or row.gives_coefficient else "ground"
     return faces if faces in ("outdoors", "ground") else "measured"
 
 

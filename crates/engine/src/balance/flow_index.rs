@@ -91,9 +91,11 @@ impl<S: Real> FlowIndex<S> {
             }
         });
         let zones = |has: &dyn Fn(usize) -> bool| (0..plan.zones.len()).filter(|&zone| has(zone)).collect();
-        let heated = weather.heated.iter().map(|&(surface, ..)| (surface, of(surface).0));
+        let warmed =
+            weather.imposed.iter().filter(|&&surface| numbers.surfaces[surface].boundary.gives_heat());
+        let heated = weather.heated.iter().map(|(surface, ..)| surface).chain(warmed);
         Self {
-            heated: heated.collect(),
+            heated: heated.map(|&surface| (surface, of(surface).0)).collect(),
             outdoors: outdoors.collect(),
             lit,
             transmitted_sun,

@@ -98,6 +98,12 @@ pub(crate) fn check_published(description: &Description) -> Result<(), EngineErr
     for bridge in &description.thermal_bridges {
         if let Facing::Imposed { law } = &bridge.to {
             laws.push((format!("thermal bridge {}, to", bridge.name), law, imposed::row));
+            if imposed::row(law).is_some_and(|row| row.gives_heat || row.gives_coefficient) {
+                return Err(EngineError::Description(format!(
+                    "thermal bridge {}, to: found '{}', which gives heat or a coefficient, expected a law of a temperature alone",
+                    bridge.name, law.kind
+                )));
+            }
         }
     }
     for (place, law, row) in laws {
@@ -173,6 +179,14 @@ fn check_derived(outputs: &[DerivedOutput]) -> Result<(), EngineError> {
 
 /// A published law has its numbers, and stands where it may.
 fn check_law(side: &Side) -> Result<(), String> {
+    if let (Facing::Imposed { law }, Some(_)) = (&side.facing, &side.convection)
+        && imposed::row(law).is_some_and(|row| row.gives_coefficient)
+    {
+        return Err(format!(
+            "found convection beside '{}', which gives the coefficient, expected none",
+            law.kind
+        ));
+    }
     let Some(Convection::Law(law)) = &side.convection else { return Ok(()) };
     let row = row(law).ok_or_else(|| unknown_kind(law))?;
     row.check(law)?;

@@ -68,6 +68,9 @@ pub(super) fn require_linear(
 fn require_linear_surfaces(plan: &Plan, coefficients: &Coefficients<f64>) -> Result<(), EngineError> {
     for (index, surface) in coefficients.surfaces.entries() {
         let name = plan.surface_name(index);
+        if surface.boundary.gives_heat() || surface.boundary.gives_coefficient() {
+            return refuse(&format!("the law of heat or a coefficient at {name}"), "use a given temperature");
+        }
         if surface.convection.as_ref().is_some_and(|convection| convection.constant().is_none()) {
             return refuse(&format!("convection at {name}"), "use a constant coefficient");
         }

@@ -38,6 +38,10 @@ pub struct LawRow {
     pub weather: &'static [&'static str],
     /// Effect of clouds that it is used with, where none is described; none: clouds have no effect on it.
     pub clouds: Option<CloudKind>,
+    /// Of a law of what a side is in contact with: whether it gives heat beside its temperature.
+    pub gives_heat: bool,
+    /// Whether it gives the coefficient through which its temperature acts.
+    pub gives_coefficient: bool,
 }
 
 impl LawRow {
@@ -58,7 +62,21 @@ impl LawRow {
             alternatives: &[],
             weather: &[],
             clouds: None,
+            gives_heat: false,
+            gives_coefficient: false,
         }
+    }
+
+    /// Gives heat to the surface beside its temperature.
+    #[must_use]
+    pub const fn gives_heat(self) -> Self {
+        Self { gives_heat: true, ..self }
+    }
+
+    /// Gives the coefficient of heat transfer between its temperature and the surface.
+    #[must_use]
+    pub const fn gives_coefficient(self) -> Self {
+        Self { gives_coefficient: true, ..self }
     }
 
     /// With more about it.

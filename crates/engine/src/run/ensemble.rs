@@ -12,7 +12,7 @@ use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
 use crate::number::simd::{LaneTask, Level, SINGLE_WIDTH, WIDTH, run, run_single};
 use crate::run::options::Options;
-use crate::run::simulate::simulate_in;
+use crate::run::simulate::{Run, simulate_in};
 use crate::step::control::RunControl;
 use crate::weather::conditions::Weather;
 
@@ -51,8 +51,31 @@ pub struct Ensemble {
     /// How far temperatures of each member were outside of their causes by more than the scheme's overshoot [K]; NaN for one that failed.
     /// See [`physical_limits`](crate::run::physical_limits).
     pub outside: Vec<f64>,
+    /// Steps of each member at whose end a law written as text did not hold, of the law that holds least often; NaN for one that failed.
+    pub beyond_validity: Vec<f64>,
     /// Members that failed, with the reason.
     pub failures: Vec<(usize, EngineError)>,
+}
+
+/// By what a member is judged, as in [`Ensemble`]; NaN for one that failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Judgement {
+    closure: f64,
+    outside: f64,
+    beyond_validity: f64,
+}
+
+impl Judgement {
+    const FAILED: Self = Self { closure: f64::NAN, outside: f64::NAN, beyond_validity: f64::NAN };
+
+    /// That of a lane of a run.
+    fn of<S: Real>(run: &Run<S>, lane: usize) -> Self {
+        Self {
+            closure: run.energy_balance.worst_closure().lane(lane),
+            outside: run.outside.lane(lane),
+            beyond_validity: run.beyond_validity.lane(lane),
+        }
+    }
 }
 
 /// Memory of the weather of one stage, which all members share [B].
@@ -107,61 +130,60 @@ fn run_all(
     let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.outputs.len();
-    let mut result = Ensemble {
-        records: vec![f64::NAN; members * row],
-        closure: vec![f64::NAN; members],
-        outside: vec![f64::NAN; members],
-        failures: Vec::new(),
-    };
+    let mut records = vec![f64::NAN; members * row];
+    let mut judgements = vec![Judgement::FAILED; members];
     let lanes = precision.width();
     let alone = precision == Precision::Double && members % lanes <= FEW;
     let few = if alone { members % lanes } else { 0 };
-    let (in_packs, alone) = result.closure.split_at_mut(members - few);
-    let (mut first, mut rest, mut outsides) = (0, &mut result.records[..], &mut result.outside[..]);
-    let packs = in_packs.chunks_mut(lanes).chain(alone.chunks_mut(1)).map(|closure| {
-        let (records, outside);
-        (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
-        (outside, outsides) = core::mem::take(&mut outsides).split_at_mut(closure.len());
-        first += closure.len();
-        (first - closure.len(), Target { records, closure, outside, row })
+    let (in_packs, alone) = judgements.split_at_mut(members - few);
+    let (mut first, mut rest) = (0, &mut records[..]);
+    let packs = in_packs.chunks_mut(lanes).chain(alone.chunks_mut(1)).map(|judgements| {
+        let records;
+        (records, rest) = core::mem::take(&mut rest).split_at_mut(row * judgements.len());
+        first += judgements.len();
+        (first - judgements.len(), Target { records, judgements, row })
     });
     let packs: Vec<_> = packs.collect();
     let failures: Result<Vec<_>, EngineError> = packs
         .into_par_iter()
         .map(|(first, mut target)| {
-            let members = target.closure.len();
+            let members = target.judgements.len();
             let numbers = &numbers[first * width..(first + members) * width];
             let pack = Pack { plan, numbers, members, weather: &weather, options, control };
             let failed = pack.run_into(level, precision, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
-    result.failures = failures?.into_iter().flatten().collect();
-    Ok(result)
+    let failures = failures?.into_iter().flatten().collect();
+    let all = |number: fn(&Judgement) -> f64| judgements.iter().map(number).collect();
+    let (closure, outside) = (all(|member| member.closure), all(|member| member.outside));
+    Ok(Ensemble {
+        records,
+        closure,
+        outside,
+        beyond_validity: all(|member| member.beyond_validity),
+        failures,
+    })
 }
 
 /// Where a pack writes.
 struct Target<'a> {
     records: &'a mut [f64],
-    closure: &'a mut [f64],
-    outside: &'a mut [f64],
+    judgements: &'a mut [Judgement],
     row: usize,
 }
 
 impl Target<'_> {
-    /// Writes the records of a pack, one after the other, and the closure and the judgement of each member.
-    fn write<S: Real>(&mut self, records: &[S], closure: S, outside: S) {
+    /// Writes the records of a pack, one after the other, and the judgement of each member.
+    fn write<S: Real>(&mut self, run: &Run<S>) {
         let mut rows: Vec<_> = self.records.chunks_mut(self.row.max(1)).collect();
-        for (k, record) in records.iter().enumerate() {
+        for (k, record) in run.records.iter().enumerate() {
             for (member, row) in rows.iter_mut().enumerate() {
                 row[k] = record.lane(member);
             }
         }
-        for (member, own) in self.closure.iter_mut().enumerate() {
-            *own = closure.lane(member);
-        }
-        for (member, own) in self.outside.iter_mut().enumerate() {
-            *own = outside.lane(member);
+        for (member, own) in self.judgements.iter_mut().enumerate() {
+            *own = Judgement::of(run, member);
         }
     }
 }
@@ -195,7 +217,7 @@ impl LaneTask for InLanes<'_, '_, '_> {
         let lanes: Vec<S> = (0..width).map(|p| pack(&of(p).collect::<Vec<_>>())).collect();
         let run = simulate_in(plan, &lanes, weather, options, control)?;
         let closure = run.energy_balance.worst_closure();
-        self.target.write(&run.records, closure, run.outside);
+        self.target.write(&run);
         let closed = closure.lt(S::constant(CLOSES)) | S::Mask::splat(!S::SINGLE);
         let lost = |lane: usize| run.failed.lane(lane) || !closed.lane(lane);
         Ok((0..members).filter(|&member| lost(member)).collect())
@@ -255,16 +277,15 @@ impl<'a> Pack<'a, '_> {
         let numbers = &self.numbers[member * width..(member + 1) * width];
         let found = simulate_in(self.plan, numbers, self.weather, self.options, self.control);
         let records = &mut target.records[member * target.row..(member + 1) * target.row];
-        let (closure, outside) = (&mut target.closure[member], &mut target.outside[member]);
         match found {
             Ok(run) => {
                 records.copy_from_slice(&run.records);
-                (*closure, *outside) = (run.energy_balance.worst_closure(), run.outside);
+                target.judgements[member] = Judgement::of(&run, 0);
                 Ok(())
             }
             Err(error) => {
                 records.fill(f64::NAN);
-                (*closure, *outside) = (f64::NAN, f64::NAN);
+                target.judgements[member] = Judgement::FAILED;
                 Err(error)
             }
         }

@@ -283,7 +283,10 @@ fn supplied<S: Real>(stepper: &Stepper<'_, S>, state: &State<S>) -> [S::Mask; 2]
         heat = heat.max(zone.convective).max(zone.radiant);
         cooling = cooling.min(zone.convective).min(zone.radiant);
     }
-    for &(surface, ..) in &weather.index.heated {
+    let laws = weather.index.beside.then_some(&weather.index.imposed).into_iter().flatten();
+    let boundary = |surface: SideId| &stepper.model.coefficients.surfaces[surface].boundary;
+    let warmed = laws.filter(|&&surface| boundary(surface).gives_heat());
+    for &surface in weather.index.heated.iter().map(|(surface, ..)| surface).chain(warmed) {
         let flux = weather.conditions.surfaces[surface].longwave;
         (heat, cooling) = (heat.max(flux), cooling.min(flux));
     }

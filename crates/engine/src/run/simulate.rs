@@ -42,6 +42,8 @@ pub struct Run<S: Real> {
     pub outlier: Option<Outlier>,
     /// Laws written as text that were used where they do not hold; empty for several members.
     pub out_of_range: Vec<OutOfRange>,
+    /// Steps at whose end a law written as text did not hold, of the law that holds least often.
+    pub beyond_validity: S,
 }
 
 /// Runs a plan at a parameter vector.
@@ -130,6 +132,7 @@ pub(crate) fn simulate_observed<'a, S: Real>(
         outside: limits.excess,
         outlier: limits.outlier,
         out_of_range: validity.found().cloned().collect(),
+        beyond_validity: validity.steps(),
     })
 }
 

@@ -1,7 +1,8 @@
 //! Whether laws that are written as text are used where they say that they hold.
 //!
-//! The end of each step of a run of one member is compared with the `valid` of each law: of convection, of conductivity, of infiltration
-//! and of the sky. A law goes on outside of it; the caller warns.
+//! The end of each step is compared with the `valid` of each law: of convection, of conductivity, of infiltration and of the sky. A law goes
+//! on outside of it; the caller warns. A run of one member says which law, when and at which values, each member of an ensemble in how many
+//! steps.
 
 use crate::building::cell::Matter;
 use crate::building::ids::SideId;
@@ -58,15 +59,17 @@ enum Limited {
 #[derive(Debug, Clone)]
 pub(crate) struct Validity {
     laws: Vec<Limited>,
-    /// In the order of the laws.
+    /// In the order of the laws, of a run of one member.
     found: Vec<Option<OutOfRange>>,
+    /// Steps at whose end a law did not hold, by law and lane.
+    counts: Vec<usize>,
 }
 
 impl Validity {
-    /// Nothing is watched in runs of several members, or with derivatives.
+    /// Nothing is watched in runs with derivatives.
     pub(crate) fn new<S: Real>(model: &Model<'_, S>) -> Self {
-        let laws = if S::LANES == 1 && !S::DERIVATIVES { limited(model) } else { Vec::new() };
-        Self { found: vec![None; laws.len()], laws }
+        let laws = if S::DERIVATIVES { Vec::new() } else { limited(model) };
+        Self { found: vec![None; laws.len()], counts: vec![0; laws.len() * S::LANES], laws }
     }
 
     /// Looks at the state after a step.
@@ -80,9 +83,14 @@ impl Validity {
     // One copy only: it is seldom used.
     #[inline(never)]
     fn look<S: Real>(&mut self, stepper: &Stepper<'_, S>, state: &State<S>, step: usize) {
-        for (&law, found) in self.laws.iter().zip(&mut self.found) {
-            let beyond = law.beyond(stepper, state);
-            if beyond.is_empty() {
+        let counts = self.counts.chunks_mut(S::LANES);
+        for ((&law, found), counts) in self.laws.iter().zip(&mut self.found).zip(counts) {
+            let mut beyond = Vec::new();
+            for (lane, count) in counts.iter_mut().enumerate() {
+                beyond = law.beyond(stepper, state, lane);
+                *count += usize::from(!beyond.is_empty());
+            }
+            if beyond.is_empty() || S::LANES > 1 {
                 continue;
             }
             let found = found.get_or_insert_with(|| law.unused(&stepper.model, step));
@@ -95,6 +103,12 @@ impl Validity {
                 }
             }
         }
+    }
+
+    /// Steps of each lane at whose end a law did not hold, of the law that holds least often.
+    pub(crate) fn steps<S: Real>(&self) -> S {
+        let of_lane = |lane: usize| self.counts.chunks(S::LANES).map(move |counts| counts[lane]).max();
+        S::of_lanes(|lane| of_lane(lane).unwrap_or(0) as f64)
     }
 
     /// The laws that were used where they do not hold.
@@ -132,9 +146,9 @@ fn conductivity<'m, S: Real>(model: &'m Model<'_, S>, wall: usize, layer: usize)
 
 impl Limited {
     /// What it depends on, at each place where it does not hold.
-    fn beyond<S: Real>(self, stepper: &Stepper<'_, S>, state: &State<S>) -> Vec<Values> {
+    fn beyond<S: Real>(self, stepper: &Stepper<'_, S>, state: &State<S>, lane: usize) -> Vec<Values> {
         let (model, conditions) = (&stepper.model, &stepper.weather.conditions);
-        let wind = conditions.wind.lane(0);
+        let wind = conditions.wind.lane(lane);
         match self {
             Self::Convection(surface) => {
                 let air = match model.plan.surfaces[surface].role {
@@ -143,28 +157,29 @@ impl Limited {
                 };
                 let difference = state.surfaces[surface] - air;
                 let law = model.convection(surface);
-                let holds = law.is_none_or(|law| law.valid(difference, conditions.wind, air).lane(0) > 0.5);
+                let holds =
+                    law.is_none_or(|law| law.valid(difference, conditions.wind, air).lane(lane) > 0.5);
                 if holds {
                     return Vec::new();
                 }
-                vec![vec![("dT", "K", difference.lane(0)), ("V", "m/s", wind)]]
+                vec![vec![("dT", "K", difference.lane(lane)), ("V", "m/s", wind)]]
             }
             Self::Conductivity { wall, layer } => {
                 let Some(law) = conductivity(model, wall, layer) else { return Vec::new() };
                 let (start, end) = model.plan.walls[wall].layer_cells[layer];
                 let cells = &state.cells[model.cells(wall)][start..end];
-                cells.iter().filter_map(|temperature| law.beyond(&[temperature.lane(0)])).collect()
+                cells.iter().filter_map(|temperature| law.beyond(&[temperature.lane(lane)], lane)).collect()
             }
             Self::Infiltration(zone) => {
                 let law = model.coefficients.zones[zone].infiltration_law.as_ref();
-                let outdoor = conditions.outdoor_air.lane(0);
-                let point = [state.air[zone].lane(0) - outdoor, wind, outdoor];
-                law.and_then(|law| law.beyond(&point)).into_iter().collect()
+                let outdoor = conditions.outdoor_air.lane(lane);
+                let point = [state.air[zone].lane(lane) - outdoor, wind, outdoor];
+                law.and_then(|law| law.beyond(&point, lane)).into_iter().collect()
             }
             Self::Sky => {
                 let law = model.coefficients.sky.limited();
                 let point = SkyEmission::<S>::names(&conditions.sky_weather);
-                law.and_then(|law| law.beyond(&point)).into_iter().collect()
+                law.and_then(|law| law.beyond(&point, lane)).into_iter().collect()
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What acts on the building at one instant: on each surface, zone, window and air path.
 
-use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
+use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients, Imposed};
 use crate::building::humidity::HumidityPlan;
 use crate::building::ids::{BySide, SideId};
 use crate::building::plan::Plan;
@@ -302,6 +302,9 @@ impl<S: Real> Conditions<S> {
         for &index in &weather_index.imposed {
             if let Boundary::Imposed(imposed) = &coefficients.surfaces[index].boundary {
                 self.surfaces[index].temperature = imposed_temperature(imposed, now);
+                if let (Imposed::Law(law), true) = (imposed, weather_index.beside) {
+                    self.surfaces[index].impose(law.beside(&now.imposed_weather()));
+                }
             }
         }
         for &(index, source) in &weather_index.surrounded {

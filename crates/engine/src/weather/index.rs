@@ -56,6 +56,8 @@ pub(crate) struct WeatherIndex<S> {
     pub(crate) heated: Vec<(SideId, S, Schedule)>,
     /// Surfaces at imposed temperatures.
     pub(crate) imposed: Vec<SideId>,
+    /// Whether any of their laws gives heat or a coefficient beside its temperature.
+    pub(crate) beside: bool,
     /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
     pub(crate) irradiated: Vec<(SideId, usize, S)>,
     /// Surfaces with a measured heat transfer coefficient: forcing channel and factor [-].
@@ -74,6 +76,7 @@ impl<S: Real> WeatherIndex<S> {
             surrounded_in_zones: Vec::new(),
             heated: Vec::new(),
             imposed: Vec::new(),
+            beside: false,
             irradiated: Vec::new(),
             measured: Vec::new(),
         };
@@ -112,6 +115,7 @@ impl<S: Real> WeatherIndex<S> {
                 (boundary, source) => {
                     if matches!(boundary, Boundary::Imposed(_)) {
                         all.imposed.push(index);
+                        all.beside |= boundary.gives_heat() || boundary.gives_coefficient();
                     }
                     all.irradiated.extend(source.map(|source| (index, source, surface.absorptance)));
                 }

@@ -12,7 +12,7 @@ use crate::number::elementary::sincos;
 use crate::number::real::Real;
 use crate::physics::convection::{Wind, WindTerms, wind_terms};
 use crate::physics::horizon;
-use crate::physics::imposed::imposed_law::PER_DAY;
+use crate::physics::imposed::imposed_law::{ImposedWeather, PER_DAY};
 use crate::physics::longwave::SkyWeather;
 use crate::physics::psychrometrics::{saturation_pressure, saturation_pressures};
 use crate::physics::solar::{Irradiance, SkyVisibility, Sunlight, not_negative};
@@ -60,6 +60,12 @@ impl<'a> Instant<'a> {
             season: unit(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
             vapour,
         }
+    }
+
+    /// What laws of imposed temperatures depend on.
+    #[inline(always)]
+    pub(crate) fn imposed_weather(&self) -> ImposedWeather {
+        ImposedWeather { season: self.season, outdoor_air: self.row[channel::AIR_TEMPERATURE] }
     }
 
     /// Fractions that obstacles leave of sun, sky and ground on a surface.

@@ -2,11 +2,9 @@
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, Outdoors};
 use crate::building::ids::SideId;
-use crate::input::forcing::channel;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::convection::wind::angle_of_cosine;
 use crate::physics::convection::{Driven, Surroundings};
-use crate::physics::imposed::ImposedWeather;
 use crate::weather::instant::Instant;
 
 /// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
@@ -27,6 +25,14 @@ pub struct SurfaceConditions<S: Real> {
     pub temperature: S,
     /// The parts of the surface heat transfer coefficient that depend on the wind and on what is around the surface.
     pub forced: Driven<S>,
+}
+
+impl<S: Real> SurfaceConditions<S> {
+    /// Takes over heat [W/m2] and a coefficient [W/(m2 K)] that a law gives beside its temperature.
+    pub(crate) fn impose(&mut self, [heat, coefficient]: [Option<S>; 2]) {
+        self.longwave = heat.unwrap_or(self.longwave);
+        self.forced = coefficient.map_or(self.forced, |coefficient| [coefficient; 4]);
+    }
 }
 
 /// The cosine of the angle between the azimuth of a surface outdoors and the wind, and where the wind blows onto it.
@@ -75,8 +81,6 @@ pub(crate) fn driven_outside<S: Real>(
 pub(crate) fn imposed_temperature<S: Real>(imposed: &Imposed<S>, now: &Instant<'_>) -> S {
     match imposed {
         Imposed::Channel(channel) => S::constant(now.row[*channel]),
-        Imposed::Law(law) => {
-            law.at(&ImposedWeather { season: now.season, outdoor_air: now.row[channel::AIR_TEMPERATURE] })
-        }
+        Imposed::Law(law) => law.at(&now.imposed_weather()),
     }
 }

@@ -135,6 +135,10 @@ class LawRow(NamedTuple):
     clouds : str or None
         Effect of clouds that a sky is used with where none is described: ``factor`` or ``layer``; None where
         clouds have no effect.
+    gives_heat : bool
+        Of a law of what a side is in contact with: whether it gives heat beside its temperature.
+    gives_coefficient : bool
+        Whether it gives the coefficient through which its temperature acts.
     """
 
     kind: str
@@ -154,6 +158,8 @@ class LawRow(NamedTuple):
     alternatives: tuple[tuple[bool, dict[str, float]], ...]
     weather: tuple[str, ...]
     clouds: Literal["factor", "layer"] | None
+    gives_heat: bool
+    gives_coefficient: bool
 
     @property
     def class_name(self) -> str:

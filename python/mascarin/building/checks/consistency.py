@@ -192,6 +192,13 @@ def _emissivities_where_exchange_is(building: Description) -> Faults:
 def _convection_suits_its_side(building: Description) -> Faults:
     for location, side in _sides(building):
         film = side.convection
+        if film is not None and side.imposed is not None and side.imposed.row.gives_coefficient:
+            yield fault(
+                (*location, "convection"),
+                f"a coefficient beside '{side.imposed.kind}'",
+                "none: this law gives the coefficient itself",
+                "Remove 'convection:'.",
+            )
         if not isinstance(film, ConvectionLaw):
             continue
         imposed = side.measured or side.ground or side.imposed or side.scheduled

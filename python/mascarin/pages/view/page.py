@@ -13,6 +13,7 @@ from mascarin.figures import text
 from mascarin.figures.colors import PALETTE
 from mascarin.pages.frame.template import Library, environment, frame
 from mascarin.pages.view import layers
+from mascarin.pages.view.formulas import formulas
 from mascarin.pages.view.scene import Facts, scene
 from mascarin.pages.view.sun import positions
 
@@ -83,6 +84,7 @@ def render(building: Building, step_seconds: float = 900.0) -> str:
             ("surfaces", "Surfaces, windows and shades", shown["parts"]),
             ("conductances", TITLE, _conductances(building)),
             ("constructions", "Constructions", built),
+            ("formulas", "Laws and outputs written as text", formulas(building)),
             ("assumed", "Assumed values", assumed),
         )
         if content

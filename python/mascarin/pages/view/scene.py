@@ -13,11 +13,13 @@ import numpy as np
 from mascarin.building.checks.conductances import infiltration_rate
 from mascarin.building.checks.u_values import described_u_value, resistance_words, u_value, window_u_value
 from mascarin.building.engine_input.ratings import window_ratings
+from mascarin.building.parts.envelope.formula_law import FormulaLaw
 from mascarin.figures import text
 from mascarin.pages.view.panels import Array, home, panels, window_panels
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.building.parts.envelope.convection import Convection
     from mascarin.building.parts.envelope.surface import Side, Surface
     from mascarin.building.parts.openings.window import Window
 
@@ -186,14 +188,20 @@ def _side(side: Side) -> str:
     """What a side faces, with the numbers of its exchange."""
     words = [side.in_short() if side.zone else side.in_words()]
     if side.convection is not None:
-        coefficient = getattr(side.convection, "coefficient", None)
-        shown = text.choice(side.convection.kind)
-        words.append(f"convection {shown if coefficient is None else text.with_unit(float(coefficient), _U)}")
+        words.append(f"convection {_film(side.convection)}")
     if side.emissivity is not None:
         words.append(f"emissivity {text.significant(float(side.emissivity))}")
     if side.absorptance is not None:
         words.append(f"absorptance {text.significant(float(side.absorptance))}")
     return ", ".join(words)
+
+
+def _film(law: Convection) -> str:
+    """A coefficient, a formula, or the name of a law."""
+    if isinstance(law, FormulaLaw):
+        return law.formula
+    coefficient = getattr(law, "coefficient", None)
+    return text.choice(law.kind) if coefficient is None else text.with_unit(float(coefficient), _U)
 
 
 def _window(

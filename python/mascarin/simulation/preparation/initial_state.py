@@ -411,7 +411,10 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
         return None
     if side.outdoors:
         return FILMS[0], ambient.outdoors
-    film = 0.0 if side.convection is None else FILMS[1]
+    gives_film = side.convection is not None or (
+        side.imposed is not None and side.imposed.row.gives_coefficient
+    )
+    film = FILMS[1] if gives_film else 0.0
     if side.zone is not None:
         return film, air[side.zone]
     if side.ground is not None:

@@ -56,6 +56,18 @@ pub enum Boundary<S> {
     Zone,
 }
 
+impl<S: Real> Boundary<S> {
+    /// Whether its law gives the coefficient through which its temperature acts.
+    pub(crate) fn gives_coefficient(&self) -> bool {
+        matches!(self, Self::Imposed(Imposed::Law(law)) if law.gives_coefficient())
+    }
+
+    /// Whether its law gives heat beside its temperature.
+    pub(crate) fn gives_heat(&self) -> bool {
+        matches!(self, Self::Imposed(Imposed::Law(law)) if law.gives_heat())
+    }
+}
+
 /// Coefficients of a surface outdoors.
 #[derive(Debug, Clone)]
 pub struct Outdoors<S> {
@@ -94,11 +106,13 @@ impl<S: Real> SurfaceCoefficients<S> {
             density: air::density(plan, values),
             height: values.get_or(side.height, 0.0),
         };
+        let boundary = boundary(plan, index, side, values);
+        let formula = plan.formulas[index].as_ref();
+        let described = side.convection.as_ref();
+        let described = described.map(|law| SurfaceConvection::new(values, law, formula, &placement));
+        let imposed = boundary.gives_coefficient().then(|| SurfaceConvection::imposed(&placement));
         Self {
-            convection: side
-                .convection
-                .as_ref()
-                .map(|law| SurfaceConvection::new(values, law, plan.formulas[index].as_ref(), &placement)),
+            convection: described.or(imposed),
             area_factor: values.get_or(side.area_factor, 1.0),
             upward: placement.upward,
             emissivity: values.get_or(side.emissivity, 0.0),
@@ -108,7 +122,7 @@ impl<S: Real> SurfaceCoefficients<S> {
                 .as_ref()
                 .map(|given| (values.get(given.flux), Schedule::new(given.schedule))),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
-            boundary: boundary(plan, index, side, values),
+            boundary,
             exposure: side.exposure,
         }
     }

@@ -253,6 +253,11 @@ impl<S: Real> SurfaceConvection<S> {
         Self { law: Law::new(values, law, text, surface), upward: surface.upward }
     }
 
+    /// The coefficient that a law of what a side is in contact with gives.
+    pub(crate) fn imposed(surface: &Placement<S>) -> Self {
+        Self { law: Law::Measured(Measured::imposed(S::one())), upward: surface.upward }
+    }
+
     /// How much more the flow of heat bends than that of the published correlations; one at least.
     pub(crate) fn bend(&self) -> S {
         if let Law::Formula(law) = &self.law { law.bend() } else { S::one() }
@@ -299,7 +304,7 @@ impl<S: Real> SurfaceConvection<S> {
 
     /// Forcing channel and factor of a measured coefficient.
     pub(crate) fn measured(&self) -> Option<(usize, S)> {
-        if let Law::Measured(law) = &self.law { Some((law.channel, law.factor)) } else { None }
+        if let Law::Measured(law) = &self.law { Some((law.channel?, law.factor)) } else { None }
     }
 
     /// Whether the heat flow is linear in the temperature difference.

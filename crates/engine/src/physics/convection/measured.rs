@@ -1,4 +1,4 @@
-//! A measured surface heat transfer coefficient: a forcing channel.
+//! A surface heat transfer coefficient that is measured, a forcing channel, or that a law of what a side is in contact with gives.
 //!
 //! The value is read with the weather of each stage (see [`WeatherIndex`](crate::weather::index::WeatherIndex)) and takes the
 //! place of the part that depends on the wind.
@@ -9,18 +9,23 @@ use super::wind::Forced;
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::number::real::Real;
 
-/// `factor h`, h measured.
+/// `factor h`, h measured or imposed.
 #[derive(Debug, Clone)]
 pub(super) struct Measured<S> {
-    /// Of the forcing.
-    pub(super) channel: usize,
+    /// Of the forcing; none: imposed.
+    pub(super) channel: Option<usize>,
     /// [-].
     pub(super) factor: S,
 }
 
 impl<S> Measured<S> {
     pub(super) fn new(channel: usize, factor: S) -> Self {
-        Self { channel: CLIMATE_CHANNELS + channel, factor }
+        Self { channel: Some(CLIMATE_CHANNELS + channel), factor }
+    }
+
+    /// That of a law of what a side is in contact with; `one`: the number.
+    pub(super) fn imposed(one: S) -> Self {
+        Self { channel: None, factor: one }
     }
 }
 

@@ -326,10 +326,14 @@ impl<S: Real> Function<S> {
         self.text.valid.is_some()
     }
 
-    /// Name, unit in words and value of the names that its `valid` uses, where it does not hold at values of the names that change.
-    pub(crate) fn beyond(&self, point: &[f64]) -> Option<Vec<(&'static str, &'static str, f64)>> {
+    /// Name, unit in words and value of the names that its `valid` uses, where it does not hold in a lane at values of the names that change.
+    pub(crate) fn beyond(
+        &self,
+        point: &[f64],
+        lane: usize,
+    ) -> Option<Vec<(&'static str, &'static str, f64)>> {
         let valid = self.text.valid.as_ref()?;
-        let given: Vec<f64> = self.given.iter().map(|number| number.lane(0)).collect();
+        let given: Vec<f64> = self.given.iter().map(|number| number.lane(lane)).collect();
         let names = names(self.kind, point, &given);
         if valid.holds(&names) {
             return None;

@@ -1,4 +1,4 @@
-//! What every law of an imposed temperature offers, the weather that it is given, and numbers that several have.
+//! What every law of what a side is in contact with offers: a temperature, heat or a coefficient; the weather that it is given, and numbers that several have.
 
 use crate::number::real::Real;
 use crate::physics::law_row::{LawParameter, LawRange, LawRow, Limits, Numbers};
@@ -6,8 +6,8 @@ use crate::physics::law_row::{LawParameter, LawRange, LawRow, Limits, Numbers};
 /// Angle of a day in the year [rad/d].
 pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;
 
-/// A law of the temperature of what a side, or a thermal bridge, is in contact with. Where a side has convection it is the temperature
-/// of the air in front of it.
+/// A law of what a side, or a thermal bridge, is in contact with. Where a side has convection, or the law gives a coefficient, its temperature
+/// is that of the air in front of the surface; otherwise it is that of the surface. Thermal bridges have the temperature alone.
 pub(crate) trait ImposedLaw<S: Real>: Sized {
     /// What it says of itself.
     const ROW: LawRow;
@@ -17,6 +17,17 @@ pub(crate) trait ImposedLaw<S: Real>: Sized {
 
     /// The temperature at an instant [degC].
     fn temperature(&self, at: &ImposedWeather) -> S;
+
+    /// Heat into the surface beside [W/m2]; asked for where the row says [`LawRow::gives_heat`].
+    fn heat(&self, _at: &ImposedWeather) -> S {
+        S::zero()
+    }
+
+    /// The coefficient of heat transfer between the temperature and the surface [W/(m2 K)]; asked for where the row says
+    /// [`LawRow::gives_coefficient`].
+    fn coefficient(&self, _at: &ImposedWeather) -> S {
+        S::zero()
+    }
 }
 
 /// What imposed temperatures depend on.

@@ -1,4 +1,4 @@
-//! Temperatures that surroundings impose on sides and on ends of thermal bridges: any of the laws of [`laws`].
+//! Temperatures, heat and coefficients that surroundings impose on sides, and temperatures on ends of thermal bridges: any of the laws of [`laws`].
 
 pub(crate) mod imposed_law;
 pub(crate) mod laws;
@@ -34,6 +34,24 @@ macro_rules! laws {
             fn temperature(&self, at: &ImposedWeather) -> S {
                 match self {
                     $(Self::$law(law) => law.temperature(at),)*
+                }
+            }
+
+            fn heat(&self, at: &ImposedWeather) -> S {
+                match self {
+                    $(Self::$law(law) => law.heat(at),)*
+                }
+            }
+
+            fn coefficient(&self, at: &ImposedWeather) -> S {
+                match self {
+                    $(Self::$law(law) => law.coefficient(at),)*
+                }
+            }
+
+            fn row(&self) -> LawRow {
+                match self {
+                    $(Self::$law(_) => <laws::$module::$law<f64> as ImposedLaw<f64>>::ROW,)*
                 }
             }
         }
@@ -74,18 +92,37 @@ impl<S: Real> ImposedTemperature<S> {
     pub fn at(&self, at: &ImposedWeather) -> S {
         self.law.temperature(at)
     }
+
+    /// Whether it gives heat beside its temperature.
+    pub(crate) fn gives_heat(&self) -> bool {
+        self.law.row().gives_heat
+    }
+
+    /// Whether it gives the coefficient through which its temperature acts.
+    pub(crate) fn gives_coefficient(&self) -> bool {
+        self.law.row().gives_coefficient
+    }
+
+    /// Heat beside the temperature at an instant [W/m2], and the coefficient [W/(m2 K)]; none: the law does not give it.
+    // One copy only: few buildings have such laws.
+    #[inline(never)]
+    pub(crate) fn beside(&self, at: &ImposedWeather) -> [Option<S>; 2] {
+        let row = self.law.row();
+        [row.gives_heat.then(|| self.law.heat(at)), row.gives_coefficient.then(|| self.law.coefficient(at))]
+    }
 }
 
-/// The temperature of a law by the names of its numbers on a day of the year, with outdoor air [degC].
+/// What a law by the names of its numbers imposes on a day of the year, with outdoor air [degC]: the temperature [degC], heat [W/m2] and the
+/// coefficient [W/(m2 K)], none where it does not give it.
 ///
 /// # Errors
 /// What was found and what was expected, for a kind or numbers that are none.
-pub fn temperature_on(
+pub fn imposed_on(
     kind: &str,
     numbers: &[(&str, f64)],
     day: f64,
     outdoor_air: f64,
-) -> Result<f64, String> {
+) -> Result<(f64, Option<f64>, Option<f64>), String> {
     use crate::input::description::ParamId;
     use crate::number::elementary::sincos;
     use crate::physics::law_row::unknown_kind;
@@ -97,13 +134,15 @@ pub fn temperature_on(
     let temperature = ImposedTemperature::new(&law, &Values::new(&values));
     let (sine, cosine) = sincos(day * imposed_law::PER_DAY);
     let at = ImposedWeather { season: [cosine, sine], outdoor_air };
-    temperature.map(|law| law.at(&at)).ok_or_else(|| unknown_kind(&law))
+    let law = temperature.ok_or_else(|| unknown_kind(&law))?;
+    let [heat, coefficient] = law.beside(&at);
+    Ok((law.at(&at), heat, coefficient))
 }
 
 #[cfg(test)]
 pub(crate) mod testing {
     /// Temperature of a law on a day [degC].
     pub(crate) fn temperature(kind: &str, numbers: &[(&str, f64)], day: f64, outdoor_air: f64) -> f64 {
-        super::temperature_on(kind, numbers, day, outdoor_air).unwrap()
+        super::imposed_on(kind, numbers, day, outdoor_air).unwrap().0
     }
 }

@@ -241,7 +241,9 @@ class Side(Part):
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
     imposed: ImposedTemperature | None = Field(
-        None, description="Touches something whose temperature follows a law, such as soil at a depth"
+        None,
+        description="Touches something whose temperature, heat or coefficient follows a law, such as soil at "
+        "a depth, or a heating mat",
     )
     measured: Columns | None = Field(
         None,
