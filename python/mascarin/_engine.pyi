@@ -258,10 +258,11 @@ class Plan:
         options: dict[str, Any],
         report: Callable[[int], object] | None = None,
         single: bool = False,
-    ) -> tuple[_Array, _Array, _Array, list[tuple[int, str]]]:
-        """Members (rows of values): records (members x rows x outputs), closures, distances, failures.
+    ) -> tuple[_Array, tuple[_Array, _Array, _Array], list[tuple[int, str]]]:
+        """Members (rows of values): records (members, rows, outputs); closures, distances, counts; failures.
 
-        A distance is how far temperatures are outside of their causes, beyond the scheme's overshoot. [K]
+        A distance is how far temperatures are outside of their causes, beyond the scheme's overshoot [K]; a
+        count is of the steps in which a law written as text did not hold.
 
         `single`: in single precision; members whose energy balance does not close are run in double.
         """

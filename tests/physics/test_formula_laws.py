@@ -196,6 +196,33 @@ def test_a_run_outside_of_the_validity_warns() -> None:
     assert f"at the end of {steps} steps" in found[0]
 
 
+@pytest.mark.parametrize("count", [1, 2, 9, 20])
+def test_members_outside_of_the_validity_are_counted(count: int) -> None:
+    """Steps of each member, in lanes and alone, are those of a run of it."""
+    simulation = box_run(box_with(OWN | {"valid": "abs(dT) < 4 and V < 12"}))
+    path = "surfaces.facade.outside.absorptance"
+    values = np.linspace(0.05, 0.95, count)
+    run = simulation.ensemble(np.array([simulation.vector({path: value}) for value in values]))
+    for value, steps in zip(values, run.beyond, strict=True):
+        lines = [line for line in simulation.run({path: value}).warnings if "valid" in line]
+        assert bool(lines) == bool(steps)
+        assert all(f"at the end of {steps:.0f} step" in line for line in lines)
+    if count == 20:
+        assert run.beyond.min() == 0.0 < run.beyond.max()
+
+
+def test_sweep_and_sensitivity_say_how_many_members_leave_the_validity() -> None:
+    building = box_with(OWN | {"valid": "abs(dT) < 4 and V < 12"})
+    path = "surfaces.facade.outside.absorptance"
+    options: Any = {"step": "1h", "outputs": ["room.air_temperature"], "initial": 20.0}
+    swept = mc.sweep(building, box_climate(), {path: [0.05, 0.5, 0.95]}, **options)
+    assert any("members: a law written as text is outside of its 'valid'" in line for line in swept.warnings)
+    analysis = mc.sensitivity_analysis(building, box_climate(), vary={path: (0.05, 0.95)}, **options)
+    assert any(
+        "members: a law written as text is outside of its 'valid'" in line for line in analysis.warnings
+    )
+
+
 def test_values_outside_of_the_ranges_are_checked() -> None:
     building = box_with({"formula": "8 + k*dT", "k": {"value": 0.01, "range": [0, 0.05]}})
     with pytest.raises(InputError, match=r"member 1\), with k = -0.5"):

@@ -222,7 +222,7 @@ def _store(folder: Path, count: int) -> Store:
     for first in range(0, count, 2):
         members = Members({"zones.room.volume": np.array([20.0, 30.0])}, {})
         residuals, zeros = np.array([1e-12, 1e-13]), np.zeros(2)
-        chunk = Chunk(first, np.ones((2, 2, 1)), residuals, zeros, {}, zeros)
+        chunk = Chunk(first, np.ones((2, 2, 1)), residuals, zeros, {}, zeros, zeros)
         store.add(chunk, members)
     return store
 

@@ -378,7 +378,7 @@ def _chunks(
 def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
     """Results of all members, and by what they are judged; chunks have them in another order."""
     array: Any = None
-    judged = np.full((3, len(order)), np.nan)
+    judged = np.full((4, len(order)), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
         members = order[chunk.first : chunk.first + len(chunk.closure)]
@@ -386,7 +386,7 @@ def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, 
             array = np.full((len(order), *chunk.recorded.shape[1:]), np.nan)
         if array is not None and chunk.recorded.size:
             array[members] = chunk.recorded
-        judged[:, members] = chunk.closure, chunk.outside, chunk.step_errors
+        judged[:, members] = chunk.judged
         failures |= {order[member]: reason for member, reason in chunk.failures.items()}
     return array, judged, failures
 

@@ -46,8 +46,9 @@ _STEP_ERROR: Final = "time_step_error"
 _CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
 #: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
-#: Columns by which members are judged: residual [-], temperatures and error by the time step [K].
-_JUDGED: Final = (*JUDGED, _STEP_ERROR)
+#: Columns by which members are judged: residual [-], temperatures and error by the time step [K], steps in
+#: which a law written as text did not hold.
+_JUDGED: Final = (*JUDGED, _STEP_ERROR, "beyond_validity")
 #: Entries of a manifest that are written at the end.
 _AT_END: Final = ("complete", "single_precision", "warnings", "warning_kinds")
 #: Entries of a manifest that must be equal to continue an ensemble.
@@ -485,8 +486,7 @@ class Store:
         for k, name in enumerate(self.manifest["kept"]):
             column = np.ascontiguousarray(chunk.recorded[..., k]) if chunk.recorded.size else None
             columns[name] = self._column(column, count)
-        judged = (chunk.closure, chunk.outside, chunk.step_errors)
-        columns |= {name: pa.array(values) for name, values in zip(_JUDGED, judged, strict=True)}
+        columns |= {name: pa.array(values) for name, values in zip(_JUDGED, chunk.judged, strict=True)}
         columns["failure"] = pa.array([chunk.failures.get(member) for member in numbers], pa.string())
         return pa.table(columns)
 

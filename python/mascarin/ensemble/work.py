@@ -114,6 +114,8 @@ class Chunk:
     step_errors : ndarray, shape (members,)
         Error of an air by the time step, as of `mascarin.simulation.checks.step_check`; NaN where none was
         recorded. [K]
+    beyond : ndarray, shape (members,)
+        Steps in which a law written as text did not hold, see `EnsembleRun`.
     """
 
     first: int
@@ -122,6 +124,12 @@ class Chunk:
     outside: Array
     failures: Mapping[int, str]
     step_errors: Array
+    beyond: Array
+
+    @property
+    def judged(self) -> tuple[Array, Array, Array, Array]:
+        """By what members are judged, in the order of `of_members`."""
+        return self.closure, self.outside, self.step_errors, self.beyond
 
 
 def run_chunk(
@@ -141,7 +149,7 @@ def run_chunk(
         Called with the number of members done.
     """
     values: Array | None = None
-    closure, outside, step_errors = np.full((3, members.count), np.nan)
+    closure, outside, step_errors, beyond = np.full((4, members.count), np.nan)
     failures: dict[int, str] = {}
     done = 0
     for structure, rows in members.groups():
@@ -160,6 +168,7 @@ def run_chunk(
             if values is None:
                 values = np.full((members.count, *objectives.shape[1:]), np.nan)
             values[batch], closure[batch], outside[batch] = objectives, run.residuals, run.outside
+            beyond[batch] = run.beyond
             step_errors[batch] = member_errors(
                 simulation.building, simulation.outputs, run.records, simulation.scheme
             )
@@ -170,7 +179,7 @@ def run_chunk(
     if values is None:
         width = len(inputs.objectives) if inputs.objectives else 0
         values = np.full((members.count, width), np.nan)
-    return Chunk(first, values, closure, outside, dict(sorted(failures.items())), step_errors)
+    return Chunk(first, values, closure, outside, dict(sorted(failures.items())), step_errors, beyond)
 
 
 def attributes(name: str, unit: str) -> dict[str, str]:

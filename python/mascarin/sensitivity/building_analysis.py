@@ -18,6 +18,7 @@ from mascarin.sensitivity.base.factors import DistributionName, Factor
 from mascarin.sensitivity.base.result import Sensitivity
 from mascarin.sensitivity.base.runs import Collector, batches
 from mascarin.sensitivity.methods import MethodName, collector, plan
+from mascarin.simulation.checks.formula_laws import member_range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 from mascarin.simulation.nominal import of_nominal
@@ -249,17 +250,22 @@ def _run_all(
 ) -> list[RunWarning]:
     """Carry out the runs of a plan; lines about members that are not sound, and about single precision."""
     remarks: list[RunWarning] = []
-    residuals, outside = np.full(len(runs), np.nan), np.full(len(runs), np.nan)
+    residuals, outside, beyond = np.full((3, len(runs)), np.nan)
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
             run = run_samples(simulation, runs.paths, x, first, record_every=stride, precision=precision)
             taken.add(first, run.records)
             last = first + len(x)
-            residuals[first:last], outside[first:last] = run.residuals, run.outside
+            residuals[first:last], outside[first:last], beyond[first:last] = (
+                run.residuals,
+                run.outside,
+                run.beyond,
+            )
             if first == 0 and precision == "single":
                 remarks = _single_precision(simulation, runs.paths, x, run.records, stride)
             report(last, len(runs))
-    return [*ensemble_warnings(residuals, outside, 0, precision), *remarks]
+    unsound = ensemble_warnings(residuals, outside, 0, precision)
+    return [*unsound, *member_range_warnings(beyond), *remarks]
 
 
 def _single_precision(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin.simulation.checks.formula_laws import range_warnings
+from mascarin.simulation.checks.formula_laws import member_range_warnings, range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.checks.step_check import LARGE
 from mascarin.simulation.checks.warning_kinds import Kind, RunWarning, of_kind
@@ -98,6 +98,7 @@ def of_members(
     closure: Array,
     outside: Array,
     step_errors: Array,
+    beyond: Array,
     *,
     step_seconds: float,
     first: int = 0,
@@ -113,6 +114,8 @@ def of_members(
         How far temperatures are beyond their causes; NaN for a member that failed. [K]
     step_errors : ndarray, shape (members,)
         Error of an air by the time step; NaN where no air was recorded. [K]
+    beyond : ndarray, shape (members,)
+        Steps in which a law written as text did not hold; NaN for a member that failed.
     step_seconds : float
         Time step. [s]
     first : int
@@ -127,10 +130,11 @@ def of_members(
 
     Examples
     --------
-    >>> of_members(np.zeros(2), np.zeros(2), np.array([0.1, 0.5]), step_seconds=3600.0)[0][:74]
+    >>> zeros, errors = np.zeros(2), np.array([0.1, 0.5])
+    >>> of_members(zeros, zeros, errors, zeros, step_seconds=3600.0)[0][:74]
     '1 of 2 members: the time step of 60 min is too long for the air of a zone,'
     """
-    lines = ensemble_warnings(closure, outside, first, precision)
+    lines = [*ensemble_warnings(closure, outside, first, precision), *member_range_warnings(beyond, first)]
     late = np.flatnonzero(step_errors >= LARGE)
     if late.size:
         worst = int(np.nanargmax(step_errors))

@@ -11,6 +11,7 @@ import numpy as np
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.parameters.text_laws import text_laws
 from mascarin.errors import InputError
+from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -104,6 +105,35 @@ def range_warnings(raw: Mapping[str, Any], dated: Callable[[str], str]) -> list[
         "take a law that holds, or widen 'valid' where its source does"
         for owner, law, steps, first, values in raw["out_of_range"]
     ]
+
+
+def member_range_warnings(beyond: Array, first: int = 0) -> list[RunWarning]:
+    """One line for the members of an ensemble in which a law was used where it does not hold.
+
+    Parameters
+    ----------
+    beyond : ndarray, shape (members,)
+        Steps at whose end a law did not hold, of the law that holds least often; NaN for a member that
+        failed.
+    first : int
+        Number of the first member.
+
+    Examples
+    --------
+    >>> member_range_warnings(np.array([0.0, np.nan, 7.0]))[0][:70]
+    "1 of 3 members: a law written as text is outside of its 'valid' at the"
+    """
+    members = np.flatnonzero(beyond > 0.0)
+    if not members.size:
+        return []
+    worst = int(np.nanargmax(beyond))
+    steps = int(beyond[worst])
+    text = (
+        f"{members.size} of {len(beyond)} members: a law written as text is outside of its 'valid' at the "
+        f"end of up to {steps} {'step' if steps == 1 else 'steps'} (member {first + worst}). The formula is "
+        "used as it is there: run this member alone, which names the law and the values"
+    )
+    return [RunWarning(text, Kind.VALIDITY)]
 
 
 def _extent(value: tuple[str, str, float, float]) -> str:

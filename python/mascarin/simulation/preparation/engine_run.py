@@ -244,11 +244,11 @@ class CompiledRun:
         if self.inputs is not None and (vectors[:, self.inputs.positions] != self.inputs.base).any():
             return self._by_weather(self.inputs, vectors, record_from, record_every, precision, progress)
         with translated(self.dated):
-            raw, residuals, outside, failed = self.plan.ensemble(
+            raw, (residuals, outside, beyond), failed = self.plan.ensemble(
                 vectors, self.forcing, options, _of_total(progress, len(vectors)), precision == "single"
             )
         failures = [Failure(member, self.dated(reason)) for member, reason in failed]
-        return EnsembleRun(self.readings.values(raw), residuals, failures, outside)
+        return EnsembleRun(self.readings.values(raw), residuals, failures, outside, beyond)
 
     def _by_weather(
         self,
@@ -262,19 +262,22 @@ class CompiledRun:
         """The same for members with different weather: those with the same weather at a time."""
         count, done = len(vectors), 0
         records = np.empty((count, self._rows(record_from, record_every), len(self.readings.columns)))
-        residuals, outside, failures = np.empty(count), np.empty(count), []
+        judged = np.empty((3, count))
+        failures: list[Failure] = []
         for rows, vector in inputs.groups(vectors):
             alone = replace(self, forcing=self.forcing_at(vector), inputs=None)
             part = alone.ensemble(
                 np.ascontiguousarray(vectors[rows]),
                 record_from=record_from, record_every=record_every, precision=precision,
             )  # fmt: skip
-            records[rows], residuals[rows], outside[rows] = part.records, part.residuals, part.outside
+            records[rows] = part.records
+            judged[:, rows] = part.residuals, part.outside, part.beyond
             failures += [replace(failure, member=int(rows[failure.member])) for failure in part.failures]
             done += len(rows)
             if progress is not None:
                 progress(done, count)
-        return EnsembleRun(records, residuals, sorted(failures, key=lambda f: f.member), outside)
+        residuals, outside, beyond = judged
+        return EnsembleRun(records, residuals, sorted(failures, key=lambda f: f.member), outside, beyond)
 
     def jacobian(
         self,

@@ -53,10 +53,14 @@ class EnsembleRun:
     outside : ndarray, shape (M,)
         How far temperatures of each member are outside of their causes, see `Judgement`; NaN for one that
         failed. [K]
+    beyond : ndarray, shape (M,)
+        Steps of each member at whose end a law written as text did not hold, of the law that holds least
+        often; NaN for one that failed.
 
     Examples
     --------
-    >>> records, residuals, failures = EnsembleRun(np.zeros((1, 2, 1)), np.zeros(1), [], np.zeros(1))
+    >>> numbers = np.zeros(1)
+    >>> records, residuals, failures = EnsembleRun(np.zeros((1, 2, 1)), numbers, [], numbers, numbers)
     >>> failures
     []
     """
@@ -65,6 +69,7 @@ class EnsembleRun:
     residuals: Array
     failures: list[Failure]
     outside: Array
+    beyond: Array
 
     def __iter__(self) -> Iterator[Any]:
         return iter((self.records, self.residuals, self.failures))

@@ -13,6 +13,7 @@ import numpy as np
 from mascarin._io.durations import seconds_of
 from mascarin.sensitivity.building_analysis import run_samples
 from mascarin.sensitivity.methods import collector
+from mascarin.simulation.checks.formula_laws import member_range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.study.file.factors import runs_of
 
@@ -71,11 +72,11 @@ def analyze(
     taken = collector(runs, names, [output.unit for output in simulation.outputs])
     done = np.zeros(len(runs), dtype=bool)
     name = f"sensitivity-{plan.method}"
-    # Relative energy-balance residual [-] and `Judgement.outside` [K] of each run.
-    judged = np.full((2, len(runs)), np.nan)
+    # Relative energy-balance residual [-], `Judgement.outside` [K] and steps beyond `valid` of each run.
+    judged = np.full((3, len(runs)), np.nan)
     for first, arrays in workspace.kept(name):
         values, verdicts = arrays.get("values"), arrays.get("judged")
-        if values is None or verdicts is None or verdicts.shape != (2, len(values)):
+        if values is None or verdicts is None or verdicts.shape != (3, len(values)):
             continue
         taken.add(first, values)
         last = first + len(values)
@@ -88,14 +89,16 @@ def analyze(
         began = time.monotonic()
         run = run_samples(simulation, runs.paths, samples, first, start=skipped, record_every=every)
         last = first + len(samples)
-        judged[:, first:last] = run.residuals, run.outside
+        judged[:, first:last] = run.residuals, run.outside, run.beyond
         workspace.keep(name, first, {"values": run.records, "judged": judged[:, first:last]})
         taken.add(first, run.records)
         done[first:last] = True
         pace.update(len(samples), time.monotonic() - began)
         progress(int(done.sum()), len(runs))
     analysis = taken.result()
-    return replace(analysis, warnings=(*analysis.warnings, *ensemble_warnings(*judged)))
+    residuals, outside, beyond = judged
+    lines = [*ensemble_warnings(residuals, outside), *member_range_warnings(beyond)]
+    return replace(analysis, warnings=(*analysis.warnings, *lines))
 
 
 class _Pace:
