@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.parameters.text_laws import text_laws
+from mascarin.building.parts.materials.formula import stated_unit
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
 from mascarin.figures import text
 
@@ -55,8 +56,7 @@ def _laws(building: Building) -> Iterator[tuple[str, Any]]:
 
 def _number(name: str, number: Any) -> str:
     """``c = 2.3 W/(m2 K), 1 to 4``."""
-    unit = str(getattr(number, "unit", None) or "-")
-    words = f"{name} = {text.with_unit(float(number), unit)}"
+    words = f"{name} = {text.with_unit(float(number), stated_unit(number) or '-')}"
     if number.range is None:
         return words
     low, high = (text.significant(float(end)) for end in number.range)
