@@ -486,6 +486,7 @@ class Climate(RecordView[WeatherRecord]):
         channels: Sequence[str] = (),
         measurements: Measurements | None = None,
         limits: Mapping[str, tuple[float, float]] | None = None,
+        further: int = 0,
     ) -> Array:
         """What the engine takes as input: channels at the stages of every step of a period.
 
@@ -506,10 +507,12 @@ class Climate(RecordView[WeatherRecord]):
         limits : mapping of str to (float, float), optional
             Lowest and highest possible value of measured columns, by their use: `TEMPERATURES`,
             `IRRADIANCES` or `COEFFICIENTS`. [unit of the column]
+        further : int
+            Channels at the end that the caller fills.
 
         Returns
         -------
-        ndarray, shape (steps, stages, len(CHANNELS) + len(channels))
+        ndarray, shape (steps, stages, len(CHANNELS) + len(channels) + further)
             In the units of `CHANNELS`; measured columns in their own. See `mascarin.weather.forcing`.
 
         Raises
@@ -522,7 +525,8 @@ class Climate(RecordView[WeatherRecord]):
         steps = Steps.over(self.grid.zone, start, end, step_seconds, scheme)
         require_period(self.record, steps)
         measured = None if measurements is None else measurements.record
-        return forcing(self.record, self.completed(site).record, site, steps, channels, measured, limits)
+        complete = self.completed(site).record
+        return forcing(self.record, complete, site, steps, channels, measured, limits, further)
 
     def _at_site(self, latitude: float | None, longitude: float | None, altitude: float) -> Climate:
         """The climate at a place, with what can be derived there; as it is where the place is not known."""

@@ -56,6 +56,7 @@ def forcing(
     channels: Sequence[str] = (),
     measured: Record | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
+    further: int = 0,
 ) -> Array:
     """Channels at the stages of every step of a period.
 
@@ -80,10 +81,12 @@ def forcing(
     limits : mapping of str to (float, float), optional
         Lowest and highest possible value of measured columns, by their use: `TEMPERATURES`,
         `IRRADIANCES` or `COEFFICIENTS`. [unit of the column]
+    further : int
+        Channels at the end that the caller fills, so that a long period needs no second array.
 
     Returns
     -------
-    ndarray, shape (steps, stages, len(CHANNELS) + len(channels))
+    ndarray, shape (steps, stages, len(CHANNELS) + len(channels) + further)
         In the units of `CHANNELS`; measured columns in their own.
 
     Raises
@@ -91,7 +94,7 @@ def forcing(
     InputError
         A value in the period is missing or impossible, or a column is unknown.
     """
-    out = np.empty((*steps.stage.shape, len(CHANNELS) + len(channels)))
+    out = np.empty((*steps.stage.shape, len(CHANNELS) + len(channels) + further))
     first = steps.first
     _fill_at_place(out[..., : len(CHANNELS)], completed, site, steps)
     for column, name in enumerate(channels, start=len(CHANNELS)):
@@ -330,7 +333,14 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps
     for name in RADIATION:
         profile: Profile = getattr(sky, name)
         usable = sunlit if name == "direct_normal" else None
-        out[..., CHANNELS.index(name)] = _balanced(profile, edges, steps.stage, steps.weights, usable=usable)
+        column = out[..., CHANNELS.index(name)]
+        # In blocks, as the sun.
+        for row in range(0, len(column), _ROWS):
+            block = slice(row, row + _ROWS)
+            column[block] = _balanced(
+                profile, edges[row : row + _ROWS + 1], steps.stage[block], steps.weights,
+                usable=None if usable is None else usable[block],
+            )  # fmt: skip
 
 
 def _balanced(

@@ -221,9 +221,11 @@ def forcing_of(
         columns,
         measurements,
         limits=limits_of_columns(building),
+        further=len(names),
     )
+    forcing = np.asarray(weather, dtype=np.float64)
     if names:
-        profiles = scheduled(
+        forcing[..., -len(names) :] = scheduled(
             climate,
             courses(building),
             parse_timezone(building.site.timezone),
@@ -233,9 +235,6 @@ def forcing_of(
             scheme,
             measurements,
         )
-        forcing = np.concatenate([weather, profiles], axis=-1)
-    else:
-        forcing = np.ascontiguousarray(weather, dtype=np.float64)
     _require_numbers(forcing, description.channels, building)
     require_balanced_flows(building, forcing, description.channels, (times.start, times.step))
     require_wind(building, climate, forcing)
