@@ -21,6 +21,7 @@ ORDER = [
     {"weather"},
     {"comfort"},
     {"simulation", "energyplus"},
+    {"measurements"},
     {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},

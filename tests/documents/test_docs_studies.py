@@ -126,7 +126,7 @@ def test_every_kind_of_section_is_on_the_page() -> None:
         for kind in [*vars(description).values(), *vars(data_sources).values()]
         if isinstance(kind, type)
         and issubclass(kind, BaseModel)
-        and kind.__module__.startswith("mascarin.study.")
+        and kind.__module__.startswith(("mascarin.study.", "mascarin.measurements."))
     }
     bases = {description.StudyPlan, data_sources.Table}
     assert kinds | {GivenStart} == {kind for _, kind in SECTIONS} | bases

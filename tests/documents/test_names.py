@@ -21,7 +21,7 @@ EMPTY_WORDS = frozenset([
 PACKAGES = (
     "calibration", "design", "energyplus", "figures", "genopt", "optimization", "pages",
     "sensitivity", "validation", "verification", "simulation", "commands", "ensemble", "comfort", "fmu",
-    "_io", "building", "materials", "weather", "tables", "diagnosis", "templates",
+    "_io", "building", "materials", "weather", "tables", "measurements", "diagnosis", "templates",
     "study/carried", "study/diagnosis", "study/results",
 )  # fmt: skip
 

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.building.parts.posterior import Posterior, SensorPosterior
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]

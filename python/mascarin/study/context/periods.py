@@ -16,20 +16,20 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError
+from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import IdentificationPlan
 from mascarin.tables.timezones import moment
-from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.measurements.observation import Observation
+    from mascarin.measurements.time_fields import Duration
     from mascarin.study.file.description import SensorPeriods, StudyPlan
-    from mascarin.study.file.field_types import Duration
     from mascarin.study.file.locations import Places
     from mascarin.study.file.study_inputs import StudyInputs
     from mascarin.tables.grid import Grid
-    from mascarin.validation.observation import Observation
 
     Flags = npt.NDArray[np.bool_]
 

@@ -22,10 +22,10 @@ from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.context.context import StudyContext
     from mascarin.study.context.storage import Workspace
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
 

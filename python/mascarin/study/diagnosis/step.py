@@ -12,6 +12,7 @@ import numpy as np
 from mascarin.calibration.errors.day_blocks import DayGrid
 from mascarin.calibration.errors.discrepancy import DayData, hour_basis
 from mascarin.calibration.errors.sensor_errors import error_columns
+from mascarin.calibration.errors.stated_errors import shared_errors
 from mascarin.diagnosis.causes import diagnose
 from mascarin.diagnosis.hypotheses import Candidate, Diagnosis, DiagnosisInput
 from mascarin.diagnosis.sensor_faults import Series, sensor_candidates, stated_errors, white_noise
@@ -188,7 +189,7 @@ def _series(
         tuple(names),
         simulated,
         mask,
-        np.array([max(setup.plan.sensors[n].uncertainty, 1e-9) / 1.96 for n in names]),
+        np.array([max(setup.plan.sensors[n].expanded, 1e-9) / 1.96 for n in names]),
         model.interval,
         tuple(output.unit for output in model.simulation.outputs[: len(names)]),
         DayGrid.of(model.hours, interval=model.interval / 3600.0, sensors=len(names)),
@@ -209,9 +210,9 @@ def _sensor_errors(setup: StudyContext, model: Model, simulated: Array) -> Array
     names, errors = setup.observation.names, []
     for s, name in enumerate(names):
         sensor = setup.plan.sensors[name]
-        stated = sensor.stated_uncertainty(model.simulation.outputs[s].unit, name)
-        error = sensor.shared_errors(stated, scatter_of(setup, name))
-        offset = error.offset if error.offset or error.common else sensor.uncertainty / 1.96
+        stated = sensor.uncertainty(model.simulation.outputs[s].unit, f"sensors.{name}")
+        error = shared_errors(sensor, stated, scatter_of(setup, name))
+        offset = error.offset if error.offset or error.common else sensor.expanded / 1.96
         errors.append(replace(error, offset=offset))
     return error_columns(names, errors, simulated, model.interval)[0]
 
@@ -284,7 +285,7 @@ def _noise(
     for s, name in enumerate(setup.observation.names):
         sd, error = white_noise(errors[:, s], interval)
         noise[name] = sd
-        stated = max(setup.plan.sensors[name].uncertainty, 1e-9) / 1.96
+        stated = max(setup.plan.sensors[name].expanded, 1e-9) / 1.96
         if math.isfinite(sd) and sd - _SURE * error > _NOISY * stated:
             excess.append((name, sd, error, model.simulation.outputs[s].unit))
     return noise, excess

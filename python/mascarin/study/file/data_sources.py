@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building.base.part import Part, fault, insist
-from mascarin.study.file.field_types import Columns, Duration, Shift, TimeZone
+from mascarin.measurements.time_fields import Duration, Shift
+from mascarin.study.file.field_types import Columns, TimeZone
 
 if TYPE_CHECKING:
     from typing import Self

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
@@ -13,21 +13,14 @@ from mascarin.building.parts.weather import Weather
 from mascarin.calibration.base.search_options import WITH_SQUARES, PosteriorName, SlopesName
 from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
+from mascarin.measurements.sensor import Sensor as Sensor
+from mascarin.measurements.sensor import SensorPeriods as SensorPeriods
+from mascarin.measurements.sensor import with_output
+from mascarin.measurements.time_fields import Duration, Hours, Span, Spans, Stretch, Time
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, MeasuredTable, with_shared_table
-from mascarin.study.file.field_types import (
-    Duration,
-    Hours,
-    Initial,
-    Span,
-    Spans,
-    Stretch,
-    Time,
-    require_bounds,
-)
-from mascarin.study.file.sensor import Sensor as Sensor
-from mascarin.study.file.sensor import SensorPeriods as SensorPeriods
+from mascarin.study.file.field_types import Initial, require_bounds
 from mascarin.validation.comparison import METRICS
 from mascarin.validation.criteria import Criterion
 
@@ -356,7 +349,9 @@ class StudyPlan(Part):
         "measurement", description="What the data are called: measurement, virtual experiment"
     )
     observed_note: str = Field("", description="What readers of the report must know about the data")
-    sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
+    sensors: dict[Name, Annotated[Sensor, AfterValidator(with_output)]] = Field(
+        min_length=1, description="Sensors by name"
+    )
     weather: Weather | None = Field(
         None,
         description="Gain, offset and clock of columns of the weather, in place of those of the building",

@@ -12,10 +12,10 @@ from mascarin._io.limits import above, below
 from mascarin.calibration.building_calibration import CONSTANT, MAX_CONSTANT_SHARE
 from mascarin.calibration.errors.stated_errors import require_errors
 from mascarin.errors import InputError
+from mascarin.measurements.observation import require_comparable
 from mascarin.study.context.error_rule import reason_of, states_errors
 from mascarin.study.context.periods import overlap
 from mascarin.study.steps.comfort import require_rooms
-from mascarin.validation.observation import require_comparable
 
 if TYPE_CHECKING:
     import pandas as pd

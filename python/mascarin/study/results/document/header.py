@@ -11,9 +11,9 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin.examples import STUDIES
+from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import StudyFile
 from mascarin.study.results.document.building import assumptions, building_entry
-from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -112,7 +112,7 @@ def _sensor_info(study: StudyContext) -> dict[str, dict[str, Any]]:
             "label": sensor.label or name.replace("_", " "),
             "output": sensor.output,
             "unit": study.building.output(sensor.output).unit,
-            "uncertainty": sensor.uncertainty,
+            "uncertainty": sensor.expanded,
         }
         for name, sensor in study.plan.sensors.items()
     }
