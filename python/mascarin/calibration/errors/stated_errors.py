@@ -77,7 +77,7 @@ def shared_errors(sensor: Sensor, stated: SensorUncertainty, random: float = mat
     Examples
     --------
     >>> from mascarin.measurements.sensor import Sensor
-    from mascarin.measurements.uncertainty import SensorUncertainty
+    >>> from mascarin.measurements.uncertainty import SensorUncertainty
     >>> shared_errors(Sensor("T", standard_uncertainty=0.5), SensorUncertainty(0.5), random=0.3).offset
     0.4
     """
