@@ -32,7 +32,7 @@ Legend = tuple[list["Artist"], list[str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class SpectrumLine:
     """A line of a spectrum above the threshold.
 
     Attributes
@@ -248,7 +248,7 @@ def time_axis(ax: Axes, *, hours: bool) -> None:
 
 
 def spectrum(
-    ax: Axes, power: Floats, threshold: float, lines: Sequence[Line], *, title: str, listed: int = 12
+    ax: Axes, power: Floats, threshold: float, lines: Sequence[SpectrumLine], *, title: str, listed: int = 12
 ) -> Legend:
     """Draw power over frequency, with the threshold and the lines above it.
 
@@ -260,7 +260,7 @@ def spectrum(
         Part of the variance on the lines 1 ... K. [-]
     threshold : float
         Noise stays below. [-]
-    lines : sequence of Line
+    lines : sequence of SpectrumLine
         Lines above the threshold.
     title : str
         Title of the axes.

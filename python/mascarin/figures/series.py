@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-class Curve(NamedTuple):
+class SeriesCurve(NamedTuple):
     """A column of a table.
 
     Parameters
@@ -102,7 +102,12 @@ def draw(
 
 
 def columns(
-    ax: Axes, edges: npt.NDArray[np.datetime64], curves: Sequence[Curve], unit: str, zone: tzinfo, label: str
+    ax: Axes,
+    edges: npt.NDArray[np.datetime64],
+    curves: Sequence[SeriesCurve],
+    unit: str,
+    zone: tzinfo,
+    label: str,
 ) -> None:
     """Draw columns of a table over local time.
 
@@ -112,7 +117,7 @@ def columns(
         Where to draw.
     edges : ndarray of datetime64, shape (rows + 1,)
         Starts of the intervals and the end of the last one, in UTC.
-    curves : sequence of Curve
+    curves : sequence of SeriesCurve
         The columns, all in one unit.
     unit : str
         Their unit.

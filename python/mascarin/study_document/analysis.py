@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.study_document.entry import Entry, Num
+from mascarin.study_document.entry import Num, ResultEntry
 
 
-class DailyCycle(Entry):
+class DailyCycleEntry(ResultEntry):
     """Mean day, measured and simulated."""
 
     measured_amplitude: Num | None = None
@@ -18,7 +18,7 @@ class DailyCycle(Entry):
     delay_minutes: Num | None = None
 
 
-class ResidualEntry(Entry):
+class ResidualEntry(ResultEntry):
     """Statistics of the residual of one sensor."""
 
     period: str | None = None
@@ -47,10 +47,10 @@ class ResidualEntry(Entry):
     """[h]"""
     cross_correlation: dict[str, list[Num | None]] = {}
     """Correlation with each channel at each lag."""
-    daily_cycle: DailyCycle | None = None
+    daily_cycle: DailyCycleEntry | None = None
 
 
-class SourceStep(Entry):
+class SourceStep(ResultEntry):
     """A parameter that is changed besides those before."""
 
     path: str = ""
@@ -59,14 +59,14 @@ class SourceStep(Entry):
     sd: dict[str, Num | None] = {}
 
 
-class AllParameters(Entry):
+class AllParameters(ResultEntry):
     """All parameters changed."""
 
     parameters: int = 0
     sd: dict[str, Num | None] = {}
 
 
-class ErrorSourcesEntry(Entry):
+class ErrorSourcesEntry(ResultEntry):
     """Sources of remaining error, parameter by parameter; ``sd`` is by sensor."""
 
     sd: dict[str, Num | None] = {}
@@ -76,7 +76,7 @@ class ErrorSourcesEntry(Entry):
     all_parameters: AllParameters | None = None
 
 
-class TableEntry(Entry):
+class TableEntry(ResultEntry):
     """Any further table."""
 
     title: str = ""
@@ -91,7 +91,7 @@ class TableEntry(Entry):
     """Identifier of the section it belongs to."""
 
 
-class CauseEntry(Entry):
+class CauseEntry(ResultEntry):
     """A cause of the remaining error, with its evidence."""
 
     group: str = ""
@@ -108,7 +108,7 @@ class CauseEntry(Entry):
     same: list[Any] = []
 
 
-class DiagnosisEntry(Entry):
+class DiagnosisEntry(ResultEntry):
     """Causes in their order, and what is expected without them."""
 
     causes: list[CauseEntry] = []
@@ -119,7 +119,7 @@ class DiagnosisEntry(Entry):
     table: TableEntry | None = None
 
 
-class DayRange(Entry):
+class DayRange(ResultEntry):
     """Range of a driver in the calibration and on the other days."""
 
     calibration: list[Num] = []
@@ -127,7 +127,7 @@ class DayRange(Entry):
     outside: Num = 0.0
 
 
-class DaysEntry(Entry):
+class DaysEntry(ResultEntry):
     """Leverage and expected information of each day, and a table of the most important ones."""
 
     days: list[str] = []
@@ -142,7 +142,7 @@ class DaysEntry(Entry):
     table: TableEntry | None = None
 
 
-class LayerDay(Entry):
+class LayerDay(ResultEntry):
     """A day of a phase-change layer."""
 
     label: str = ""
@@ -150,7 +150,7 @@ class LayerDay(Entry):
     enthalpy: list[Num] = []
 
 
-class PhaseChangeEntry(Entry):
+class PhaseChangeEntry(ResultEntry):
     """States of a phase-change layer."""
 
     label: str = ""
@@ -172,7 +172,7 @@ class PhaseChangeEntry(Entry):
     """Facts as rows of name and value."""
 
 
-class QualityEntry(Entry):
+class QualityEntry(ResultEntry):
     """Suspicious values of a measured column."""
 
     channel: str = ""
@@ -184,7 +184,7 @@ class QualityEntry(Entry):
     masked: bool = False
 
 
-class NoteEntry(Entry):
+class NoteEntry(ResultEntry):
     """A remark of the analysis."""
 
     title: str = ""

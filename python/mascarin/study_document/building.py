@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from mascarin.study_document.entry import Entry, Num
+from mascarin.study_document.entry import Num, ResultEntry
 
 
-class LayerEntry(Entry):
+class LayerEntry(ResultEntry):
     """A layer of a construction; two numbers are those of the solid and of the liquid."""
 
     name: str = ""
@@ -29,14 +29,14 @@ class LayerEntry(Entry):
     nodes: int | None = None
 
 
-class ConstructionEntry(Entry):
+class ConstructionEntry(ResultEntry):
     """A construction, from outside to inside."""
 
     name: str = ""
     layers: list[LayerEntry] = []
 
 
-class SurfaceEntry(Entry):
+class SurfaceEntry(ResultEntry):
     """A surface of the building."""
 
     name: str = ""
@@ -56,7 +56,7 @@ class SurfaceEntry(Entry):
     film_inside: str = ""
 
 
-class ZoneEntry(Entry):
+class ZoneEntry(ResultEntry):
     """A zone."""
 
     name: str = ""
@@ -64,14 +64,14 @@ class ZoneEntry(Entry):
     """[m3]"""
 
 
-class WindowEntry(Entry):
+class WindowEntry(ResultEntry):
     """A window and the surface that it is in."""
 
     name: str = ""
     surface: str = ""
 
 
-class ProbeEntry(Entry):
+class ProbeEntry(ResultEntry):
     """A thermometer in a wall."""
 
     name: str = ""
@@ -80,7 +80,7 @@ class ProbeEntry(Entry):
     """From the outside. [m]"""
 
 
-class BuildingEntry(Entry):
+class BuildingEntry(ResultEntry):
     """The building."""
 
     name: str = ""
@@ -97,7 +97,7 @@ class BuildingEntry(Entry):
     """Rows of name and value of modeling choices."""
 
 
-class AssumptionEntry(Entry):
+class AssumptionEntry(ResultEntry):
     """An assumed value."""
 
     path: str = ""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from mascarin.study_document.entry import Entry, Num
+from mascarin.study_document.entry import Num, ResultEntry
 
 
-class SensorEntry(Entry):
+class SensorEntry(ResultEntry):
     """What a sensor is."""
 
     label: str | None = None
@@ -16,7 +16,7 @@ class SensorEntry(Entry):
     """Half-width of the sensor's band, in its unit."""
 
 
-class PeriodEntry(Entry):
+class PeriodEntry(ResultEntry):
     """A named part of the record."""
 
     label: str | None = None
@@ -25,14 +25,14 @@ class PeriodEntry(Entry):
     """Pairs of local times, start and end, ISO 8601 without offset."""
 
 
-class ModelEntry(Entry):
+class ModelEntry(ResultEntry):
     """A model whose results are compared: nominal, fitted, or a variant."""
 
     label: str | None = None
     note: str = ""
 
 
-class MetricValues(Entry):
+class MetricValues(ResultEntry):
     """Errors of a model for a sensor and period, simulated minus measured; further metrics by their name."""
 
     n: int = 0
@@ -62,7 +62,7 @@ class PeriodScores(MetricValues):
         return {name: value for name, value in extra.items() if isinstance(value, MetricValues)}
 
 
-class CriterionEntry(Entry):
+class CriterionEntry(ResultEntry):
     """One test with its limit."""
 
     name: str = ""
@@ -76,7 +76,7 @@ class CriterionEntry(Entry):
     passed: bool = False
 
 
-class BandEntry(Entry):
+class BandEntry(ResultEntry):
     """Prediction interval of a sensor."""
 
     confidence: Num = 0.95
@@ -95,7 +95,7 @@ class BandEntry(Entry):
     """Coverage by period. [-]"""
 
 
-class LedgerTerm(Entry):
+class LedgerTerm(ResultEntry):
     """One term of the energy balance."""
 
     label: str = ""
@@ -103,7 +103,7 @@ class LedgerTerm(Entry):
     """[MJ], positive into the building."""
 
 
-class LedgerEntry(Entry):
+class LedgerEntry(ResultEntry):
     """Energy balance of a run."""
 
     closure: Num | None = None
@@ -112,7 +112,7 @@ class LedgerEntry(Entry):
     model: str | None = None
 
 
-class PublishedValue(Entry):
+class PublishedValue(ResultEntry):
     """An identified parameter of a publication."""
 
     parameter: str = ""
@@ -124,7 +124,7 @@ class PublishedValue(Entry):
     """The values are gamma for it, and the parameter is the half-width of the melting range. [K]"""
 
 
-class InfluentialEntry(Entry):
+class InfluentialEntry(ResultEntry):
     """An influential parameter of a publication."""
 
     parameter: str = ""
@@ -132,7 +132,7 @@ class InfluentialEntry(Entry):
     frequency: int | str | None = None
 
 
-class ReferenceEntry(Entry):
+class ReferenceEntry(ResultEntry):
     """A publication for comparison."""
 
     label: str | None = None
@@ -146,7 +146,7 @@ class ReferenceEntry(Entry):
     """sensor -> period -> metrics."""
 
 
-class TransferScores(Entry):
+class TransferScores(ResultEntry):
     """A sensor of another house or season in a period, before and after the estimates are put into it."""
 
     described: MetricValues = MetricValues()
@@ -156,7 +156,7 @@ class TransferScores(Entry):
     unit: str = ""
 
 
-class TransferEntry(Entry):
+class TransferEntry(ResultEntry):
     """Another house, season or phase."""
 
     building: str = ""

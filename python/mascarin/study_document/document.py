@@ -32,7 +32,7 @@ from mascarin.study_document.comparison import (
     SensorEntry,
     TransferEntry,
 )
-from mascarin.study_document.entry import Entry, Num
+from mascarin.study_document.entry import Num, ResultEntry
 from mascarin.study_document.estimates import (
     CoefficientsEntry,
     CorrelationEntry,
@@ -49,14 +49,14 @@ from mascarin.study_document.estimates import (
 )
 
 
-class ObservedEntry(Entry):
+class ObservedEntry(ResultEntry):
     """What the data are called, such as "virtual experiment"."""
 
     label: str = "measured"
     note: str = ""
 
 
-class InputEntry(Entry):
+class InputEntry(ResultEntry):
     """A file that the study has read."""
 
     name: str = ""
@@ -64,7 +64,7 @@ class InputEntry(Entry):
     note: str = ""
 
 
-class SourceEntry(Entry):
+class SourceEntry(ResultEntry):
     """Where numbers are from."""
 
     text: str = ""
@@ -75,7 +75,7 @@ NO_VALUES = MetricValues()
 """Metrics of what was not compared."""
 
 
-class StudyDocument(Entry):
+class StudyDocument(ResultEntry):
     """The content of ``study.json``; without the results of some step its part of the report is left out.
 
     Mappings are shown in the order in which they are given.

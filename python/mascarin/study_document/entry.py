@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 Num = int | float
 
 
-class Entry(BaseModel):
+class ResultEntry(BaseModel):
     """A part of the results: what is not stated has a default, keys of other versions are carried along."""
 
     model_config = ConfigDict(extra="allow", frozen=True, defer_build=True, protected_namespaces=())

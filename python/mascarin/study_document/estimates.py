@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from mascarin.study_document.entry import Entry, Num
+from mascarin.study_document.entry import Num, ResultEntry
 
 
-class ParameterEntry(Entry):
+class ParameterEntry(ResultEntry):
     """A parameter that was identified (or only declared, without ``fitted``)."""
 
     nominal: Num | None = None
@@ -31,14 +31,14 @@ class ParameterEntry(Entry):
     """What a publication gives for the same quantity before and after its own identification."""
 
 
-class CorrelationEntry(Entry):
+class CorrelationEntry(ResultEntry):
     """Correlation between the estimates."""
 
     paths: list[str] = []
     matrix: list[list[Num | None]] = []
 
 
-class CoefficientsEntry(Entry):
+class CoefficientsEntry(ResultEntry):
     """Effective mean convective coefficients."""
 
     period: str = ""
@@ -47,14 +47,14 @@ class CoefficientsEntry(Entry):
     """model -> law -> value."""
 
 
-class ReferenceValue(Entry):
+class ReferenceValue(ResultEntry):
     """A parameter of a publication in the building as described."""
 
     value: Num | None = None
     unit: str = ""
 
 
-class ProfileEntry(Entry):
+class ProfileEntry(ResultEntry):
     """Profile likelihood of a parameter."""
 
     unit: str = ""
@@ -67,7 +67,7 @@ class ProfileEntry(Entry):
     """Whether the interval ends inside of the range, below and above."""
 
 
-class FormEntry(Entry):
+class FormEntry(ResultEntry):
     """A form of the model."""
 
     label: str = ""
@@ -78,7 +78,7 @@ class FormEntry(Entry):
     """Log density of each day left out. [-]"""
 
 
-class SensorErrorEntry(Entry):
+class SensorErrorEntry(ResultEntry):
     """An estimated error of a sensor."""
 
     estimate: Num = 0.0
@@ -86,7 +86,7 @@ class SensorErrorEntry(Entry):
     stated: Num = 0.0
 
 
-class ModelErrorEntry(Entry):
+class ModelErrorEntry(ResultEntry):
     """Standard deviations of the errors of the model for a sensor. [unit of the sensor]"""
 
     repeating: Num = 0.0
@@ -96,7 +96,7 @@ class ModelErrorEntry(Entry):
     limit: Num = 0.0
 
 
-class DerivedEntry(Entry):
+class DerivedEntry(ResultEntry):
     """A quantity that follows from the estimates, with its interval."""
 
     name: str = ""
@@ -106,7 +106,7 @@ class DerivedEntry(Entry):
     high: Num | None = None
 
 
-class ShareEntry(Entry):
+class ShareEntry(ResultEntry):
     """First-order index of a parameter for an output: the part of the variance that it causes."""
 
     share: Num | None = None
@@ -116,7 +116,7 @@ class ShareEntry(Entry):
     """Signed change of the output from the low to the high end of the range, in the output's unit."""
 
 
-class PeakEntry(Entry):
+class PeakEntry(ResultEntry):
     """A peak of a spectrum."""
 
     frequency: Num = 0
@@ -125,7 +125,7 @@ class PeakEntry(Entry):
     harmonic: int = 1
 
 
-class SpectrumEntry(Entry):
+class SpectrumEntry(ResultEntry):
     """Spectrum of an output over the design's runs."""
 
     frequencies: list[Num] = []
@@ -136,7 +136,7 @@ class SpectrumEntry(Entry):
     peaks: list[PeakEntry] = []
 
 
-class DaySharesEntry(Entry):
+class DaySharesEntry(ResultEntry):
     """First-order indices over the hours of the day."""
 
     hours: list[Num] = []

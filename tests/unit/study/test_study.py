@@ -22,7 +22,7 @@ from mascarin import cli
 from mascarin._io.tables import read_csv
 from mascarin.study_document.comparison import MetricValues
 from mascarin.study_document.document import StudyDocument
-from mascarin.study_document.entry import Entry
+from mascarin.study_document.entry import ResultEntry
 from study_support import BUILDING, NOISE, STUDY, TRUTH, Bench, logger_table
 
 METRICS = {
@@ -123,7 +123,7 @@ def undeclared(entry: object, where: str = "") -> list[str]:
     if isinstance(entry, dict | list):
         pairs = entry.items() if isinstance(entry, dict) else enumerate(entry)
         return [key for name, value in pairs for key in undeclared(value, f"{where}.{name}")]
-    if not isinstance(entry, Entry):
+    if not isinstance(entry, ResultEntry):
         return []
     extra = [] if isinstance(entry, MetricValues) else [f"{where}.{key}" for key in entry.model_extra or {}]
     values = {key: getattr(entry, key) for key in entry.model_fields_set}

@@ -23,7 +23,7 @@ OF_THE_TABLE: Final = (
 FILE_KEYS: Final = ("building", "epw", "tmy", "table", "study")
 
 
-class Table(Part):
+class TableSource(Part):
     """A table of measured columns."""
 
     table: str = Field(
@@ -87,7 +87,7 @@ class Table(Part):
         return {key: getattr(self, key) for key in keys}
 
 
-class MeasuredTable(Table):
+class MeasuredTable(TableSource):
     """A table of measurements, whose columns may have other names in the study and in the building."""
 
     columns: dict[str, str | dict[str, Any]] = Field(
@@ -126,7 +126,7 @@ class MeasuredTable(Table):
         return name
 
 
-class MeasuredWeather(Table):
+class MeasuredWeather(TableSource):
     """Weather from a measured table."""
 
     columns: dict[str, Columns] = Field(description="Climate channel -> column")

@@ -242,7 +242,7 @@ class Limit(Criterion, Part):
     """One limit on one metric, for some or all sensors and periods."""
 
 
-class Published(Part):
+class PublishedScores(Part):
     """One sensor and period of a publication."""
 
     sd: float = Field(ge=0.0, description="Standard deviation of the error [degC]")
@@ -277,7 +277,7 @@ class PublishedParameter(Part):
     )
 
 
-class Reference(Part):
+class Publication(Part):
     """Results of a publication, shown beside those of the study."""
 
     label: str = Field(description="Name in the report")
@@ -290,7 +290,7 @@ class Reference(Part):
         (), description="Its identified parameters, for a table in the form of the publication"
     )
     parameter_note: str = Field("", description="Remark below the title of that table")
-    sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
+    sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], PublishedScores]] = Field(
         description="Sensor -> period -> numbers"
     )
 
@@ -380,7 +380,7 @@ class StudyPlan(Part):
     identification: IdentificationPlan | None = Field(
         None, description="Parameters to identify; without it the building can only be compared"
     )
-    reference: Reference | None = Field(
+    reference: Publication | None = Field(
         None, description="Numbers of a publication, shown beside the results"
     )
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")

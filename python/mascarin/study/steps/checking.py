@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.study.context.context import StudyContext
-    from mascarin.study.context.periods import Span
+    from mascarin.study.context.periods import PeriodSpan
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
@@ -78,7 +78,7 @@ def _elsewhere(study: StudyContext) -> None:
         records.append((f"'{name}'", other))
 
 
-def _compared(study: StudyContext) -> list[Span]:
+def _compared(study: StudyContext) -> list[PeriodSpan]:
     timeline = study.periods.timeline
     return [*timeline.every("identification"), *timeline.every("corroboration")]
 

@@ -7,18 +7,18 @@ from collections.abc import Iterable, Mapping
 from typing import Final
 
 from mascarin._io.limits import at_least, at_most
-from mascarin.verification.suites.verdict import Line
+from mascarin.verification.suites.verdict import VerdictLine
 
 #: What stands in place of numbers of other programs.
 NONE: Final = "none"
 
 
-def standing(lines: Iterable[Line]) -> dict[str, tuple[int, int]]:
+def standing(lines: Iterable[VerdictLine]) -> dict[str, tuple[int, int]]:
     """Count what each program has inside.
 
     Parameters
     ----------
-    lines : iterable of Line
+    lines : iterable of VerdictLine
         Of one suite.
 
     Returns

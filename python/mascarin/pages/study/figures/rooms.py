@@ -34,7 +34,7 @@ _NO_SURFACE: Final = SurfaceEntry()
 
 
 @dataclass(frozen=True)
-class Plan:
+class RoomPlan:
     """Outlines of rooms in a horizontal plane, and walls.
 
     Attributes
@@ -49,7 +49,7 @@ class Plan:
     exact: bool
 
 
-def plan(building: BuildingEntry) -> Plan | None:
+def plan(building: BuildingEntry) -> RoomPlan | None:
     """Outlines of the rooms of a building.
 
     Parameters
@@ -67,11 +67,11 @@ def plan(building: BuildingEntry) -> Plan | None:
         return None
     floors = _floors(building)
     if set(floors) == set(names):
-        return None if _stacked(list(floors.values())) else Plan(floors, exact=True)
+        return None if _stacked(list(floors.values())) else RoomPlan(floors, exact=True)
     walls = _walls(building, names)
     if not _connected(names, walls):
         return None
-    return Plan(_squares(building, names, walls), exact=False)
+    return RoomPlan(_squares(building, names, walls), exact=False)
 
 
 def _floors(building: BuildingEntry) -> dict[str, Array]:
@@ -182,7 +182,7 @@ def _apart(centres: Array, half: Array) -> Array:
     return centres
 
 
-def plan_drawing(study: StudyDocument) -> tuple[Markup, Plan, str] | None:
+def plan_drawing(study: StudyDocument) -> tuple[Markup, RoomPlan, str] | None:
     """The plan with the error of the air temperature of each room; north is up.
 
     Parameters
@@ -259,7 +259,7 @@ def _errors(study: StudyDocument, zone: str, period: str | None) -> list[str]:
     return error_texts
 
 
-def _openings(svg: Svg, building: BuildingEntry, room_plan: Plan, on_page: Any) -> None:
+def _openings(svg: Svg, building: BuildingEntry, room_plan: RoomPlan, on_page: Any) -> None:
     """Windows on their sides of the rooms, and doors between rooms."""
     by_name = {surface.name: surface for surface in building.surfaces}
     for window in building.windows:

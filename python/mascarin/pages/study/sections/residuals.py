@@ -13,7 +13,7 @@ from mascarin.figures.svg.axes import Figure, hour_marks
 from mascarin.figures.svg.chart import Axis, Chart
 from mascarin.pages.study.data.labels import label_of, period_label, unit_of
 from mascarin.pages.study.data.series import Series
-from mascarin.study_document.analysis import DailyCycle, ResidualEntry
+from mascarin.study_document.analysis import DailyCycleEntry, ResidualEntry
 from mascarin.study_document.document import StudyDocument
 
 TITLE = "Analysis of the residuals"
@@ -46,7 +46,7 @@ def _statistics(study: StudyDocument) -> list[dict[str, Any]]:
     """Numbers of each residual: what its samples are worth, and its daily cycle."""
     rows = []
     for sensor, entry in study.residuals.items():
-        cycle = entry.daily_cycle or DailyCycle()
+        cycle = entry.daily_cycle or DailyCycleEntry()
         unit = units.difference(unit_of(study, sensor))
         rows.append(
             {

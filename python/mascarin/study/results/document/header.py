@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.study.context.context import StudyContext
-    from mascarin.study.file.description import Reference, StudyPlan
+    from mascarin.study.file.description import Publication, StudyPlan
 
 
 _WORDS: Final = {
@@ -65,7 +65,7 @@ def header(study: StudyContext, command: str) -> StudyDocument:
     )
 
 
-def _reference(reference: Reference) -> ReferenceEntry:
+def _reference(reference: Publication) -> ReferenceEntry:
     """The publication, as the study states it."""
     return ReferenceEntry.model_validate(reference.model_dump())
 
