@@ -21,6 +21,9 @@ class DailyCycleEntry(ResultEntry):
 class ResidualEntry(ResultEntry):
     """Statistics of the residual of one sensor."""
 
+    unit: str = ""
+    white: bool | None = None
+    """Whether the cumulative periodogram stays within its band."""
     period: str | None = None
     n: int | None = None
     effective_n: Num | None = None

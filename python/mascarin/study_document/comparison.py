@@ -104,10 +104,12 @@ class LedgerTerm(ResultEntry):
 
 
 class LedgerEntry(ResultEntry):
-    """Energy balance of a run."""
+    """Energy balance of a run; heat by each flow is `FLOW_joule`."""
 
     closure: Num | None = None
     """Relative energy-balance residual. [-]"""
+    stored_joule: Num | None = None
+    turnover_joule: Num | None = None
     terms: list[LedgerTerm] = []
     model: str | None = None
 

@@ -87,6 +87,8 @@ class StudyDocument(ResultEntry):
     ('', 1)
     """
 
+    contradictions: list[ContradictionEntry] = []
+    """By what the calibrated model contradicts its data or what is known; first in the file and in the report."""
     title: str = ""
     intro: list[str] = []
     """Introduction, in paragraphs."""
@@ -102,8 +104,6 @@ class StudyDocument(ResultEntry):
     """Commands that give the same results."""
     inputs: list[InputEntry] = []
     versions: dict[str, str] = {}
-    contradictions: list[ContradictionEntry] = []
-    """By what the calibrated model contradicts its data or what is known; shown first."""
     warnings: list[Annotated[str, SkipValidation]] = []
     """Warnings of the runs, with the models that have them; in a run they know their kind."""
     sound: bool = True
