@@ -88,7 +88,7 @@ class StudyDocument(ResultEntry):
     """
 
     contradictions: list[ContradictionEntry] = []
-    """By what the calibrated model contradicts its data or what is known; first in the file and in the report."""
+    """By what the calibrated model contradicts its data or what is known; first in file and report."""
     title: str = ""
     intro: list[str] = []
     """Introduction, in paragraphs."""
