@@ -14,7 +14,7 @@
 # They need Python 3.11 or later, cargo and make, and nothing else.
 
 PYTHON ?= python3
-PYTEST_FLAGS ?= --numprocesses=auto --dist=loadfile
+PYTEST_FLAGS ?= --numprocesses=auto --dist=loadfile --no-loadscope-reorder
 
 ifeq ($(OS),Windows_NT)
 BIN := .venv/Scripts
@@ -70,7 +70,7 @@ test-lowest: $(BUILT)
 	@printf '#!/bin/sh\nexec "$(CURDIR)/$(LOWEST)/bin/python" -m mascarin.cli "$$@"\n' > $(LOWEST)/bin/mascarin
 	@chmod +x $(LOWEST)/bin/mascarin
 	@# Old versions call functions that newer ones of other packages deprecate.
-	PATH="$(CURDIR)/$(LOWEST)/bin:$$PATH" PYTHONPATH=$(CURDIR)/python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile -W ignore::DeprecationWarning
+	PATH="$(CURDIR)/$(LOWEST)/bin:$$PATH" PYTHONPATH=$(CURDIR)/python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder -W ignore::DeprecationWarning
 
 docs: $(BUILT)
 	$(PY) docs/site/build.py target/site
