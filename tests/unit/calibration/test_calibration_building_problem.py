@@ -382,3 +382,21 @@ def test_a_heat_flux_needs_an_uncertainty(
             InputError, match=r"sensors: wall.inside_flux: found no uncertainty, expected one"
         ):
             calibrate(building, climate, logger, sensors={flux: "flux"}, **given)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"mean": ("wall.inside_flux", "wall.outside_flux")},
+        {"use": False},
+        {"periods": {"identification": ("2023-03-02", "2023-03-03")}},
+    ],
+)
+def test_keys_that_only_a_study_reads_are_refused(
+    more: dict[str, Any], building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    logger = Measurements.from_table(table, timezone="UTC+1")
+    sensors = {"core.temperature": Sensor("core", **more)}
+    (key,) = more
+    with pytest.raises(InputError, match=rf"sensors: core\.temperature: found {key}, expected keys"):
+        calibrate(building, climate, logger, sensors=sensors, vary=["surfaces.wall.outside.absorptance"])
