@@ -6,6 +6,7 @@ import ast
 import importlib.util
 import json
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,8 +19,14 @@ from mascarin.simulation.simulation import Simulation
 
 
 @pytest.fixture
-def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(repository / "bench"))
+def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The benches as modules, which do not stay: bench/coverage.py has the name of another package."""
+    folder = repository / "bench"
+    monkeypatch.syspath_prepend(str(folder))
+    yield
+    for name, module in list(sys.modules.items()):
+        if Path(getattr(module, "__file__", None) or "-").parent == folder:
+            del sys.modules[name]
 
 
 #: Attributes of the package and of numpy and pandas, which the benches use.
@@ -316,7 +323,8 @@ def test_counts_are_appended_once_a_commit_and_compared_with_those_before(tmp_pa
 @pytest.mark.usefixtures("bench")
 def test_the_table_over_commits_can_be_read(repository: Path) -> None:
     track = importlib.import_module("track")
-    rows = track.read(repository / "bench" / "tracked.csv")
+    file = repository / "bench" / "tracked.csv"
+    assert file.read_text(encoding="utf-8").splitlines()[0] == "commit,date,machine,case,kind,unit,days,value"
+    rows = track.read(file)
     assert len({(row.commit, row.machine, row.case, row.kind, row.unit) for row in rows}) == len(rows)
-    assert rows
     assert all(row.value > 0 for row in rows)
