@@ -128,7 +128,8 @@ def sensor_candidates(series: SensorSeries) -> list[Candidate]:
     >>> hours = np.arange(72.0)
     >>> grid = DayGrid.of(hours, interval=1.0, sensors=1)
     >>> room = 20.0 + np.sin(hours / 4.0)[:, None]
-    >>> stated = Series(("room",), room, np.ones((72, 1), bool), np.array([0.1]), 3600.0, ("degC",), grid)
+    >>> used = np.ones((72, 1), bool)
+    >>> stated = SensorSeries(("room",), room, used, np.array([0.1]), 3600.0, ("degC",), grid)
     >>> sorted({one.what for one in sensor_candidates(stated)})
     ['clock', 'drift', 'gain', 'offset', 'scale']
     """

@@ -37,7 +37,7 @@ class ComfortSeries:
     Examples
     --------
     >>> import pandas as pd
-    >>> Series(pd.date_range("2001-07-01", periods=1, tz="UTC"), np.array([20.0]), "room", "degC").unit
+    >>> ComfortSeries(pd.date_range("2001-07-01", periods=1, tz="UTC"), np.array([20.0]), "room", "degC").unit
     'degC'
     """
 
@@ -65,7 +65,7 @@ def carpet(ax: Axes, series: ComfortSeries, *, centre: float | None = None) -> N
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> carpet(ax, Series(index, np.arange(48.0), "air", "degC"))
+    >>> carpet(ax, ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> ax.get_ylabel()
     'hour of the day'
     """
@@ -110,7 +110,7 @@ def grid(series: ComfortSeries) -> tuple[Array, np.datetime64, int]:
     --------
     >>> import pandas as pd
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
-    >>> cells, first, rows = grid(Series(index, np.arange(48.0), "air", "degC"))
+    >>> cells, first, rows = grid(ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> cells.shape, float(cells[3, 1])
     ((24, 2), 27.0)
     """
@@ -150,7 +150,7 @@ def with_limits(
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> with_limits(ax, Series(index, np.arange(48.0), "operative temperature", "degC"), 20.0, 26.0)
+    >>> with_limits(ax, ComfortSeries(index, np.arange(48.0), "operative temperature", "degC"), 20.0, 26.0)
     >>> ax.get_ylabel()
     'operative temperature [°C]'
     """
@@ -184,7 +184,7 @@ def daily_profile(ax: Axes, series: ComfortSeries, months: Sequence[int] = ()) -
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> daily_profile(ax, Series(index, np.arange(48.0), "air", "degC"))
+    >>> daily_profile(ax, ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> len(ax.lines)
     1
     """

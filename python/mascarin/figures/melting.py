@@ -36,7 +36,7 @@ class CapacityCurve(NamedTuple):
 
     Examples
     --------
-    >>> Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4]).label
+    >>> CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4]).label
     'wax, heating'
     """
 
@@ -71,7 +71,7 @@ def draw(curves: Sequence[CapacityCurve], ax: Axes | Sequence[Axes] | None = Non
 
     Examples
     --------
-    >>> figure = draw([Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])])
+    >>> figure = draw([CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])])
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['enthalpy [kJ/kg]', 'apparent specific heat [kJ/(kg K)]']
     """
@@ -154,7 +154,7 @@ def panels(groups: Mapping[str, Sequence[CapacityCurve]]) -> Figure:
 
     Examples
     --------
-    >>> wax = Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])
+    >>> wax = CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])
     >>> [axes.get_title() for axes in panels({"wax": [wax]}).axes if axes.get_visible()]
     ['wax']
     """

@@ -276,7 +276,7 @@ def spectrum(
     --------
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
-    >>> line = Line(3, 0.9, "fundamental", "a")
+    >>> line = SpectrumLine(3, 0.9, "fundamental", "a")
     >>> handles, labels = spectrum(ax, np.array([0.0, 0.1, 0.9]), 0.5, [line], title="y")
     >>> labels
     ['3  90.0 %  a', 'noise stays below 50 % (95 %)']

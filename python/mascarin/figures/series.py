@@ -39,7 +39,7 @@ class SeriesCurve(NamedTuple):
     Examples
     --------
     >>> import numpy as np
-    >>> Curve("wind", np.array([3.0, 4.0]), mean=True).name
+    >>> SeriesCurve("wind", np.array([3.0, 4.0]), mean=True).name
     'wind'
     """
 
@@ -132,7 +132,7 @@ def columns(
     >>> from datetime import UTC
     >>> edges = np.array(["2001-07-01T00:00", "2001-07-01T01:00"], dtype="datetime64[s]")
     >>> ax = Figure().subplots()
-    >>> columns(ax, edges, [Curve("air", np.array([20.0, 21.0]), mean=False)], "degC", UTC, "UTC")
+    >>> columns(ax, edges, [SeriesCurve("air", np.array([20.0, 21.0]), mean=False)], "degC", UTC, "UTC")
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('local time (UTC)', '[°C]')
     """

@@ -14,7 +14,7 @@ class WarningKind(StrEnum):
 
     Examples
     --------
-    >>> Kind("vapour_balance") in UNSOUND, Kind.LATENT in UNSOUND
+    >>> WarningKind("vapour_balance") in UNSOUND, WarningKind.LATENT in UNSOUND
     (True, False)
     """
 
@@ -51,9 +51,9 @@ class RunWarning(str):
 
     Examples
     --------
-    >>> line = RunWarning("the energy balance does not close", Kind.ENERGY_BALANCE)
+    >>> line = RunWarning("the energy balance does not close", WarningKind.ENERGY_BALANCE)
     >>> line.after("tampa").kind
-    <Kind.ENERGY_BALANCE: 'energy_balance'>
+    <WarningKind.ENERGY_BALANCE: 'energy_balance'>
     >>> print(line.after("tampa"))
     tampa: the energy balance does not close
     """
@@ -100,7 +100,7 @@ def of_kind(kind: WarningKind, lines: Iterable[str]) -> list[RunWarning]:
 
     Examples
     --------
-    >>> [line.kind.value for line in of_kind(Kind.BUILDING, ["zones.room: a volume of 0.3 m3"])]
+    >>> [line.kind.value for line in of_kind(WarningKind.BUILDING, ["zones.room: a volume of 0.3 m3"])]
     ['building']
     """
     return [line if isinstance(line, RunWarning) else RunWarning(line, kind) for line in lines]

@@ -28,7 +28,7 @@ def standing(lines: Iterable[VerdictLine]) -> dict[str, tuple[int, int]]:
 
     Examples
     --------
-    >>> line = Line("1", "load", "W", 101.0, 100.0, (99.0, 102.0), {"A": 99.5, "B": 103.0})
+    >>> line = VerdictLine("1", "load", "W", 101.0, 100.0, (99.0, 102.0), {"A": 99.5, "B": 103.0})
     >>> standing([line])
     {'A': (1, 1), 'B': (0, 1)}
     """

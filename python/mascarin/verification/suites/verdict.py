@@ -62,7 +62,7 @@ class VerdictLine:
 
     Examples
     --------
-    >>> line = Line("1", "load", "W", 101.0, 100.0, around(100.0, 2.0), {"A": 99.5, "B": 103.0})
+    >>> line = VerdictLine("1", "load", "W", 101.0, 100.0, around(100.0, 2.0), {"A": 99.5, "B": 103.0})
     >>> line.inside, line.rank
     (True, (2, 3))
     """
@@ -113,7 +113,7 @@ class VerdictLine:
 
         Examples
         --------
-        >>> line = Line("1", "load", "W", 104.0, 100.0, around(100.0, 2.0))
+        >>> line = VerdictLine("1", "load", "W", 104.0, 100.0, around(100.0, 2.0))
         >>> line.judged({}, {}).verdict.value
         'miss'
         >>> line.judged({("1", "load"): KnownMiss(4.0, "films are fixed")}, {}).verdict.value
