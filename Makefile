@@ -48,6 +48,7 @@ help:
 	@echo "make coverage     build, run the Python tests, print the lines that no test reaches"
 	@echo "make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares"
 	@echo "make docs   build, make the documentation site: target/site/html"
+	@echo "make track  count the instructions of the engine, append them to bench/tracked.csv"
 	@echo "make bench  build, measure, and write the tables of docs/speed.md;" \
 		"make bench ENERGYPLUS=path with its peer"
 
