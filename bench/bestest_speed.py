@@ -32,7 +32,7 @@ import numpy as np
 from mascarin.building import load
 from mascarin.simulation.simulation import Simulation
 from mascarin.verification.bestest.catalogue import CASES
-from mascarin.verification.bestest.quantities import HOURS, Year, quantities
+from mascarin.verification.bestest.quantities import HOURS, BestestYear, quantities
 from mascarin.verification.bestest.running import outputs
 from mascarin.verification.bestest.weather import read
 from mascarin.weather import Climate
@@ -78,7 +78,7 @@ def one_run(climate: Climate, step: str, repeat: int) -> Row:
     def year() -> None:
         results = simulation.run()
         series = {name: np.asarray(results.hourly(name), dtype=np.float64)[-HOURS:] for name in wanted}
-        rows = quantities({CASE.name: Year(CASE, series, results.energy.closure)}, CASE)
+        rows = quantities({CASE.name: BestestYear(CASE, series, results.energy.closure)}, CASE)
         found.update({row.quantity: row.value for row in rows})
 
     seconds = best(year, repeat, time.process_time)

@@ -43,13 +43,13 @@ PROGRAM = TARGET / "release" / "mascarin-bench"
 STAGES_A_DAY = 192  # two in every step of 900 s
 
 
-def bench(cases: Path) -> None:
-    """Run criterion on the cases, which also builds the program that is counted; its output is passed on."""
+def build(*, times: bool, cases: Path) -> None:
+    """Build the program that is counted; with times, run criterion on the cases. Output is passed on."""
     cargo = shutil.which("cargo")
     if cargo is None:
         raise SystemExit("cargo: not found; expected Rust 1.89 or later, see rustup.rs")
-    command = [cargo, "bench", "--bench", "simulate", "--locked", "--target-dir", str(TARGET)]
-    command += ["--manifest-path", str(ROOT / "bench/engine/Cargo.toml")]
+    command = [cargo, *(("bench", "--bench", "simulate") if times else ("build", "--release")), "--locked"]
+    command += ["--target-dir", str(TARGET), "--manifest-path", str(ROOT / "bench/engine/Cargo.toml")]
     environment = {
         **os.environ,
         "MASCARIN_BENCH_CASES": str(cases),
@@ -127,7 +127,7 @@ def main() -> None:
     given = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         cases = engine_cases.write(Path(folder), given.days)
-        bench(Path(folder))
+        build(times=True, cases=Path(folder))
         best = peak()
         worth = counting.disassembled(PROGRAM) if counting.at_hand() else None
         rows = [row(case.stem, case, given, best, worth) for case in cases]

@@ -3,6 +3,7 @@ from . import calibration as calibration
 from . import comfort as comfort
 from . import ensemble as ensemble
 from . import materials as materials
+from . import measurements as measurements
 from . import optimization as optimization
 from . import physics as physics
 from . import sensitivity as sensitivity
@@ -18,6 +19,7 @@ from .errors import InputError as InputError
 from .errors import MascarinError as MascarinError
 from .errors import SolverError as SolverError
 from .materials.dsc import from_dsc as from_dsc
+from .measurements.sensor import Sensor as Sensor
 from .sensitivity import Sensitivity as Sensitivity
 from .sensitivity import sensitivity_analysis as sensitivity_analysis
 from .simulation.derivatives import gradient as gradient

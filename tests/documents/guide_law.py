@@ -20,10 +20,10 @@ from mascarin.building.parts.envelope import convection
 from mascarin.examples import box, box_climate
 from mascarin.figures import text
 from mascarin.fmu import export
+from mascarin.measurements import Sensor
 from mascarin.pages.run import page as run_page
 from mascarin.simulation import Mean
 from mascarin.study.diagnosis.other_laws import forms
-from mascarin.validation.sensors import Sensor
 from sitepages import assemble, keys, laws
 from sitepages.snippets import Snippets
 

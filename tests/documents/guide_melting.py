@@ -15,7 +15,7 @@ import numpy as np
 
 import mascarin as mc
 from mascarin.fmu import export
-from mascarin.validation.sensors import Sensor
+from mascarin.measurements import Sensor
 from mascarin.verification.analytical import setup
 from sitepages import keys
 from sitepages.snippets import Snippets

@@ -16,10 +16,10 @@ from mascarin.building.parameters import sources
 from mascarin.examples import box, box_climate
 from mascarin.figures import text
 from mascarin.fmu import export
+from mascarin.measurements import Sensor
 from mascarin.physics import STEFAN_BOLTZMANN
 from mascarin.simulation import Mean
 from mascarin.study.diagnosis.other_laws import forms
-from mascarin.validation.sensors import Sensor
 from sitepages import assemble, keys, laws
 from sitepages.snippets import Snippets
 

@@ -14,6 +14,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 # From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
     {"errors", "engine_errors", "linear_algebra", "physics", "progress", "_engine", "_io"},
+    {"study_document"},
     {"figures"},
     {"tables"},
     {"materials"},
@@ -21,6 +22,7 @@ ORDER = [
     {"weather"},
     {"comfort"},
     {"simulation", "energyplus"},
+    {"measurements"},
     {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},

@@ -6,6 +6,7 @@ import ast
 import importlib.util
 import json
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,8 +19,14 @@ from mascarin.simulation.simulation import Simulation
 
 
 @pytest.fixture
-def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(repository / "bench"))
+def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The benches as modules, which do not stay: bench/coverage.py has the name of another package."""
+    folder = repository / "bench"
+    monkeypatch.syspath_prepend(str(folder))
+    yield
+    for name, module in list(sys.modules.items()):
+        if Path(getattr(module, "__file__", None) or "-").parent == folder:
+            del sys.modules[name]
 
 
 #: Attributes of the package and of numpy and pandas, which the benches use.
@@ -287,3 +294,37 @@ def test_sequences_of_the_cell_go_on_where_they_were_stopped(tmp_path: Path) -> 
     assert more.trace.replayed == first.trace.cost.size
     assert [m.cost for m in more.minima[:3]] == [m.cost for m in first.minima]
     assert len(more.minima) == 5
+
+
+@pytest.mark.usefixtures("bench")
+def test_counts_are_appended_once_a_commit_and_compared_with_those_before(tmp_path: Path) -> None:
+    track = importlib.import_module("track")
+    file = tmp_path / "tracked.csv"
+
+    def row(commit: str, value: int, machine: str = "linux") -> Any:
+        return track.Row(commit, "2026-11-28", machine, "cell", "run", "instructions", 3, value)
+
+    assert track.read(file) == []
+    track.append(file, [row("aaa", 1000)])
+    track.append(file, [row("bbb", 1100)])
+    track.append(
+        file, [row("bbb", 1200), row("bbb", 900, "windows")]
+    )  # counted again, and on another machine
+    rows = track.read(file)
+    assert [(r.commit, r.machine, r.value) for r in rows] == [
+        ("aaa", "linux", 1000), ("bbb", "linux", 1200), ("bbb", "windows", 900),
+    ]  # fmt: skip
+    (change,) = track.changes(rows, [row("ccc", 1260), row("ccc", 5, "other")])
+    assert change[1] == pytest.approx(1.05)
+    assert track.changes(rows, [row("bbb", 1)]) == []  # the commit itself is none before
+    assert "| 2026-11-28 | aaa | linux | 0.001 |" in track.table(rows)
+
+
+@pytest.mark.usefixtures("bench")
+def test_the_table_over_commits_can_be_read(repository: Path) -> None:
+    track = importlib.import_module("track")
+    file = repository / "bench" / "tracked.csv"
+    assert file.read_text(encoding="utf-8").splitlines()[0] == "commit,date,machine,case,kind,unit,days,value"
+    rows = track.read(file)
+    assert len({(row.commit, row.machine, row.case, row.kind, row.unit) for row in rows}) == len(rows)
+    assert all(row.value > 0 for row in rows)

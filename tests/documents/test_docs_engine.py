@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 import os
 import re
 import shutil
@@ -23,12 +24,16 @@ _TESTS = re.compile(r"#\[cfg\(test\)\](?=\n(?:#\[.*\]\n)*mod \w*tests\b)")
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the project in which every step of the page is done."""
+    """A copy of the project in which every step of the page is done.
+
+    It stays in the folder of the build, and only files with another content are written: where neither the
+    engine nor the page has changed since the last time, nothing is compiled again.
+    """
     root = tmp_path_factory.mktemp("engine")
     for name in ("Cargo.toml", "Cargo.lock"):
         shutil.copy(ROOT / name, root / name)
-    shutil.copytree(ROOT / "crates", root / "crates")
-    shutil.copytree(ROOT / "python" / "mascarin", root / "python" / "mascarin")
+    for name in ("crates", "python/mascarin"):
+        shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
     steps = steps_of(PAGE.read_text(encoding="utf-8"))
     assert len(steps) >= 3
     done = {applied(step, root) for step in steps}
@@ -36,7 +41,37 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if file not in done:
             text = file.read_text(encoding="utf-8")
             file.write_text(_TESTS.sub("#[cfg(any())]", text), encoding="utf-8")
-    return root
+    return mirrored(root, TARGET / "copy")
+
+
+def mirrored(new: Path, folder: Path) -> Path:
+    """Give a folder the files of another one; those with the same content keep their time."""
+    wanted_files = {path.relative_to(new) for path in new.rglob("*") if path.is_file()}
+    for path in folder.rglob("*"):
+        if path.is_file() and path.relative_to(folder) not in wanted_files:
+            path.unlink()
+    for name in sorted(wanted_files):
+        path = folder / name
+        if not path.exists() or not filecmp.cmp(new / name, path, shallow=False):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(new / name, path)
+    return folder
+
+
+def test_a_mirror_writes_only_what_differs(tmp_path: Path) -> None:
+    new, folder = tmp_path / "new", tmp_path / "folder"
+    (new / "src").mkdir(parents=True)
+    (new / "src" / "same.rs").write_text("a", encoding="utf-8")
+    (new / "src" / "other.rs").write_text("b", encoding="utf-8")
+    mirrored(new, folder)
+    os.utime(folder / "src" / "same.rs", (1.0, 1.0))
+    (folder / "src" / "gone.rs").write_text("c", encoding="utf-8")
+    (new / "src" / "other.rs").write_text("B", encoding="utf-8")  # of the same length
+    mirrored(new, folder)
+    assert {path.name: path.read_text(encoding="utf-8") for path in (folder / "src").iterdir()} == {
+        "same.rs": "a", "other.rs": "B",
+    }  # fmt: skip
+    assert (folder / "src" / "same.rs").stat().st_mtime == 1.0
 
 
 def cargo(copy: Path, *words: str, **settings: str) -> str:
@@ -90,8 +125,16 @@ def test_an_output_is_a_row_of_one_file() -> None:
 @pytest.fixture(scope="module")
 def package(copy: Path) -> Path:
     """The Python package of the copy with its engine; the folder to import from."""
-    # A little optimised: unoptimised, a stage does not fit into the stack of Python's threads.
-    cargo(copy, "build", "--package", "mascarin-python", CARGO_PROFILE_DEV_OPT_LEVEL="1")
+    # A little optimised: unoptimised, a stage does not fit into the stack of Python's threads. Otherwise as
+    # the library for users, which also has less to compile.
+    settings = {
+        "OPT_LEVEL": "1",
+        "CODEGEN_UNITS": "16",
+        "DEBUG_ASSERTIONS": "false",
+        "OVERFLOW_CHECKS": "false",
+    }
+    profile = {f"CARGO_PROFILE_DEV_{key}": value for key, value in settings.items()}
+    cargo(copy, "build", "--package", "mascarin-python", **profile)
     library = next(
         TARGET / "debug" / name
         for name in ("lib_engine.so", "lib_engine.dylib", "_engine.dll")

@@ -40,10 +40,10 @@ SECTIONS = (
     ("Each of `variants`", description.Variant),
     ("Each of `transfer`", description.Transfer),
     ("Each form of each of `alternatives`", description.Alternative),
-    ("`reference`", description.Reference),
+    ("`reference`", description.Publication),
     ("Each of `reference.influential`", description.Influential),
     ("Each of `reference.parameters`", description.PublishedParameter),
-    ("Each period of each of `reference.sensors`", description.Published),
+    ("Each period of each of `reference.sensors`", description.PublishedScores),
 )
 
 
@@ -126,9 +126,9 @@ def test_every_kind_of_section_is_on_the_page() -> None:
         for kind in [*vars(description).values(), *vars(data_sources).values()]
         if isinstance(kind, type)
         and issubclass(kind, BaseModel)
-        and kind.__module__.startswith("mascarin.study.")
+        and kind.__module__.startswith(("mascarin.study.", "mascarin.measurements."))
     }
-    bases = {description.StudyPlan, data_sources.Table}
+    bases = {description.StudyPlan, data_sources.TableSource}
     assert kinds | {GivenStart} == {kind for _, kind in SECTIONS} | bases
     for kind in kinds:
         for name, field in kind.model_fields.items():

@@ -225,3 +225,18 @@ def test_the_paper_cites_what_its_references_list(repository: Path) -> None:
         assert (repository / "paper" / picture).is_file()
     # A paper of that journal has 750 to 1750 words.
     assert 750 <= len(text.split()) <= 1750
+
+
+def test_long_files_of_tests_exist_and_begin_first(repository: Path) -> None:
+    files = {path.name for path in (repository / "tests").rglob("test_*.py")}
+    text = (repository / "tests" / "conftest.py").read_text(encoding="utf-8")
+    long = re.findall(r'"(test_\w+\.py)"', text.partition("LONG = (")[2].partition(")")[0])
+    assert len(long) > 3
+    assert set(long) <= files
+    for name in ("Makefile", ".github/workflows/test.yml"):
+        runs = (repository / name).read_text(encoding="utf-8").count("--dist=loadfile")
+        assert (
+            runs
+            == (repository / name).read_text(encoding="utf-8").count("loadfile --no-loadscope-reorder")
+            > 0
+        )

@@ -15,6 +15,7 @@ from mascarin.pages.study import render
 from mascarin.pages.study.data.series import Column, Series
 from mascarin.pages.study.figures.comparison_data import compared_sensors
 from mascarin.pages.study.page import context, coverage_facts
+from mascarin.study_document.document import StudyDocument
 from test_report import Outline
 
 
@@ -61,7 +62,7 @@ def bands_study() -> dict[str, Any]:
 
 
 def test_the_coverage_of_all_values_and_of_the_lowest_sensor_is_at_the_top() -> None:
-    (fact,) = coverage_facts(bands_study())
+    (fact,) = coverage_facts(StudyDocument.read(bands_study()))
     # 300 values with 90 % and 100 with 50 %.
     assert fact["value"] == "80\u00a0%"
     assert "asked: 95\u00a0%" in fact["note"]
@@ -69,7 +70,7 @@ def test_the_coverage_of_all_values_and_of_the_lowest_sensor_is_at_the_top() -> 
 
 
 def test_units_are_not_mixed_in_a_headline() -> None:
-    facts = context(bands_study(), Series("2024-01-01T00:00", 900.0))["facts"]
+    facts = context(StudyDocument.read(bands_study()), Series("2024-01-01T00:00", 900.0))["facts"]
     errors = [fact["value"] for fact in facts if fact["name"].startswith("Error of")]
     assert errors == ["0.12\u00a0K", "40.00\u00a0W"]
 
@@ -88,7 +89,7 @@ def test_the_error_is_in_its_band_exactly_where_the_measured_value_is() -> None:
 
 
 def test_the_band_of_a_report_is_that_of_its_series() -> None:
-    study = bands_study()
+    study = StudyDocument.read(bands_study())
     values = {"observed": [20.0, 21.0], "fitted": [20.5, 20.5], "expected": [20.2, 20.4], "band": [0.3, 0.5]}
     columns = {f"{key}/a": Column(np.array(v), "Air", "degC") for key, v in values.items()}
     _, found = compared_sensors(study, Series("2024-01-01T00:00", 900.0, columns), slice(0, 2), 10)

@@ -13,6 +13,8 @@ from mascarin import load
 from mascarin.examples import FOLDER
 from mascarin.pages.study.figures import rooms
 from mascarin.study.results.document.building import building_entry
+from mascarin.study_document.building import BuildingEntry
+from mascarin.study_document.document import StudyDocument
 
 
 def wall(inside: str, outside: str, azimuth: float, area: float = 10.0) -> dict[str, Any]:
@@ -36,7 +38,7 @@ def house() -> dict[str, Any]:
 
 
 def test_rooms_stand_at_the_side_of_their_facades_and_do_not_overlap() -> None:
-    found = rooms.plan(house())
+    found = rooms.plan(BuildingEntry.model_validate(house()))
     assert found is not None
     assert not found.exact
     centre = {name: outline.mean(axis=0) for name, outline in found.outlines.items()}
@@ -55,7 +57,7 @@ def test_floors_with_vertices_are_drawn_as_they_are() -> None:
         floor = [[x, y, 0], [x, y + 5, 0], [x + 6, y + 5, 0], [x + 6, y, 0]]
         below = wall(zone, "ground", 0.0, area=30.0)
         building["surfaces"].append({**below, "tilt": 180.0, "vertices": floor})
-    found = rooms.plan(building)
+    found = rooms.plan(BuildingEntry.model_validate(building))
     assert found is not None
     assert found.exact
     assert found.outlines["ne"][:, :2].tolist() == [[6, 5], [6, 10], [12, 10], [12, 5]]
@@ -75,7 +77,7 @@ def test_the_drawing_has_names_errors_windows_and_doors() -> None:
         },
         "periods": {"corroboration": {"label": "Free float"}},
     }
-    drawing, _, period = rooms.plan_drawing(study) or pytest.fail("no plan")
+    drawing, _, period = rooms.plan_drawing(StudyDocument.read(study)) or pytest.fail("no plan")
     assert period == "Free float"
     assert re.findall(r">([^<>]+)</text>", drawing)[:6] == [
         "nw", "ne", "Living &lt;room&gt;", "0.21 K", "−17 W", "se",
@@ -92,7 +94,7 @@ def test_no_plan_of_one_room_or_of_too_many(count: int) -> None:
     names = [f"z{k}" for k in range(count)]
     walls = [wall(one, other, 0.0) for one, other in pairwise(names)]
     building = {"zones": [{"name": name, "volume": 40.0} for name in names], "surfaces": walls}
-    assert rooms.plan(building) is None
+    assert rooms.plan(BuildingEntry.model_validate(building)) is None
 
 
 def test_rooms_above_each_other_have_no_plan() -> None:
@@ -100,7 +102,7 @@ def test_rooms_above_each_other_have_no_plan() -> None:
         "zones": [{"name": "room", "volume": 27.0}, {"name": "gap", "volume": 2.0}],
         "surfaces": [wall("room", "outdoors", 0.0), {**wall("room", "gap", 0.0), "tilt": 0.0}],
     }
-    assert rooms.plan(building) is None
+    assert rooms.plan(BuildingEntry.model_validate(building)) is None
 
 
 def test_the_rooms_of_the_twin_house_stand_as_they_do_there() -> None:
@@ -115,4 +117,4 @@ def test_the_rooms_of_the_twin_house_stand_as_they_do_there() -> None:
     assert y["child"] < y["bath"] < y["bedroom"]
     assert y["living"] < min(y["kitchen"], y["doorway"])
     # A side that faces the mean of two columns says so.
-    assert "mean of attic_east_AT and attic_west_AT" in {one["outside"] for one in building["surfaces"]}
+    assert "mean of attic_east_AT and attic_west_AT" in {one.outside for one in building.surfaces}

@@ -12,9 +12,14 @@ import report_example
 from mascarin.pages.study import write
 from mascarin.pages.study.page import coverage_facts
 from mascarin.pages.study.sections import summary
+from mascarin.study_document.analysis import ContradictionEntry
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+
+NOTE = ContradictionEntry(text="x")
 
 
 def criterion(value: float, *, sensor: str = "room_air", period: str = "blind") -> dict[str, Any]:
@@ -24,14 +29,15 @@ def criterion(value: float, *, sensor: str = "room_air", period: str = "blind") 
     }  # fmt: skip
 
 
-def study(**entries: Any) -> dict[str, Any]:
-    return {
+def study(**entries: Any) -> StudyDocument:
+    content = {
         "title": "A study",
         "models": {"fitted": {"label": "fitted"}},
         "periods": {"blind": {"label": "Blind days"}},
         "sensor_info": {"room_air": {"label": "Room air", "unit": "degC"}},
         **entries,
     }
+    return StudyDocument.read(content)
 
 
 @pytest.mark.parametrize(
@@ -63,7 +69,7 @@ def test_the_verdict_says_what_bands_hold_and_what_contradicts() -> None:
     assert good.startswith(fact["value"])
     assert good.startswith("76\u00a0% of the values of blind days lie in its prediction bands of 95\u00a0%")
     assert "no contradiction" in good
-    bad = summary.verdict(complete | {"contradictions": [{"text": "x"}, {"text": "y"}]})[-1]
+    bad = summary.verdict(complete.model_copy(update={"contradictions": [NOTE, NOTE]}))[-1]
     assert "contradicts its data or what is known 2 times" in bad
     assert "no contradiction" not in bad
     assert summary.verdict(study()) == []

@@ -17,9 +17,9 @@ from mascarin.ensemble import sweep
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES, box, box_climate
 from mascarin.fmu import export
+from mascarin.measurements import Sensor
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
-from mascarin.validation.sensors import Sensor
 from mascarin.verification.analytical import setup
 
 TARP = (

@@ -19,8 +19,8 @@ from mascarin.verification.suites.suite import Suite, chosen, suites
 from mascarin.verification.suites.verdict import (
     WITHOUT_NUMBER,
     KnownMiss,
-    Line,
-    Verdict,
+    SuiteVerdict,
+    VerdictLine,
     around,
     largest,
 )
@@ -34,27 +34,27 @@ def folder(suite: Suite, data_dir: Path) -> Path:
 
 
 @cache
-def lines_of(name: str, data_dir: Path) -> list[Line]:
+def lines_of(name: str, data_dir: Path) -> list[VerdictLine]:
     suite = suites()[name]
     return list(suite.lines(CaseData(folder(suite, data_dir))))
 
 
 #: Number of lines by suite and verdict.
 EXPECTED = {
-    "airflow": {Verdict.INSIDE: 15},
-    "bland": {Verdict.INSIDE: 15},
-    "en_iso_13791": {Verdict.INSIDE: 76, Verdict.KNOWN_MISS: 8},
-    "etna": {Verdict.INSIDE: 8},
+    "airflow": {SuiteVerdict.INSIDE: 15},
+    "bland": {SuiteVerdict.INSIDE: 15},
+    "en_iso_13791": {SuiteVerdict.INSIDE: 76, SuiteVerdict.KNOWN_MISS: 8},
+    "etna": {SuiteVerdict.INSIDE: 8},
     "ground_coupling": {
-        Verdict.INSIDE: 11,
-        Verdict.KNOWN_MISS: 11,
-        Verdict.NOT_EXPRESSIBLE: 2,
-        Verdict.NOT_RUN: 1,
+        SuiteVerdict.INSIDE: 11,
+        SuiteVerdict.KNOWN_MISS: 11,
+        SuiteVerdict.NOT_EXPRESSIBLE: 2,
+        SuiteVerdict.NOT_RUN: 1,
     },
-    "multizone": {Verdict.INSIDE: 3, Verdict.NOT_RUN: 1},
-    "rp1052": {Verdict.INSIDE: 98, Verdict.NOT_EXPRESSIBLE: 3},
-    "simquality": {Verdict.INSIDE: 63, Verdict.NOT_EXPRESSIBLE: 2},
-    "weather_drivers": {Verdict.INSIDE: 60},
+    "multizone": {SuiteVerdict.INSIDE: 3, SuiteVerdict.NOT_RUN: 1},
+    "rp1052": {SuiteVerdict.INSIDE: 98, SuiteVerdict.NOT_EXPRESSIBLE: 3},
+    "simquality": {SuiteVerdict.INSIDE: 63, SuiteVerdict.NOT_EXPRESSIBLE: 2},
+    "weather_drivers": {SuiteVerdict.INSIDE: 60},
 }
 
 
@@ -66,12 +66,12 @@ def test_every_suite_is_tested() -> None:
 @pytest.mark.parametrize("name", EXPECTED)
 def test_numbers_of_a_suite(name: str, data_dir: Path) -> None:
     suite, lines = suites()[name], lines_of(name, data_dir)
-    counts: dict[Verdict, int] = {}
+    counts: dict[SuiteVerdict, int] = {}
     for line in lines:
         counts[line.verdict] = counts.get(line.verdict, 0) + 1
-    assert counts == EXPECTED[name], [line for line in lines if line.verdict == Verdict.MISS]
+    assert counts == EXPECTED[name], [line for line in lines if line.verdict == SuiteVerdict.MISS]
     # A known miss that is none any more has to leave the list.
-    missed = {(line.case, line.quantity) for line in lines if line.verdict == Verdict.KNOWN_MISS}
+    missed = {(line.case, line.quantity) for line in lines if line.verdict == SuiteVerdict.KNOWN_MISS}
     assert missed == suite.known_misses.keys()
     assert all(math.isfinite(line.value) for line in lines if line.verdict not in WITHOUT_NUMBER)
 
@@ -82,7 +82,7 @@ def test_the_page_states_the_numbers(name: str, data_dir: Path, repository: Path
     row, beside = (line for line in page.splitlines() if line.startswith(f"| `{name}` |"))
     counts = EXPECTED[name]
     judged = sum(count for verdict, count in counts.items() if verdict not in WITHOUT_NUMBER)
-    result = f"{counts[Verdict.INSIDE]} of {judged}"
+    result = f"{counts[SuiteVerdict.INSIDE]} of {judged}"
     assert f"| {result} |" in row
     # The table of all suites beside all programs is made of the data.
     assert beside == f"| `{name}` | {result} | {in_words(standing(lines_of(name, data_dir)))} |"
@@ -93,7 +93,7 @@ def test_the_page_states_the_programs_of_standard_140(repository: Path) -> None:
     page = (repository / "docs" / "suites.md").read_text(encoding="utf-8")
     published = ranges().values()
     lines = [
-        Line(row.case, row.quantity, row.unit, math.nan, row.mean, (row.low, row.high), row.programs)
+        VerdictLine(row.case, row.quantity, row.unit, math.nan, row.mean, (row.low, row.high), row.programs)
         for row in published
     ]
     inside = len(lines) - len(suites()[OF_BESTEST].known_misses)
@@ -175,20 +175,24 @@ REMOVED: dict[str, tuple[Callable[[Tree], Tree], ...]] = {
 def test_a_suite_fails_without_its_physics(name: str, change: Callable[[Tree], Tree], data_dir: Path) -> None:
     suite = suites()[name]
     lines = suite.lines(CaseData(folder(suite, data_dir), change))
-    assert any(line.verdict == Verdict.MISS for line in lines)
+    assert any(line.verdict == SuiteVerdict.MISS for line in lines)
 
 
 def test_known_misses_may_not_grow() -> None:
-    line = Line("1", "load", "W", 105.0, 100.0, around(100.0, 2.0), {"A": 101.0})
+    line = VerdictLine("1", "load", "W", 105.0, 100.0, around(100.0, 2.0), {"A": 101.0})
     assert line.rank == (2, 2)
-    for deviation, verdict in ((5.0, Verdict.KNOWN_MISS), (4.7, Verdict.MISS), (-5.0, Verdict.MISS)):
+    for deviation, verdict in (
+        (5.0, SuiteVerdict.KNOWN_MISS),
+        (4.7, SuiteVerdict.MISS),
+        (-5.0, SuiteVerdict.MISS),
+    ):
         known = {("1", "load"): KnownMiss(deviation, "films")}
         assert line.judged(known, {}).verdict == verdict
-    assert line.judged({}, {"1": "surfaces by area or not"}).verdict == Verdict.AMBIGUOUS
+    assert line.judged({}, {"1": "surfaces by area or not"}).verdict == SuiteVerdict.AMBIGUOUS
     worst = largest("1", "load", "W", ([1, 2, 3], [5.0, 8.0, 7.0], [5.0, 7.0, 9.0]), 1.5)
     assert (worst.value, worst.reference, worst.inside) == (7.0, 9.0, False)
-    nothing = Line("1", "load", "W", math.nan, 100.0, around(100.0, 2.0))
-    assert nothing.judged({}, {}).verdict == Verdict.MISS
+    nothing = VerdictLine("1", "load", "W", math.nan, 100.0, around(100.0, 2.0))
+    assert nothing.judged({}, {}).verdict == SuiteVerdict.MISS
     assert nothing.to_dict()["value"] is None
 
 

@@ -16,8 +16,8 @@ from mascarin.ensemble import sweep
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.fmu import export
+from mascarin.measurements import Sensor
 from mascarin.simulation.simulation import Simulation
-from mascarin.validation.sensors import Sensor
 from mascarin.verification.analytical import setup
 
 BUILDINGS = Path(mc.__file__).parent / "verification" / "bestest" / "buildings"

@@ -106,7 +106,10 @@ def test_neumann_constant_of_the_published_cases() -> None:
 
 
 def test_transfer_matrix_conserves_and_tends_to_the_resistance() -> None:
-    layers = [conduction.Layer(0.2, 0.8, 1700.0, 900.0, 1), conduction.Layer(0.1, 0.04, 30.0, 1000.0, 1)]
+    layers = [
+        conduction.ConductionLayer(0.2, 0.8, 1700.0, 900.0, 1),
+        conduction.ConductionLayer(0.1, 0.04, 30.0, 1000.0, 1),
+    ]
     assert np.linalg.det(conduction.transfer(layers)) == pytest.approx(1.0)
     light = [one._replace(density=1e-6) for one in layers]
     transmittance = -1.0 / conduction.transfer(light)[0, 1]

@@ -12,8 +12,8 @@ from mascarin.verification.bestest import writing
 from mascarin.verification.bestest.catalogue import CASES, FOLDER, IN_DEPTH, MAIN, chosen
 from mascarin.verification.bestest.quantities import (
     HOURS,
-    Quantity,
-    Year,
+    BestestQuantity,
+    BestestYear,
     bins,
     hours_of,
     months,
@@ -151,7 +151,9 @@ def test_loads_and_peaks() -> None:
         "room.cooling_load": cooling,
         "room.air_temperature": wave(20, 27),
     }
-    found = {row.quantity: row for row in quantities({"610": Year(CASES["610"], series, 0.0)}, CASES["610"])}
+    found = {
+        row.quantity: row for row in quantities({"610": BestestYear(CASES["610"], series, 0.0)}, CASES["610"])
+    }
     assert found["annual_heating"].value == pytest.approx((998 * 500.0 + 2 * 3000.0) / 1e6, rel=1e-14)
     # The first of equal peaks.
     assert (found["peak_heating"].value, found["peak_heating"].when) == (3.0, "Feb 1 8")
@@ -171,7 +173,8 @@ def test_free_floating_extremes_are_those_of_the_right_zone() -> None:
     floating[100], floating[200] = 61.0, -9.0
     series = {"room.air_temperature": floating}
     found = {
-        row.quantity: row for row in quantities({"600FF": Year(CASES["600FF"], series, 0.0)}, CASES["600FF"])
+        row.quantity: row
+        for row in quantities({"600FF": BestestYear(CASES["600FF"], series, 0.0)}, CASES["600FF"])
     }
     assert set(found) == {"max_temperature", "min_temperature", "mean_temperature"}
     assert (found["max_temperature"].value, found["max_temperature"].when) == (61.0, "Jan 5 5")
@@ -212,12 +215,12 @@ def test_a_bin_begins_at_its_label() -> None:
 
 def test_a_number_on_the_edge_is_inside() -> None:
     edge = ranges()["600", "annual_heating"]
-    assert Quantity("600", "annual_heating", "MWh", edge.high, "", edge).passed
+    assert BestestQuantity("600", "annual_heating", "MWh", edge.high, "", edge).passed
     # By the rule of all limits: 1e-6 of the unit.
-    assert Quantity("600", "annual_heating", "MWh", np.nextafter(edge.high, 9.0), "", edge).passed
-    assert not Quantity("600", "annual_heating", "MWh", edge.high + 2e-6, "", edge).passed
-    assert not Quantity("600", "annual_heating", "MWh", float("nan"), "", edge).passed
-    told = Quantity("600", "annual_heating", "MWh", 4.2, "", edge).to_dict()
+    assert BestestQuantity("600", "annual_heating", "MWh", np.nextafter(edge.high, 9.0), "", edge).passed
+    assert not BestestQuantity("600", "annual_heating", "MWh", edge.high + 2e-6, "", edge).passed
+    assert not BestestQuantity("600", "annual_heating", "MWh", float("nan"), "", edge).passed
+    told = BestestQuantity("600", "annual_heating", "MWh", 4.2, "", edge).to_dict()
     assert {"case", "quantity", "unit", "value", "min", "max", "expected", "passed"} <= set(told)
     assert told["expected"] == edge.mean
 
@@ -235,7 +238,7 @@ def test_any_building_has_its_loads_and_temperatures() -> None:
 
 def test_half_a_year_is_refused() -> None:
     with pytest.raises(InputError, match="expected 8760"):
-        Year(CASES["600FF"], {"room.air_temperature": np.zeros(4380)}, 0.0)
+        BestestYear(CASES["600FF"], {"room.air_temperature": np.zeros(4380)}, 0.0)
 
 
 # --- the weather ---

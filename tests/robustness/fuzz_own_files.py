@@ -35,7 +35,7 @@ from mascarin.genopt.export.exchange import read_settings
 from mascarin.genopt.records import Log, Record
 from mascarin.pages.study import write_folder
 from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 from mascarin.simulation.records.provenance import Provenance
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.results import Results
@@ -196,7 +196,7 @@ def results() -> Results:
         outputs=outputs, times=Times(0.0, 3600.0 * 47, 3600.0, parse_timezone("UTC+1")), records=records,
         energy=EnergyLedger(dict.fromkeys(FLOWS, 1.0), 1.0, 2.0, 1e-12),
         provenance=Provenance("box", "ab", {"file": "x"}, 3600.0, "sdirk2", "repeat", {}, 5),
-        warnings=(RunWarning("warm", Kind.LATENT),), vapour=None,
+        warnings=(RunWarning("warm", WarningKind.LATENT),), vapour=None,
     )  # fmt: skip
 
 

@@ -20,27 +20,27 @@ from mascarin.ensemble.store import Store
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
 from mascarin.simulation.checks.judgement import Judgement
-from mascarin.simulation.checks.warning_kinds import UNSOUND, Kind, RunWarning, with_kinds
+from mascarin.simulation.checks.warning_kinds import UNSOUND, RunWarning, WarningKind, with_kinds
 from mascarin.simulation.preparation.engine_run import CompiledRun
 from mascarin.study.context.step_cache import _decoded, _encoded
 
 DAMP = {"humidity": {"zones": {"room": {"gains": {"people": {"power": 100}}}}}}
 
 
-@pytest.mark.parametrize("kind", Kind)
-def test_the_kind_counts_and_not_the_words(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", WarningKind)
+def test_the_kind_counts_and_not_the_words(kind: WarningKind) -> None:
     misleading = "the energy balance does not close: do not use these results"
     for line in (RunWarning(misleading, kind), RunWarning(misleading, kind).after("tampa")):
         assert exit_code(warnings=[line]) == (1 if kind in UNSOUND else 0)
 
 
 def test_a_kind_goes_through_processes_and_kept_results() -> None:
-    line = RunWarning("roof: 70 degC", Kind.CAUSE)
+    line = RunWarning("roof: 70 degC", WarningKind.CAUSE)
     arrays: dict[str, Any] = {}
     copies = [pickle.loads(pickle.dumps(line)), _decoded(_encoded((line,), arrays, ()), arrays, ())[0]]  # noqa: S301
     for copy in copies:
         assert copy == line == "roof: 70 degC"
-        assert copy.kind is Kind.CAUSE
+        assert copy.kind is WarningKind.CAUSE
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_an_open_vapour_balance_is_unsound(tmp_path: Path, ending: str) -> None:
     run = mc.simulate(box().replace(DAMP), box_climate(), step="1h")
     assert run.energy.closes
     assert not run.sound
-    (line,) = [line for line in run.warnings if line.kind is Kind.VAPOUR_BALANCE]
+    (line,) = [line for line in run.warnings if line.kind is WarningKind.VAPOUR_BALANCE]
     assert "2.0e-08 of all vapour exchanged" in line
     run.write(tmp_path / f"run{ending}")
     read = mc.Results.open(tmp_path / f"run{ending}")
@@ -82,15 +82,15 @@ def test_a_finished_sweep_that_is_read_again_has_the_kinds(tmp_path: Path) -> No
     options: dict[str, Any] = {"step": "1h", "outputs": ["room.air_temperature"]}
     store = sweep_into(tmp_path / "store", box(), box_climate(), samples, **options)
     manifest = json.loads((tmp_path / "store" / "manifest.json").read_text())
-    assert manifest["warning_kinds"] == [Kind.BUILDING.value]
-    manifest["warning_kinds"] = [Kind.CAUSE.value]
+    assert manifest["warning_kinds"] == [WarningKind.BUILDING.value]
+    manifest["warning_kinds"] = [WarningKind.CAUSE.value]
     (tmp_path / "store" / "manifest.json").write_text(json.dumps(manifest))
     assert exit_code(warnings=Store(tmp_path / "store").warnings()) == 1
     assert exit_code(warnings=store.warnings()) == 0
     del manifest["warning_kinds"]  # of an earlier version
     (tmp_path / "store" / "manifest.json").write_text(json.dumps(manifest))
-    assert [line.kind for line in Store(tmp_path / "store").warnings()] == [Kind.UNKNOWN]
-    for damaged in ([], ["odd"], [Kind.CAUSE.value, Kind.CAUSE.value]):
+    assert [line.kind for line in Store(tmp_path / "store").warnings()] == [WarningKind.UNKNOWN]
+    for damaged in ([], ["odd"], [WarningKind.CAUSE.value, WarningKind.CAUSE.value]):
         (tmp_path / "store" / "manifest.json").write_text(json.dumps({**manifest, "warning_kinds": damaged}))
         with pytest.raises(InputError, match="warning_kinds"):
             Store(tmp_path / "store")

@@ -12,7 +12,7 @@ from mascarin.verification.bestest.quantities import (
     ONTO_GLASS,
     ORIENTATIONS,
     THROUGH_GLASS,
-    Year,
+    BestestYear,
     has_solar_quantities,
 )
 
@@ -27,7 +27,7 @@ def wave(low: float, high: float) -> Array:
     return shape
 
 
-def year(case: Case) -> Year:
+def year(case: Case) -> BestestYear:
     """A year with every series of the case."""
     series = {f"{zone}.air_temperature": wave(10.0, 30.0) for zone in {case.zone, case.floating or case.zone}}
     if case.conditioned:
@@ -39,9 +39,9 @@ def year(case: Case) -> Year:
         series["sky_temperature"] = wave(-10.0, 0.0)
     if has_solar_quantities(case):
         series |= {ONTO_GLASS: wave(0.0, 300.0), THROUGH_GLASS: wave(0.0, 100.0 if case.shaded else 150.0)}
-    return Year(case, series, 1e-14)
+    return BestestYear(case, series, 1e-14)
 
 
-def years() -> dict[str, Year]:
+def years() -> dict[str, BestestYear]:
     """All cases."""
     return {name: year(case) for name, case in CASES.items()}

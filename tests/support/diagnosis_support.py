@@ -16,7 +16,7 @@ from mascarin.diagnosis import (
     ErrorCovariance,
     sensor_candidates,
 )
-from mascarin.diagnosis.sensor_faults import Series, stated_errors
+from mascarin.diagnosis.sensor_faults import SensorSeries, stated_errors
 
 Floats = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ COVARIANCE = ErrorCovariance(sizes(), share=0.5, persistence=3.0)
 def given(error: Floats | None = None) -> DiagnosisInput:
     """Residuals (N, S) or zeros, with all candidates."""
     mask = np.ones((N, 3), dtype=bool)
-    series = Series(NAMES, SIMULATED, mask, U, STEP, ("degC",) * 3, GRID)
+    series = SensorSeries(NAMES, SIMULATED, mask, U, STEP, ("degC",) * 3, GRID)
     offsets = np.zeros((N, 3, 3))
     offsets[:, range(3), range(3)] = U
     known = GRID.means(np.concatenate([EFFECTS, offsets], axis=2), mask)[0]

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 import mascarin as mc
 from mascarin.examples import synthetic_wall
-from mascarin.validation import Sensor
+from mascarin.measurements import Sensor
 
 wall = synthetic_wall()
 output = "wall.interface_1_temperature"

@@ -10,8 +10,9 @@ from typing import Final
 import mascarin
 
 PACKAGES: Final = (
-    "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization", "validation",
-    "calibration", "study", "design", "comfort", "energyplus", "fmu", "pages.view", "physics",
+    "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization",
+    "measurements", "validation", "calibration", "study", "design", "comfort", "energyplus", "fmu",
+    "pages.view", "physics",
 )  # fmt: skip
 
 

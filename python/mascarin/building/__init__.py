@@ -77,9 +77,9 @@ from mascarin.building.parts.envelope.surface import (
     Exposure,
     Ground,
     Layer,
-    Sensor,
     Side,
     Surface,
+    WallSensor,
 )
 from mascarin.building.parts.materials.formula_curve import FormulaCurve
 from mascarin.building.parts.materials.history_laws import Supercooling
@@ -213,7 +213,6 @@ __all__ = [
     "Published",
     "RainBand",
     "Resistance",
-    "Sensor",
     "SetPoint",
     "Shade",
     "Side",
@@ -248,6 +247,7 @@ __all__ = [
     "VentControl",
     "Ventilation",
     "VentilationUnit",
+    "WallSensor",
     "Wind",
     "WindBand",
     "Window",

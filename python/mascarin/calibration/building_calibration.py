@@ -29,12 +29,13 @@ from mascarin.calibration.errors.stated_errors import (
 from mascarin.calibration.methods.search import solve
 from mascarin.errors import InputError
 from mascarin.linear_algebra import one_thread
+from mascarin.measurements.observation import observe
+from mascarin.measurements.sensor import Sensor
+from mascarin.measurements.uncertainty import SensorUncertainty
 from mascarin.progress import ProgressOption
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.preparation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
-from mascarin.validation.observation import observe
-from mascarin.validation.sensors import Sensor, SensorUncertainty
 from mascarin.weather import Measurements
 
 if TYPE_CHECKING:
@@ -44,6 +45,9 @@ if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.simulation.preparation.initial import Initial
     from mascarin.weather import Climate
+
+#: Keys of a sensor that say how a study compares it.
+_OF_STUDIES: Final = frozenset(["sum", "mean", "use", "periods"])
 
 CONSTANT: Final = ("stuck", "forward_filled")
 """Kinds of suspicious values of the quality check in which a sensor repeats one value."""
@@ -263,6 +267,12 @@ def _require_types(measurements: object, sensors: object, vary: object, record: 
         raise InputError("sensors: found none, expected at least one: {'room.air_temperature': 'column'}")
     for name, sensor in columns.items():
         require_type(f"sensors: {name}", sensor, (str, Sensor), "the name of a column, or a Sensor")
+        of_studies = sorted(_OF_STUDIES & sensor.model_fields_set) if isinstance(sensor, Sensor) else []
+        if of_studies:
+            raise InputError(
+                f"sensors: {name}: found {', '.join(of_studies)}, expected keys that a calibration "
+                "alone reads: leave it out, or write a study (mascarin.Study)"
+            )
     paths = "a list of paths or a mapping to (low, high)"
     if isinstance(vary, str) or not isinstance(vary, Iterable):
         raise InputError(f"vary: found {kind_of(vary)}, expected {paths}")

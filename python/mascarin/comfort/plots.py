@@ -117,7 +117,7 @@ def draw(
     name = "PMV" if index.name == "pmv" else index.title.removeprefix("the ")
     if index.unit == "degC" and index.name in ("adaptive-en", "adaptive-ashrae", "givoni"):
         name = "operative temperature"
-    series = figures.Series(times, evaluation.values, name, index.unit)
+    series = figures.ComfortSeries(times, evaluation.values, name, index.unit)
     if kind == "series":
         figures.with_limits(axes, series, evaluation.low, evaluation.high)
         axes.set_xlabel(f"local time ({times.tz})")
@@ -126,7 +126,7 @@ def draw(
     elif kind == "carpet":
         excess = np.where(np.isnan(evaluation.values), np.nan, evaluation.excess)
         unit = "K" if index.unit == "degC" else index.unit
-        figures.carpet(axes, figures.Series(times, excess, "outside the limits by", unit), centre=0.0)
+        figures.carpet(axes, figures.ComfortSeries(times, excess, "outside the limits by", unit), centre=0.0)
     else:
         psychrometric(
             axes, np.asarray(room["air_temperature"]), np.asarray(room["relative_humidity"]),

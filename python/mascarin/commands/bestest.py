@@ -18,7 +18,7 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.verification.bestest.catalogue import Case
-    from mascarin.verification.bestest.quantities import Quantity
+    from mascarin.verification.bestest.quantities import BestestQuantity
     from mascarin.verification.bestest.reference import Range
 
     Ranges = Mapping[tuple[str, str], Range]
@@ -93,7 +93,7 @@ def bestest(
 def _compared(
     words: Sequence[str], own_files: Sequence[Path], chosen_cases: Sequence[Case], own_ranges: Ranges | None,
     weather: Path | None, out: Path | None, step: str, workers: int,
-) -> list[Quantity]:  # fmt: skip
+) -> list[BestestQuantity]:  # fmt: skip
     """Run the cases, and write the page."""
     from mascarin.progress import Progress
     from mascarin.verification.bestest.quantities import quantities, quantities_of
@@ -147,7 +147,7 @@ def _require_own(own_files: Sequence[Path], own_ranges: Ranges | None) -> None:
             )
 
 
-def _warn_unused(rows: Sequence[Quantity], own_ranges: Ranges | None) -> None:
+def _warn_unused(rows: Sequence[BestestQuantity], own_ranges: Ranges | None) -> None:
     """Say which ranges were compared with nothing."""
     used = {id(row.range) for row in rows}
     for (case, quantity), limits in (own_ranges or {}).items():
@@ -166,7 +166,7 @@ def _require_possible_folder(out: Path | None) -> None:
         raise InputError(f"--out: found '{out}'; expected a folder, or a name in a folder that exists")
 
 
-def _print(rows: Sequence[Quantity]) -> None:
+def _print(rows: Sequence[BestestQuantity]) -> None:
     lines = [
         (
             row.case,

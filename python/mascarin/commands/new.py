@@ -175,14 +175,14 @@ def _wall(_: str, layers: str, stated: Mapping[str, object]) -> tuple[dict[str, 
 
 
 def _record(stated: Mapping[str, object]):  # type: ignore[no-untyped-def]
-    from mascarin.templates.study_text import Record
+    from mascarin.templates.study_text import LoggerRecord
 
     for name, example in (("data", "logger.csv"), ("timezone", "UTC+4")):
         if name not in stated:
             raise InputError(
                 f"--{name}: found none; expected it for measurements, such as --{name} {example}"
             )
-    return Record.of_file(Path(str(stated["data"])), str(stated["timezone"]))
+    return LoggerRecord.of_file(Path(str(stated["data"])), str(stated["timezone"]))
 
 
 def _texts(stated: Mapping[str, object], name: str) -> Sequence[str]:

@@ -16,7 +16,7 @@ from mascarin.commands.options.output import json_text, number, print_json, prin
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.verification.suites.running import Result
+    from mascarin.verification.suites.running import SuiteResult
     from mascarin.verification.suites.suite import Suite
 
 PAGE, NUMBERS = "suites.html", "suites.json"
@@ -92,7 +92,7 @@ def _list(selection: Sequence[Suite], *, as_json: bool) -> int:
     return 0
 
 
-def _write(folder: Path, names: Sequence[str], results: Sequence[Result]) -> None:
+def _write(folder: Path, names: Sequence[str], results: Sequence[SuiteResult]) -> None:
     from mascarin.pages.suites.suites import write
 
     command = " ".join(("mascarin suites", *names))
@@ -100,7 +100,7 @@ def _write(folder: Path, names: Sequence[str], results: Sequence[Result]) -> Non
     atomic.write(folder / NUMBERS, json_text([result.to_dict() for result in results]))
 
 
-def _print(results: Sequence[Result]) -> None:
+def _print(results: Sequence[SuiteResult]) -> None:
     rows = []
     for result in results:
         for line in result.lines:

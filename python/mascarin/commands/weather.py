@@ -218,7 +218,7 @@ def _figures(climate: Climate, summary: Overview, folder: Path) -> list[Path]:
         ("wind_speed", "wind speed", "m/s"),
     ):
         if name in data:
-            series = figures.Series(times, data[name].to_numpy(dtype=float), label, unit)
+            series = figures.ComfortSeries(times, data[name].to_numpy(dtype=float), label, unit)
             add(f"{name}_carpet", lambda ax, series=series: figures.carpet(ax, series))
             add(f"{name}_days", lambda ax, series=series: figures.daily_profile(ax, series))
     if "dew_point" in data:

@@ -45,7 +45,7 @@ _BROAD_SIZE: Final = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class CauseEstimate:
     """A candidate with its evidence.
 
     Attributes
@@ -77,12 +77,12 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class CauseSearch:
     """Findings, and the p value of the first candidate also where none is named.
 
     Attributes
     ----------
-    findings : tuple of Finding
+    findings : tuple of CauseEstimate
         Those that are told first, else in the order in which they were found.
     p : float
         Of the largest evidence of all candidates. [-]
@@ -92,7 +92,7 @@ class Result:
         Of the errors of the model.
     """
 
-    findings: tuple[Finding, ...]
+    findings: tuple[CauseEstimate, ...]
     p: float
     candidates: int
     draws: int
@@ -212,7 +212,7 @@ def covariance_of(inputs: DiagnosisInput) -> ErrorCovariance:
 
 def diagnose(
     given: DiagnosisInput, covariance: ErrorCovariance | None = None, *, draws: int = DRAWS
-) -> Result:
+) -> CauseSearch:
     """Name the causes of the difference between a model and measurements, if there are any.
 
     Parameters
@@ -252,12 +252,12 @@ def diagnose(
     """
     covariance = covariance or covariance_of(given)
     if not given.candidates:
-        return Result((), 1.0, 0, 0, covariance)
+        return CauseSearch((), 1.0, 0, 0, covariance)
     hypotheses = Hypotheses(given.candidates, given.data.grid, given.days)
     gaussian = covariance.gaussian(given.data, given.days)
     scores = scores_of(given, hypotheses, gaussian)
     simulator, rng = Simulator(gaussian, hypotheses, covariance.freedom), np.random.default_rng(_SEED)
-    findings: list[Finding] = []
+    findings: list[CauseEstimate] = []
     first_p = 1.0
     while len(findings) < _MOST_CAUSES:
         p = p_value(float(scores.evidence().max()), simulator.largest(scores, draws, rng))
@@ -276,12 +276,12 @@ def diagnose(
             signature = np.where(gaussian.present, hypotheses.candidate(k).signature, 0.0)
             scores = scores.given(k, hypotheses.scores(gaussian.solve(signature)[:, :, None])[:, 0])
     findings.sort(key=lambda cause: not cause.told)
-    return Result(tuple(findings), first_p, hypotheses.count, draws, covariance)
+    return CauseSearch(tuple(findings), first_p, hypotheses.count, draws, covariance)
 
 
 def _finding(
     inputs: DiagnosisInput, hypotheses: Hypotheses, scores: Scores, p: float
-) -> tuple[list[int], Finding]:
+) -> tuple[list[int], CauseEstimate]:
     """The most probable candidate, what else it may be, and the numbers of all of them."""
     evidence = scores.evidence()
     share = np.exp(evidence - evidence.max())
@@ -306,7 +306,7 @@ def _finding(
     size, error = scores.estimate(k)
     probability = of_key[order[0]]
     tells = candidate.group == "data" or inputs.forms > 1
-    return numbers, Finding(
+    return numbers, CauseEstimate(
         candidate,
         candidate.known + candidate.scale * size,
         abs(candidate.scale) * error,

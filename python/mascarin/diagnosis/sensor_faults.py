@@ -41,7 +41,7 @@ _QUIET_SCORE: Final = 1.14
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class SensorSeries:
     """Simulated series of the sensors, and what is stated of the sensors.
 
     Attributes
@@ -111,12 +111,12 @@ def shifted(series: Floats, seconds: float, interval: float) -> Floats:
     return np.asarray(spline(np.clip(sample - seconds / interval, 0.0, len(series) - 1.0)))
 
 
-def sensor_candidates(series: Series) -> list[Candidate]:
+def sensor_candidates(series: SensorSeries) -> list[Candidate]:
     """Return all faults that a sensor may have over the whole record.
 
     Parameters
     ----------
-    series : Series
+    series : SensorSeries
         What is simulated and stated.
 
     Returns
@@ -128,7 +128,8 @@ def sensor_candidates(series: Series) -> list[Candidate]:
     >>> hours = np.arange(72.0)
     >>> grid = DayGrid.of(hours, interval=1.0, sensors=1)
     >>> room = 20.0 + np.sin(hours / 4.0)[:, None]
-    >>> stated = Series(("room",), room, np.ones((72, 1), bool), np.array([0.1]), 3600.0, ("degC",), grid)
+    >>> used = np.ones((72, 1), bool)
+    >>> stated = SensorSeries(("room",), room, used, np.array([0.1]), 3600.0, ("degC",), grid)
     >>> sorted({one.what for one in sensor_candidates(stated)})
     ['clock', 'drift', 'gain', 'offset', 'scale']
     """
@@ -139,7 +140,7 @@ def sensor_candidates(series: Series) -> list[Candidate]:
     return [candidate for candidate in (*candidates, *_swaps(series)) if np.any(candidate.signature)]
 
 
-def _of_sensor(series: Series, s: int) -> Iterator[Candidate]:
+def _of_sensor(series: SensorSeries, s: int) -> Iterator[Candidate]:
     """Faults of one sensor."""
     m, u, name = series.simulated[:, s], float(series.uncertainty[s]), (series.names[s],)
     unit = series.units[s].replace("degC", "K")
@@ -161,7 +162,7 @@ def _of_sensor(series: Series, s: int) -> Iterator[Candidate]:
         yield Candidate("data", "place", name, signature, 0.0, _PART, 100.0, "%", f"part of {neighbour}")
 
 
-def _clocks(series: Series, s: int, hours: tuple[float, ...]) -> Iterator[Candidate]:
+def _clocks(series: SensorSeries, s: int, hours: tuple[float, ...]) -> Iterator[Candidate]:
     """A clock that is wrong by a time of a list."""
     m, longest = series.simulated[:, s], 0.25 * len(series.simulated) * series.interval
     for delay in hours:
@@ -181,7 +182,7 @@ def _clocks(series: Series, s: int, hours: tuple[float, ...]) -> Iterator[Candid
             )
 
 
-def _swaps(series: Series) -> Iterator[Candidate]:
+def _swaps(series: SensorSeries) -> Iterator[Candidate]:
     """Pairs of sensors of one unit whose columns may be exchanged."""
     m, u = series.simulated, series.uncertainty
     pairs = []
@@ -196,7 +197,7 @@ def _swaps(series: Series) -> Iterator[Candidate]:
         yield Candidate("data", "swapped", names, signature, 1.0, _KNOWN_SIZE, later="swap_step")
 
 
-def stated_errors(series: Series) -> Floats:
+def stated_errors(series: SensorSeries) -> Floats:
     """Errors that are within what is stated of a sensor, beside its offset, for one standard deviation.
 
     An error of its stated uncertainty that grows with the distance from the mean, a drift by it over the
@@ -204,7 +205,7 @@ def stated_errors(series: Series) -> Floats:
 
     Parameters
     ----------
-    series : Series
+    series : SensorSeries
         What is simulated and stated.
 
     Returns

@@ -22,7 +22,7 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class ComfortSeries:
     """Values over local time.
 
     Attributes
@@ -37,7 +37,7 @@ class Series:
     Examples
     --------
     >>> import pandas as pd
-    >>> Series(pd.date_range("2001-07-01", periods=1, tz="UTC"), np.array([20.0]), "room", "degC").unit
+    >>> ComfortSeries(pd.date_range("2001-07-01", periods=1, tz="UTC"), np.array([20.0]), "room", "degC").unit
     'degC'
     """
 
@@ -47,14 +47,14 @@ class Series:
     unit: str
 
 
-def carpet(ax: Axes, series: Series, *, centre: float | None = None) -> None:
+def carpet(ax: Axes, series: ComfortSeries, *, centre: float | None = None) -> None:
     """Draw values as colors: days across, hours of the day upwards. Times without a value stay gray.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
         Where to draw.
-    series : Series
+    series : ComfortSeries
         Values; several in one cell are averaged.
     centre : float, optional
         Value between the blue and the red colors; default: colors from the lowest to the highest value.
@@ -65,7 +65,7 @@ def carpet(ax: Axes, series: Series, *, centre: float | None = None) -> None:
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> carpet(ax, Series(index, np.arange(48.0), "air", "degC"))
+    >>> carpet(ax, ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> ax.get_ylabel()
     'hour of the day'
     """
@@ -89,12 +89,12 @@ def carpet(ax: Axes, series: Series, *, centre: float | None = None) -> None:
         figure.colorbar(mesh, ax=ax, label=bracketed(series.label, shown(series.unit)))
 
 
-def grid(series: Series) -> tuple[Array, np.datetime64, int]:
+def grid(series: ComfortSeries) -> tuple[Array, np.datetime64, int]:
     """Values in cells of days and hours.
 
     Parameters
     ----------
-    series : Series
+    series : ComfortSeries
         Values.
 
     Returns
@@ -110,7 +110,7 @@ def grid(series: Series) -> tuple[Array, np.datetime64, int]:
     --------
     >>> import pandas as pd
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
-    >>> cells, first, rows = grid(Series(index, np.arange(48.0), "air", "degC"))
+    >>> cells, first, rows = grid(ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> cells.shape, float(cells[3, 1])
     ((24, 2), 27.0)
     """
@@ -130,14 +130,16 @@ def grid(series: Series) -> tuple[Array, np.datetime64, int]:
     return cells.reshape(-1, rows).T, day[0], rows
 
 
-def with_limits(ax: Axes, series: Series, low: Array | float | None, high: Array | float | None) -> None:
+def with_limits(
+    ax: Axes, series: ComfortSeries, low: Array | float | None, high: Array | float | None
+) -> None:
     """Draw an index over time between its limits of comfort.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
         Where to draw.
-    series : Series
+    series : ComfortSeries
         The index.
     low, high : ndarray or float or None
         Limits; one that is infinite or None is left out. [unit]
@@ -148,7 +150,7 @@ def with_limits(ax: Axes, series: Series, low: Array | float | None, high: Array
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> with_limits(ax, Series(index, np.arange(48.0), "operative temperature", "degC"), 20.0, 26.0)
+    >>> with_limits(ax, ComfortSeries(index, np.arange(48.0), "operative temperature", "degC"), 20.0, 26.0)
     >>> ax.get_ylabel()
     'operative temperature [°C]'
     """
@@ -164,14 +166,14 @@ def with_limits(ax: Axes, series: Series, low: Array | float | None, high: Array
     _dates(ax)
 
 
-def daily_profile(ax: Axes, series: Series, months: Sequence[int] = ()) -> None:
+def daily_profile(ax: Axes, series: ComfortSeries, months: Sequence[int] = ()) -> None:
     """Draw the mean of each hour of the day, and the range of nine days in ten, for each month.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
         Where to draw.
-    series : Series
+    series : ComfortSeries
         Values.
     months : sequence of int
         Months to draw, 1 to 12; default: the month of the lowest and that of the highest mean.
@@ -182,7 +184,7 @@ def daily_profile(ax: Axes, series: Series, months: Sequence[int] = ()) -> None:
     >>> from matplotlib.figure import Figure
     >>> index = pd.date_range("2001-07-01", periods=48, freq="1h", tz="UTC")
     >>> ax = Figure().subplots()
-    >>> daily_profile(ax, Series(index, np.arange(48.0), "air", "degC"))
+    >>> daily_profile(ax, ComfortSeries(index, np.arange(48.0), "air", "degC"))
     >>> len(ax.lines)
     1
     """

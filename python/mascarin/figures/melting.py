@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _MAX_COLUMNS: Final = 6
 
 
-class Curve(NamedTuple):
+class CapacityCurve(NamedTuple):
     """Enthalpy and apparent specific heat of a material on one path.
 
     Parameters
@@ -36,7 +36,7 @@ class Curve(NamedTuple):
 
     Examples
     --------
-    >>> Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4]).label
+    >>> CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4]).label
     'wax, heating'
     """
 
@@ -49,12 +49,12 @@ class Curve(NamedTuple):
     specific_heat: Any
 
 
-def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Figure:
+def draw(curves: Sequence[CapacityCurve], ax: Axes | Sequence[Axes] | None = None) -> Figure:
     """Draw the enthalpy above, the apparent specific heat below.
 
     Parameters
     ----------
-    curves : sequence of Curve
+    curves : sequence of CapacityCurve
         The curves.
     ax : sequence of two matplotlib.axes.Axes, optional
         Where to draw; a new figure when absent.
@@ -71,7 +71,7 @@ def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Fi
 
     Examples
     --------
-    >>> figure = draw([Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])])
+    >>> figure = draw([CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])])
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['enthalpy [kJ/kg]', 'apparent specific heat [kJ/(kg K)]']
     """
@@ -139,12 +139,12 @@ def draw_analysis(axes: Axes, runs: Sequence[Analysis]) -> None:
     axes.legend(frameon=False, fontsize="small")
 
 
-def panels(groups: Mapping[str, Sequence[Curve]]) -> Figure:
+def panels(groups: Mapping[str, Sequence[CapacityCurve]]) -> Figure:
     """Draw the enthalpy of many materials, each in a panel of its own, with the same scale upwards.
 
     Parameters
     ----------
-    groups : mapping of str to sequence of Curve
+    groups : mapping of str to sequence of CapacityCurve
         Title of the panel -> curves of the material.
 
     Returns
@@ -154,7 +154,7 @@ def panels(groups: Mapping[str, Sequence[Curve]]) -> Figure:
 
     Examples
     --------
-    >>> wax = Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])
+    >>> wax = CapacityCurve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])
     >>> [axes.get_title() for axes in panels({"wax": [wax]}).axes if axes.get_visible()]
     ['wax']
     """

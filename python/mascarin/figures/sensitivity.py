@@ -32,7 +32,7 @@ Legend = tuple[list["Artist"], list[str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class SpectrumLine:
     """A line of a spectrum above the threshold.
 
     Attributes
@@ -248,7 +248,7 @@ def time_axis(ax: Axes, *, hours: bool) -> None:
 
 
 def spectrum(
-    ax: Axes, power: Floats, threshold: float, lines: Sequence[Line], *, title: str, listed: int = 12
+    ax: Axes, power: Floats, threshold: float, lines: Sequence[SpectrumLine], *, title: str, listed: int = 12
 ) -> Legend:
     """Draw power over frequency, with the threshold and the lines above it.
 
@@ -260,7 +260,7 @@ def spectrum(
         Part of the variance on the lines 1 ... K. [-]
     threshold : float
         Noise stays below. [-]
-    lines : sequence of Line
+    lines : sequence of SpectrumLine
         Lines above the threshold.
     title : str
         Title of the axes.
@@ -276,7 +276,7 @@ def spectrum(
     --------
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
-    >>> line = Line(3, 0.9, "fundamental", "a")
+    >>> line = SpectrumLine(3, 0.9, "fundamental", "a")
     >>> handles, labels = spectrum(ax, np.array([0.0, 0.1, 0.9]), 0.5, [line], title="y")
     >>> labels
     ['3  90.0 %  a', 'noise stays below 50 % (95 %)']

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-class Curve(NamedTuple):
+class SeriesCurve(NamedTuple):
     """A column of a table.
 
     Parameters
@@ -39,7 +39,7 @@ class Curve(NamedTuple):
     Examples
     --------
     >>> import numpy as np
-    >>> Curve("wind", np.array([3.0, 4.0]), mean=True).name
+    >>> SeriesCurve("wind", np.array([3.0, 4.0]), mean=True).name
     'wind'
     """
 
@@ -102,7 +102,12 @@ def draw(
 
 
 def columns(
-    ax: Axes, edges: npt.NDArray[np.datetime64], curves: Sequence[Curve], unit: str, zone: tzinfo, label: str
+    ax: Axes,
+    edges: npt.NDArray[np.datetime64],
+    curves: Sequence[SeriesCurve],
+    unit: str,
+    zone: tzinfo,
+    label: str,
 ) -> None:
     """Draw columns of a table over local time.
 
@@ -112,7 +117,7 @@ def columns(
         Where to draw.
     edges : ndarray of datetime64, shape (rows + 1,)
         Starts of the intervals and the end of the last one, in UTC.
-    curves : sequence of Curve
+    curves : sequence of SeriesCurve
         The columns, all in one unit.
     unit : str
         Their unit.
@@ -127,7 +132,7 @@ def columns(
     >>> from datetime import UTC
     >>> edges = np.array(["2001-07-01T00:00", "2001-07-01T01:00"], dtype="datetime64[s]")
     >>> ax = Figure().subplots()
-    >>> columns(ax, edges, [Curve("air", np.array([20.0, 21.0]), mean=False)], "degC", UTC, "UTC")
+    >>> columns(ax, edges, [SeriesCurve("air", np.array([20.0, 21.0]), mean=False)], "degC", UTC, "UTC")
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('local time (UTC)', '[°C]')
     """

@@ -10,8 +10,8 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.materials.dsc_course import crystallisation_time
-from mascarin.materials.dsc_file import Settings, read
-from mascarin.materials.dsc_melting import Melting, melting_of
+from mascarin.materials.dsc_file import DscSettings, read
+from mascarin.materials.dsc_melting import MeasuredMelting, melting_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from mascarin.figures.melting import Analysis, Curve
+    from mascarin.figures.melting import Analysis, CapacityCurve
     from mascarin.materials.laws import LawFit
 
     Array = npt.NDArray[np.float64]
@@ -37,7 +37,7 @@ class DscMaterial:
     ----------
     name : str
         Name of the file, without its ending.
-    runs : tuple of Melting
+    runs : tuple of MeasuredMelting
         Heating first.
     warnings : tuple of str
         Warnings, and decisions that were made for the user.
@@ -49,11 +49,11 @@ class DscMaterial:
     """
 
     name: str
-    runs: tuple[Melting, ...]
+    runs: tuple[MeasuredMelting, ...]
     warnings: tuple[str, ...]
 
     @property
-    def main(self) -> Melting:
+    def main(self) -> MeasuredMelting:
         """The run whose curve the material uses: heating where there is one."""
         return self.runs[0]
 
@@ -239,7 +239,7 @@ def from_dsc(
     for name, value in (("rate", rate), ("mass", mass)):
         if value is not None and not value > 0.0:
             raise InputError(f"{name}: found {value:g}; expected a positive number")
-    scans = read(file, Settings(unit, rate, mass, tuple(map(str, segments))))
+    scans = read(file, DscSettings(unit, rate, mass, tuple(map(str, segments))))
     evaluated = [melting_of(scan, specific_heat, melting_range, scan.location) for scan in scans]
     runs = tuple(sorted((run for run, _ in evaluated), key=lambda run: run.direction != "heating"))
     remarks = [remark for scan in scans for remark in scan.remarks]
@@ -247,12 +247,12 @@ def from_dsc(
     return DscMaterial(file.stem, runs, (*dict.fromkeys(remarks), *_compared(runs)))
 
 
-def table(run: Melting) -> tuple[list[float], list[float]]:
+def table(run: MeasuredMelting) -> tuple[list[float], list[float]]:
     """Enthalpy over temperature as a law of a building file: rising, with at most `MOST_POINTS` points.
 
     Parameters
     ----------
-    run : Melting
+    run : MeasuredMelting
         The run.
 
     Returns
@@ -273,7 +273,7 @@ def table(run: Melting) -> tuple[list[float], list[float]]:
     return [round(float(x), 2) for x in points], [round(float(x - values[0]), 1) for x in values]
 
 
-def _compared(runs: Sequence[Melting]) -> list[str]:
+def _compared(runs: Sequence[MeasuredMelting]) -> list[str]:
     """Warnings from the comparison of heating and cooling."""
     if len(runs) < 2:
         return []
@@ -304,7 +304,7 @@ def _compared(runs: Sequence[Melting]) -> list[str]:
     return lines
 
 
-def _lines(run: Melting) -> list[str]:
+def _lines(run: MeasuredMelting) -> list[str]:
     rate = f" at {run.rate:g} K/min" if run.rate else ""
     low, high = run.melting_range
     return [
@@ -323,7 +323,7 @@ def _lines(run: Melting) -> list[str]:
     ]
 
 
-def _summary(run: Melting) -> dict[str, Any]:
+def _summary(run: MeasuredMelting) -> dict[str, Any]:
     return {
         "latent_heat": run.latent_heat,
         "specific_heat": list(run.specific_heat),
@@ -350,7 +350,7 @@ def _listed(value: float | tuple[float, float]) -> float | list[float]:
     return [float(x) for x in value] if isinstance(value, tuple | list) else float(value)
 
 
-def _analysis(number: int, run: Melting) -> Analysis:
+def _analysis(number: int, run: MeasuredMelting) -> Analysis:
     """What was done to the signal of a run."""
     from mascarin.figures import melting
 
@@ -359,7 +359,7 @@ def _analysis(number: int, run: Melting) -> Analysis:
     return melting.Analysis(number, run.temperature, baseline, (run.onset, run.end))
 
 
-def _curves(number: int, run: Melting) -> Iterator[Curve]:
+def _curves(number: int, run: MeasuredMelting) -> Iterator[CapacityCurve]:
     """The measured curve of a run, and that of its best law."""
     from mascarin.figures import melting
 
@@ -372,4 +372,4 @@ def _curves(number: int, run: Melting) -> Iterator[Curve]:
         over = run.temperature - run.half
         h = solid * over + fraction * (run.latent_heat + (liquid - solid) * over)
         heat = run.heat if style == "-" else np.gradient(h, run.temperature)
-        yield melting.Curve(label, number, style, run.temperature, h - h[0], run.temperature, heat)
+        yield melting.CapacityCurve(label, number, style, run.temperature, h - h[0], run.temperature, heat)

@@ -14,7 +14,15 @@ from mascarin.errors import InputError
 from mascarin.materials.dsc_course import Course, course_of
 from mascarin.materials.dsc_formats import Export, export_of
 from mascarin.materials.dsc_segments import recalescence, segments_of, supercooling
-from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
+from mascarin.materials.units import (
+    OF_SAMPLE,
+    UNITS,
+    DscColumn,
+    check_unit,
+    column_of,
+    plain_unit,
+    to_celsius,
+)
 from mascarin.tables.reading.layout import decoded
 
 if TYPE_CHECKING:
@@ -44,7 +52,7 @@ class Scan:
         Apparent specific heat; about 0 beside the peak where the baseline was subtracted [J/(kg K)].
     rate : float or None
         Heating rate, positive [K/min]; None where it is not known.
-    column : Column
+    column : DscColumn
         Column of the signal.
     factor : float
         From the unit of the file to SI.
@@ -62,7 +70,7 @@ class Scan:
     temperature: Array
     heat: Array
     rate: float | None
-    column: Column
+    column: DscColumn
     factor: float
     remarks: tuple[str, ...]
     location: str
@@ -71,7 +79,7 @@ class Scan:
 
 
 @dataclass(frozen=True)
-class Settings:
+class DscSettings:
     """What the user gives because the file does not contain it.
 
     Attributes
@@ -92,7 +100,7 @@ class Settings:
     segments: tuple[str, ...] = ()
 
 
-def read(path: Path, settings: Settings) -> list[Scan]:
+def read(path: Path, settings: DscSettings) -> list[Scan]:
     """Read the runs of a file.
 
     Raises
@@ -141,7 +149,7 @@ def read(path: Path, settings: Settings) -> list[Scan]:
     return scans
 
 
-def _with_mass(settings: Settings, mass: float | None, location: str) -> Settings:
+def _with_mass(settings: DscSettings, mass: float | None, location: str) -> DscSettings:
     """The settings with the mass of the sample that the file states.
 
     Raises
@@ -159,7 +167,7 @@ def _with_mass(settings: Settings, mass: float | None, location: str) -> Setting
     return settings
 
 
-def _with_unit(column: Column, unit: str) -> Column:
+def _with_unit(column: DscColumn, unit: str) -> DscColumn:
     if column.quantity not in SIGNALS:
         return column
     meant = plain_unit(unit)
@@ -167,7 +175,7 @@ def _with_unit(column: Column, unit: str) -> Column:
     if quantity is None:
         units = ", ".join(unit for key in SIGNALS for unit in UNITS[key])
         raise InputError(f"unit: found '{unit}'; expected one of {units}")
-    return Column(column.index, column.name, quantity, meant, column.direction)
+    return DscColumn(column.index, column.name, quantity, meant, column.direction)
 
 
 def _export(path: Path) -> Export:
@@ -179,7 +187,7 @@ def _export(path: Path) -> Export:
     return export_of(decoded(raw, str(path))[0], str(path))
 
 
-def _only_column(columns: list[Column], quantity: str, names: list[str], location: str) -> Column:
+def _only_column(columns: list[DscColumn], quantity: str, names: list[str], location: str) -> DscColumn:
     candidates = [column for column in columns if column.quantity == quantity]
     if len(candidates) > 1:
         # PerkinElmer and Setaram give the temperature of the program or furnace, too.
@@ -193,8 +201,8 @@ def _only_column(columns: list[Column], quantity: str, names: list[str], locatio
 
 
 def _runs(
-    location: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
-    settings: Settings, exothermal_up: bool | None,
+    location: str, table: list[list[str]], columns: list[DscColumn], temperature: DscColumn,
+    signal: DscColumn, settings: DscSettings, exothermal_up: bool | None,
 ) -> list[Scan]:  # fmt: skip
     """The runs in one column of the signal."""
     time = next((column for column in columns if column.quantity == "time"), None)
@@ -220,7 +228,7 @@ def _runs(
     ]
 
 
-def _number(row: list[str], column: Column, number: int, location: str) -> float:
+def _number(row: list[str], column: DscColumn, number: int, location: str) -> float:
     text = row[column.index].strip() if column.index < len(row) else ""
     try:
         value = float(text.replace(",", "."))
@@ -235,8 +243,8 @@ def _number(row: list[str], column: Column, number: int, location: str) -> float
 
 
 def _scan(
-    location: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings,
-    exothermal_up: bool | None, said: list[str],
+    location: str, values: Array, direction: str, signal: DscColumn, time: DscColumn | None,
+    settings: DscSettings, exothermal_up: bool | None, said: list[str],
 ) -> Scan:  # fmt: skip
     rate = _rate(values, time) or settings.rate
     remarks = [*said, *supercooling(values[:, 0], direction)]
@@ -319,11 +327,11 @@ def _merged(t: Array, raw: Array) -> tuple[Array, Array]:
     return unique, np.bincount(where, weights=raw) / count
 
 
-def _seconds(values: Array, time: Column) -> Array:
+def _seconds(values: Array, time: DscColumn) -> Array:
     return np.asarray(values[:, 2] * UNITS["time"][time.unit or "s"])
 
 
-def _rate(values: Array, time: Column | None) -> float | None:
+def _rate(values: Array, time: DscColumn | None) -> float | None:
     if time is None:
         return None
     seconds = _seconds(values, time)
@@ -332,7 +340,7 @@ def _rate(values: Array, time: Column | None) -> float | None:
 
 
 def _factor(
-    signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, location: str
+    signal: DscColumn, raw: Array, t: Array, settings: DscSettings, rate: float | None, location: str
 ) -> tuple[float, str]:
     """Factor to J/(kg K) or J/kg, and what was assumed where the file has no unit."""
     unit, remark = signal.unit, ""

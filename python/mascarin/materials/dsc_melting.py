@@ -35,7 +35,7 @@ TAIL: Final = 0.002
 
 
 @dataclass(frozen=True)
-class Melting:
+class MeasuredMelting:
     """Results of one run.
 
     Attributes
@@ -93,7 +93,7 @@ def melting_of(
     stated: tuple[float, float] | None,
     span: tuple[float, float] | None,
     where: str,
-) -> tuple[Melting, list[str]]:
+) -> tuple[MeasuredMelting, list[str]]:
     """Melting of a run, and remarks about it.
 
     Parameters
@@ -143,7 +143,7 @@ def melting_of(
     onset, end = _tangents(t, heat, (solid, liquid))
     fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda law_fit: law_fit.residual))
     peak = float(t[np.argmax(heat)])
-    melting = Melting(
+    melting = MeasuredMelting(
         scan.direction,
         t,
         fraction,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.materials.units import Column
+from mascarin.materials.units import DscColumn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,11 @@ _RISE: Final = 0.1
 
 
 def segments_of(
-    temperature: Array, labels: Sequence[str], signal: Column, labels_to_take: Sequence[str], location: str
+    temperature: Array,
+    labels: Sequence[str],
+    signal: DscColumn,
+    labels_to_take: Sequence[str],
+    location: str,
 ) -> tuple[list[tuple[int, int, str]], int]:
     """First and last row of each run, and its direction; holds are left out.
 
@@ -37,7 +41,7 @@ def segments_of(
         In the order of the file [degC].
     labels : sequence of str
         Label of the segment of each row; empty where there is none.
-    signal : Column
+    signal : DscColumn
         Its name can contain the direction.
     labels_to_take : sequence of str
         Labels to use; empty: all.

@@ -11,13 +11,13 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.materials.dsc import DscMaterial, from_dsc
-from mascarin.materials.dsc_melting import Melting
+from mascarin.materials.dsc_melting import MeasuredMelting
 from mascarin.materials.laws import LAWS, fit
 
 _EQUAL: Final = 0.1
 """Rates that differ by less than this part of each other are the same."""
 _LEVELS: Final = 400
-_QUANTITIES: Final[Mapping[str, tuple[Callable[[Melting], float], str, float]]] = {
+_QUANTITIES: Final[Mapping[str, tuple[Callable[[MeasuredMelting], float], str, float]]] = {
     "latent heat": (lambda run: run.latent_heat, "kJ/kg", 1e-3),
     "onset": (lambda run: run.onset, "degC", 1.0),
     "peak": (lambda run: run.peak, "degC", 1.0),
@@ -95,12 +95,12 @@ def from_dsc_files(paths: Sequence[str | Path], **options: Any) -> DscMaterial:
     )
 
 
-def spread_of(runs: Sequence[Melting]) -> dict[str, Spread]:
+def spread_of(runs: Sequence[MeasuredMelting]) -> dict[str, Spread]:
     """Mean and standard deviation of latent heat, onset, peak, end and half.
 
     Parameters
     ----------
-    runs : sequence of Melting
+    runs : sequence of MeasuredMelting
         Of one direction and rate.
 
     Returns
@@ -116,7 +116,7 @@ def spread_of(runs: Sequence[Melting]) -> dict[str, Spread]:
     return spread
 
 
-def _slowest(runs: Sequence[Melting]) -> list[Melting]:
+def _slowest(runs: Sequence[MeasuredMelting]) -> list[MeasuredMelting]:
     """Runs with the lowest rate; all where a rate is not known."""
     rates = [run.rate for run in runs]
     stated = [rate for rate in rates if rate is not None]
@@ -125,7 +125,7 @@ def _slowest(runs: Sequence[Melting]) -> list[Melting]:
     return [run for run, rate in zip(runs, stated, strict=True) if rate <= min(stated) * (1.0 + _EQUAL)]
 
 
-def _mean(runs: Sequence[Melting]) -> Melting:
+def _mean(runs: Sequence[MeasuredMelting]) -> MeasuredMelting:
     """The mean of runs at equal liquid fraction."""
     if len(runs) == 1:
         return runs[0]
@@ -157,7 +157,7 @@ def _mean(runs: Sequence[Melting]) -> Melting:
     )  # fmt: skip
 
 
-def _spread_lines(direction: str, runs: Sequence[Melting], of: int) -> list[str]:
+def _spread_lines(direction: str, runs: Sequence[MeasuredMelting], of: int) -> list[str]:
     rate_words = "" if runs[0].rate is None else f" at {runs[0].rate:.3g} K/min"
     head = f"{direction}: mean of {len(runs)} of {of} runs{rate_words}"
     if len(runs) == 1:
@@ -169,7 +169,7 @@ def _spread_lines(direction: str, runs: Sequence[Melting], of: int) -> list[str]
     return [f"{head}, +- standard deviation of a run: {', '.join(parts)}"]
 
 
-def _rate_lines(direction: str, runs: Sequence[Melting]) -> list[str]:
+def _rate_lines(direction: str, runs: Sequence[MeasuredMelting]) -> list[str]:
     """How the curve moves with the rate, and where it would be in equilibrium."""
     rates = [run.rate for run in runs if run.rate is not None]
     if len(rates) < len(runs) or max(rates) < min(rates) * (1.0 + _EQUAL):

@@ -19,7 +19,7 @@ SOURCE: Final = "ISO 10456:2007, table 3"
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class MaterialKind:
     """Tabulated values of a kind of material: the lowest and the highest of each quantity.
 
     Attributes
@@ -42,29 +42,29 @@ class Kind:
 
 #: Words of a name, and what is tabulated for them; the first that matches counts.
 _KINDS: Final = (
-    (r"reinforced.?concrete", Kind("reinforced concrete", (2.3, 2.5), (2300, 2400), (1000, 1000))),
-    (r"concrete.?tile", Kind("concrete tiles", (1.5, 1.5), (2100, 2100), (1000, 1000))),
-    (r"concrete|beton", Kind("concrete", (1.15, 2.5), (1800, 2400), (1000, 1000))),
-    (r"plaster.?board|gypsum.?board", Kind("plasterboard", (0.21, 0.25), (700, 900), (1000, 1000))),
-    (r"gypsum", Kind("gypsum", (0.18, 0.56), (600, 1500), (1000, 1000))),
-    (r"plaster|render", Kind("plasters and renders", (0.18, 1.0), (600, 1800), (1000, 1000))),
-    (r"plywood", Kind("plywood", (0.09, 0.24), (300, 1000), (1600, 1600))),
-    (r"osb", Kind("oriented strand board", (0.13, 0.13), (650, 650), (1700, 1700))),
-    (r"timber|softwood|hardwood|spruce|oak", Kind("timber", (0.12, 0.18), (450, 700), (1600, 1600))),
-    (r"granite", Kind("granite", (2.8, 2.8), (2500, 2700), (1000, 1000))),
-    (r"limestone", Kind("limestone", (0.85, 2.3), (1600, 2600), (1000, 1000))),
-    (r"marble", Kind("marble", (3.5, 3.5), (2800, 2800), (1000, 1000))),
-    (r"stainless", Kind("stainless steel", (17, 30), (7900, 7900), (460, 500))),
-    (r"steel", Kind("steel", (50, 50), (7800, 7800), (450, 450))),
-    (r"alumini?um", Kind("aluminium alloys", (160, 160), (2800, 2800), (880, 880))),
-    (r"copper", Kind("copper", (380, 380), (8900, 8900), (380, 380))),
-    (r"\bglass\b(?! (wool|fib))", Kind("glass", (1.0, 1.4), (2000, 2500), (750, 750))),
+    (r"reinforced.?concrete", MaterialKind("reinforced concrete", (2.3, 2.5), (2300, 2400), (1000, 1000))),
+    (r"concrete.?tile", MaterialKind("concrete tiles", (1.5, 1.5), (2100, 2100), (1000, 1000))),
+    (r"concrete|beton", MaterialKind("concrete", (1.15, 2.5), (1800, 2400), (1000, 1000))),
+    (r"plaster.?board|gypsum.?board", MaterialKind("plasterboard", (0.21, 0.25), (700, 900), (1000, 1000))),
+    (r"gypsum", MaterialKind("gypsum", (0.18, 0.56), (600, 1500), (1000, 1000))),
+    (r"plaster|render", MaterialKind("plasters and renders", (0.18, 1.0), (600, 1800), (1000, 1000))),
+    (r"plywood", MaterialKind("plywood", (0.09, 0.24), (300, 1000), (1600, 1600))),
+    (r"osb", MaterialKind("oriented strand board", (0.13, 0.13), (650, 650), (1700, 1700))),
+    (r"timber|softwood|hardwood|spruce|oak", MaterialKind("timber", (0.12, 0.18), (450, 700), (1600, 1600))),
+    (r"granite", MaterialKind("granite", (2.8, 2.8), (2500, 2700), (1000, 1000))),
+    (r"limestone", MaterialKind("limestone", (0.85, 2.3), (1600, 2600), (1000, 1000))),
+    (r"marble", MaterialKind("marble", (3.5, 3.5), (2800, 2800), (1000, 1000))),
+    (r"stainless", MaterialKind("stainless steel", (17, 30), (7900, 7900), (460, 500))),
+    (r"steel", MaterialKind("steel", (50, 50), (7800, 7800), (450, 450))),
+    (r"alumini?um", MaterialKind("aluminium alloys", (160, 160), (2800, 2800), (880, 880))),
+    (r"copper", MaterialKind("copper", (380, 380), (8900, 8900), (380, 380))),
+    (r"\bglass\b(?! (wool|fib))", MaterialKind("glass", (1.0, 1.4), (2000, 2500), (750, 750))),
 )  # fmt: skip
 #: Materials of such names have other numbers than the kind of their last word.
 _SPECIAL: Final = re.compile(r"light|aerated|cellular|foam|insulat|hollow|board.?with|wool|pcm|straw|hemp")
 
 
-def kind_of(material: str) -> Kind | None:
+def kind_of(material: str) -> MaterialKind | None:
     """Find what is tabulated for a material of some name; None for names that do not say what it is.
 
     Parameters

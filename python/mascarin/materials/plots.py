@@ -51,9 +51,9 @@ def plot(chosen: Sequence[Product], ax: Sequence[Axes] | None = None) -> Figure:
     return melting.draw(list(_curves(shown)), ax)
 
 
-def _curves(chosen: Sequence[Product]) -> Iterator[melting.Curve]:
+def _curves(chosen: Sequence[Product]) -> Iterator[melting.CapacityCurve]:
     for number, item in enumerate(chosen):
         for what, temperatures, enthalpies in enthalpy_curves(item):
             middles, heats = zip(*capacities(temperatures, enthalpies), strict=True)
             label, style = f"{item.name}, {what}", _STYLES.get(what, "-")
-            yield melting.Curve(label, number, style, temperatures, enthalpies, middles, heats)
+            yield melting.CapacityCurve(label, number, style, temperatures, enthalpies, middles, heats)

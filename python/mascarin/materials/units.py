@@ -49,7 +49,7 @@ _NAMES: Final = {
 
 
 @dataclass(frozen=True)
-class Column:
+class DscColumn:
     """One column of the file.
 
     Attributes
@@ -81,7 +81,7 @@ def plain_unit(text: str) -> str:
     return re.sub(r"/(k?g)/?(k|°c|degc)$", r"/\1k", bare)
 
 
-def column_of(index: int, name: str) -> Column | None:
+def column_of(index: int, name: str) -> DscColumn | None:
     """Quantity and unit of a column by its name; None for other columns.
 
     The unit is in brackets or after a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
@@ -103,10 +103,10 @@ def column_of(index: int, name: str) -> Column | None:
         )
     if quantity is None:
         return None
-    return Column(index, text, quantity, unit, direction)
+    return DscColumn(index, text, quantity, unit, direction)
 
 
-def check_unit(column: Column, where: str) -> None:
+def check_unit(column: DscColumn, where: str) -> None:
     """Check that a unit belongs to its quantity.
 
     Raises
@@ -141,14 +141,14 @@ SHOWN: Final = {
 _CHECK: Final = "Check unit, heating rate and mass, and that the file begins and ends outside the melting"
 
 
-def check_heat(base: float, column: Column, where: str, factor: float) -> None:
+def check_heat(base: float, column: DscColumn, where: str, factor: float) -> None:
     """Check that a sensible specific heat is plausible; otherwise the unit in the file is wrong.
 
     Parameters
     ----------
     base : float
         Specific heat beside the peak, with the unit that was used [J/(kg K)].
-    column : Column
+    column : DscColumn
         The column.
     where : str
         The file.
@@ -177,7 +177,7 @@ def check_heat(base: float, column: Column, where: str, factor: float) -> None:
     )
 
 
-def to_celsius(values: list[float], column: Column, where: str) -> list[float]:
+def to_celsius(values: list[float], column: DscColumn, where: str) -> list[float]:
     """Temperatures in degC; without a unit, degC or K by their size.
 
     Raises

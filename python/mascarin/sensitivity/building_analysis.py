@@ -20,7 +20,7 @@ from mascarin.sensitivity.base.runs import Collector, batches
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.simulation.checks.formula_laws import member_range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.preparation.options import described, require_precision
 from mascarin.simulation.preparation.prepare import in_climate
@@ -277,7 +277,7 @@ def _single_precision(
     outputs = simulation.outputs
     names, units = [output.name for output in outputs], [output.unit for output in outputs]
     lines = differences(names, units, single[some], double)
-    return [RunWarning(f"single precision: {line}", Kind.METHOD) for line in lines]
+    return [RunWarning(f"single precision: {line}", WarningKind.METHOD) for line in lines]
 
 
 def run_samples(

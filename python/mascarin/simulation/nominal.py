@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.errors import SolverError
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning, of_kind
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind, of_kind
 from mascarin.simulation.records.times import Times
 from mascarin.simulation.simulation import Simulation
 
@@ -44,8 +44,8 @@ def of_nominal(simulation: Simulation, vector: Array | None = None) -> tuple[Run
         return simulation.warnings_at(simulation.values if vector is None else vector)
     except SolverError as error:
         failed = f"a run with the values of the building failed, so that it could not be checked: {error}"
-        building = of_kind(Kind.BUILDING, simulation.building_warnings)
-        return (RunWarning(failed, Kind.FAILURE), *building)
+        building = of_kind(WarningKind.BUILDING, simulation.building_warnings)
+        return (RunWarning(failed, WarningKind.FAILURE), *building)
 
 
 def of_short_run(simulation: Simulation, seconds: float = SHORT) -> tuple[RunWarning, ...]:

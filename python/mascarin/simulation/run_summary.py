@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.checks.energy import EnergyLedger
     from mascarin.simulation.checks.judgement import Judgement
     from mascarin.simulation.checks.vapour import VapourLedger
-    from mascarin.simulation.preparation.initial_state import Profile
+    from mascarin.simulation.preparation.initial_state import InitialTemperatures
     from mascarin.simulation.records.provenance import Provenance
     from mascarin.simulation.records.times import Times
 
@@ -103,7 +103,7 @@ class StoredRun:
 
 
 def start_note(
-    initial: float | Profile | None,
+    initial: float | InitialTemperatures | None,
     settings: Mapping[str, Any],
     step_seconds: float,
     steps: int,

@@ -14,7 +14,7 @@ import numpy as np
 from mascarin.simulation.checks.formula_laws import member_range_warnings, range_warnings
 from mascarin.simulation.checks.judgement import ensemble_warnings
 from mascarin.simulation.checks.step_check import LARGE
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning, of_kind
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind, of_kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -60,8 +60,8 @@ def collected(
         those about the building.
     """
     lines = [*energy.warnings(), *(vapour.warnings(step_seconds) if vapour is not None else ()), *judged]
-    lines += [*of_kind(Kind.LATENT, watch.melting.warnings()), *watch.bends.warnings(step_seconds)]
-    return tuple(dict.fromkeys((*lines, *of_kind(Kind.BUILDING, building))))
+    lines += [*of_kind(WarningKind.LATENT, watch.melting.warnings()), *watch.bends.warnings(step_seconds)]
+    return tuple(dict.fromkeys((*lines, *of_kind(WarningKind.BUILDING, building))))
 
 
 def of_engine(
@@ -91,7 +91,10 @@ def of_engine(
     list of RunWarning
         A temperature without a cause, laws that were used where they do not hold.
     """
-    return [*judgement.warnings(step_seconds, scheme), *of_kind(Kind.VALIDITY, range_warnings(raw, dated))]
+    return [
+        *judgement.warnings(step_seconds, scheme),
+        *of_kind(WarningKind.VALIDITY, range_warnings(raw, dated)),
+    ]
 
 
 def of_members(
@@ -143,7 +146,7 @@ def of_members(
             f"long for the air of a zone, whose temperature is wrong by about {step_errors[worst]:.1g} K "
             f"(root mean square) in member {first + worst}: take a shorter step"
         )
-        lines.append(RunWarning(text, Kind.STEP))
+        lines.append(RunWarning(text, WarningKind.STEP))
     return lines
 
 

@@ -5,10 +5,9 @@ Intermediate results are stored as by the whole study, which uses what a single 
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mascarin._io import atomic
 from mascarin.sensitivity.files import save_all
@@ -18,11 +17,11 @@ from mascarin.study.context.storage import Workspace
 from mascarin.study.file.description import SensitivityPlan
 from mascarin.study.results.document.comparison import comparison
 from mascarin.study.results.document.errors import error_entries, error_tables, error_words
-from mascarin.study.results.document.estimates import estimates, prediction_entries, profile_entries
+from mascarin.study.results.document.estimates import estimates, profile_entries
 from mascarin.study.results.document.header import header
 from mascarin.study.results.document.sensitivity import analyzed_hours, importance
-from mascarin.study.results.document.whole import ESTIMATES
-from mascarin.study.results.files import chains_file, fit_figures
+from mascarin.study.results.document.whole import ESTIMATES, contradictions
+from mascarin.study.results.files import as_json, chains_file, fit_figures
 from mascarin.study.results.tables import (
     criteria_table,
     estimates_table,
@@ -33,9 +32,11 @@ from mascarin.study.results.tables import (
 )
 from mascarin.study.steps.calibration_result import building_with_posterior, calibrated
 from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
-from mascarin.study.steps.prediction_intervals import interval_table, interval_words
+from mascarin.study.steps.prediction_intervals import interval_entries, interval_table, interval_words
 from mascarin.study.steps.predictive_checks import statements
 from mascarin.study.transfer.bands import bands_of
+from mascarin.study_document.analysis import NoteEntry
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
 
 def sensitivity(
     study: StudyContext, out: Path, *, method: MethodName | None = None, progress: ProgressOption = True
-) -> dict[str, Any]:
+) -> StudyDocument:
     """Sensitivity analysis.
 
     Parameters
@@ -63,7 +64,7 @@ def sensitivity(
 
     Returns
     -------
-    dict
+    StudyDocument
         What sensitivity.json holds.
 
     Raises
@@ -81,16 +82,16 @@ def sensitivity(
         drawn = [
             path for name in found.outputs for path in save_all(found, name, out / "figures", name, hours)
         ]
-        content = {
-            **header(study, "sensitivity"),
-            **importance(study, found),
-            "warnings": list(found.warnings),
-        }
+        content = StudyDocument.joined(
+            header(study, "sensitivity"),
+            importance(study, found),
+            StudyDocument(warnings=[*found.warnings]),
+        )
         _write(workspace, "sensitivity", content, {"sensitivity": found.table()}, drawn)
     return content
 
 
-def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = True) -> dict[str, Any]:
+def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = True) -> StudyDocument:
     """Calibration, and the comparison before and after it.
 
     Parameters
@@ -104,7 +105,7 @@ def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = Tr
 
     Returns
     -------
-    dict
+    StudyDocument
         What calibration.json holds.
     """
     _ = study.inputs.calibration_plan
@@ -115,25 +116,25 @@ def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = Tr
             found = calibrated(study, runs)
         fitted, fit, intervals, profiles = found.run, found.fit, found.intervals, found.profiles
         models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
-        content = {
-            "contradictions": [one.to_dict() for one in found.contradictions],
-            **header(study, "calibrate"),
-            **comparison(models, verdicts),
-            **estimates(study, fit, stated=intervals.stated),
-            **profile_entries(profiles),
-            **prediction_entries(study, intervals),
-            **error_entries(study, found.combination),
-            "tables": [interval_table(study, intervals), *error_tables(study, found.combination)],
-            "notes": [
-                {"title": ESTIMATES, "text": text}
-                for text in (
-                    *fit.warnings,
-                    *(p.words for p in profiles if p.words),
-                    *error_words(study, found.combination),
-                    *interval_words(study, intervals),
-                )
-            ],
-        }
+        notes = (
+            *fit.warnings,
+            *(p.words for p in profiles if p.words),
+            *error_words(study, found.combination),
+            *interval_words(study, intervals),
+        )
+        content = StudyDocument.joined(
+            header(study, "calibrate"),
+            comparison(models, verdicts),
+            estimates(study, fit, stated=intervals.stated),
+            profile_entries(profiles),
+            error_entries(study, found.combination),
+            StudyDocument(
+                contradictions=contradictions(found.contradictions),
+                band=interval_entries(study, intervals),
+                tables=[interval_table(study, intervals), *error_tables(study, found.combination)],
+                notes=[NoteEntry(title=ESTIMATES, text=text) for text in notes],
+            ),
+        )
         tables = {
             "parameters": estimates_table(fit),
             "evaluations": fit.evaluations(),
@@ -169,7 +170,7 @@ def validation(study: StudyContext, out: Path | None) -> Validation:
         validated, tables = _validated(study)
         series = out / "series.csv"
         atomic.write(series, validated.to_dataframe().to_csv(index=False, lineterminator="\n"))
-        _write(workspace, "validation", validated.to_dict(), tables, [series])
+        _write(workspace, "validation", validated.content, tables, [series])
     return validated
 
 
@@ -182,15 +183,16 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
         "quality": quality_table(study.quality),
     }
     bands, words = bands_of(study, run)
-    content = {
-        "contradictions": [one.to_dict() for one in (*words, *statements(study))],
-        **header(study, "validate"),
-        **comparison({"nominal": run}, verdicts),
-    }
+    content = StudyDocument.joined(
+        header(study, "validate"),
+        comparison({"nominal": run}, verdicts),
+        StudyDocument(contradictions=contradictions((*words, *statements(study)))),
+    )
     series = validation_series(study, run)
     if bands is not None:
         units = [output.unit for output in run.results.outputs]
-        content["band"] = bands.entries(study.observation, study.used)
+        entries = bands.entries(study.observation, study.used)
+        content = StudyDocument.joined(content, StudyDocument(band=entries))
         series = bands.beside(series, study.observation.names, units)
     return Validation(content, series), tables
 
@@ -198,7 +200,7 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
 def _write(
     workspace: Workspace,
     name: str,
-    content: Mapping[str, Any],
+    content: StudyDocument,
     tables: Mapping[str, pd.DataFrame],
     further: Iterable[Path] = (),
 ) -> None:
@@ -206,8 +208,3 @@ def _write(
     written = [*write_tables(workspace.out / "tables", tables), *further, result]
     atomic.write(result, as_json(content))
     workspace.record(name, written)
-
-
-def as_json(content: Mapping[str, Any]) -> str:
-    """The text of a result file."""
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"

@@ -24,7 +24,7 @@ from mascarin.study.results.document.errors import error_words
 from mascarin.study.results.files import write_all
 from mascarin.study.results.results import StudyResults
 from mascarin.study.single_steps import validation
-from mascarin.study.steps.calibration_result import calibrated
+from mascarin.study.steps.calibration_result import Calibrated, calibrated
 from mascarin.study.steps.checking import check
 from mascarin.study.steps.days import days
 from mascarin.study.steps.derived_quantities import derived_quantities, latent_heat_used
@@ -32,6 +32,7 @@ from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_words, slopes
 from mascarin.study.steps.residuals import error_sources, examined, too_few
 from mascarin.study.transfer.comparison import transferred
+from mascarin.study_document.comparison import TransferEntry
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
@@ -427,7 +428,7 @@ def all_steps(context: StudyContext, workspace: Workspace, progress: ProgressOpt
         seconds=time.monotonic() - began,
         combination=found.combination,
         contradictions=found.contradictions,
-        transfer=kept(workspace, ("transfer", at), lambda: transferred(context, found)),
+        transfer=_houses(context, workspace, found),
         derived=kept(
             workspace,
             ("derived", at),
@@ -437,3 +438,10 @@ def all_steps(context: StudyContext, workspace: Workspace, progress: ProgressOpt
             ],
         ),
     )
+
+
+def _houses(context: StudyContext, workspace: Workspace, found: Calibrated) -> dict[str, TransferEntry]:
+    """Other houses, seasons and phases with the estimates, as plain values in the folder."""
+    at = ("transfer", found.fit.x.tolist())
+    entries = kept(workspace, at, lambda: {k: v.to_dict() for k, v in transferred(context, found).items()})
+    return {name: TransferEntry.model_validate(entry) for name, entry in entries.items()}

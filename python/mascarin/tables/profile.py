@@ -1,6 +1,6 @@
 """Reconstruct a quantity inside the intervals of its source, such that every mean is kept.
 
-A `Profile` is linear between evenly spaced nodes inside each source interval. It may jump
+A `PiecewiseProfile` is linear between evenly spaced nodes inside each source interval. It may jump
 from one interval to the next. Its means over any span follow exactly from the nodes.
 
 A mean is reconstructed as `k(t) shape(t)`: the shape follows the sun (or is constant), and the
@@ -23,7 +23,7 @@ _TIME_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Profile:
+class PiecewiseProfile:
     """A piecewise linear quantity over time.
 
     Attributes

@@ -11,7 +11,7 @@ from mascarin.templates.short_texts import quoted
 
 if TYPE_CHECKING:
     from mascarin.templates.room import Room
-    from mascarin.templates.study_text import Record
+    from mascarin.templates.study_text import LoggerRecord
 
 #: Channels of the weather without which a cell cannot be simulated.
 _NEEDED: Final = ("air_temperature", "global_horizontal")
@@ -19,14 +19,16 @@ _NEEDED: Final = ("air_temperature", "global_horizontal")
 _ABSENT: Final = ("wind_speed", "wind_direction", "dew_point")
 
 
-def cell_study(room: Room, record: Record, weather: Mapping[str, str], sensors: Mapping[str, str]) -> str:
+def cell_study(
+    room: Room, record: LoggerRecord, weather: Mapping[str, str], sensors: Mapping[str, str]
+) -> str:
     """The study of a cell, as text.
 
     Parameters
     ----------
     room : Room
         The cell.
-    record : Record
+    record : LoggerRecord
         The logger file.
     weather : mapping of str to str
         Channel of the weather -> column of the file.
@@ -63,7 +65,7 @@ def cell_study(room: Room, record: Record, weather: Mapping[str, str], sensors: 
     )
 
 
-def _climate(record: Record, weather: Mapping[str, str]) -> Iterator[str]:
+def _climate(record: LoggerRecord, weather: Mapping[str, str]) -> Iterator[str]:
     yield "climate:"
     yield "  measured:"
     yield f"    table: {quoted(record.path.name)}"

@@ -22,7 +22,7 @@ _FEWEST_DAYS: Final = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class LoggerRecord:
     """A logger file.
 
     Attributes
@@ -44,7 +44,7 @@ class Record:
     last: pd.Timestamp
 
     @classmethod
-    def of_file(cls, path: Path, timezone: str) -> Record:
+    def of_file(cls, path: Path, timezone: str) -> LoggerRecord:
         """Read the names of the columns and the length of a logger file.
 
         Parameters
@@ -108,7 +108,7 @@ class Record:
 
 
 def study_lines(
-    record: Record,
+    record: LoggerRecord,
     name: str,
     climate: Iterator[str],
     sensors: Mapping[str, str],
@@ -118,7 +118,7 @@ def study_lines(
 
     Parameters
     ----------
-    record : Record
+    record : LoggerRecord
         The logger file.
     name : str
         Name of the study.

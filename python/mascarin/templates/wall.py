@@ -13,7 +13,7 @@ from mascarin.templates.short_texts import LayerText, layers_of, name_of, quoted
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.templates.study_text import Record
+    from mascarin.templates.study_text import LoggerRecord
 
 _DEPTH: Final = re.compile(r"^(\d+(?:\.\d+)?)\s*mm$")
 _OUTDOORS: Final = """\
@@ -149,12 +149,12 @@ class Wall:
             for column, depth in inner.items():
                 yield f"  {name_of(column)}: {{surface: wall, depth: {depth:g}}}"
 
-    def study(self, record: Record) -> str:
+    def study(self, record: LoggerRecord) -> str:
         """The study of a logger file, as text.
 
         Parameters
         ----------
-        record : Record
+        record : LoggerRecord
             The file.
 
         Raises

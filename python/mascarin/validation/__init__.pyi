@@ -8,12 +8,8 @@ from .criteria import judge as judge
 from .criteria import parse_criteria as parse_criteria
 from .days import DayChoice as DayChoice
 from .days import choose_days as choose_days
-from .observation import Observation as Observation
-from .observation import observe as observe
 from .residuals import DriverCorrelation as DriverCorrelation
 from .residuals import ResidualAnalysis as ResidualAnalysis
 from .residuals import analyze_residuals as analyze_residuals
-from .sensors import Sensor as Sensor
-from .sensors import SensorUncertainty as SensorUncertainty
 
 __all__: list[str]

@@ -13,7 +13,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags
 from mascarin.tables.checks import require_range, require_values
 from mascarin.tables.grid import Grid, values_in
-from mascarin.tables.profile import Profile, pieces_for, steady
+from mascarin.tables.profile import PiecewiseProfile, pieces_for, steady
 from mascarin.tables.record import Record
 from mascarin.tables.steps import Steps
 from mascarin.tables.times import clock
@@ -252,7 +252,7 @@ def column_values(record: Record, name: str, steps: Steps) -> Array:
     if name == "wind_direction":
         values, positive = np.unwrap(values, period=360.0), False
     nodes = steady(values, pieces_for(interval), positive=positive)
-    result = _balanced(Profile(start, interval, nodes), edges, stage, weights, additive=not positive)
+    result = _balanced(PiecewiseProfile(start, interval, nodes), edges, stage, weights, additive=not positive)
     return result % 360.0 if name == "wind_direction" else result
 
 
@@ -331,7 +331,7 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps
     sky = make(sun, start - origin, record.grid.interval, direct, diffuse, total, basis)
     sunlit = out[..., CHANNELS.index("sun_up")] > 0.0
     for name in RADIATION:
-        profile: Profile = getattr(sky, name)
+        profile: PiecewiseProfile = getattr(sky, name)
         usable = sunlit if name == "direct_normal" else None
         column = out[..., CHANNELS.index(name)]
         # In blocks, as the sun.
@@ -344,7 +344,7 @@ def fill_radiation(out: Array, record: WeatherRecord, sun: SunPath, steps: Steps
 
 
 def _balanced(
-    profile: Profile,
+    profile: PiecewiseProfile,
     edges: Array,
     stage: Array,
     weights: tuple[float, ...],

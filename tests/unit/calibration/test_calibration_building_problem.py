@@ -26,17 +26,17 @@ from mascarin.calibration.base.building_problem import problem_of
 from mascarin.calibration.methods.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
+from mascarin.measurements import Sensor
+from mascarin.measurements.observation import observe
 from mascarin.simulation.preparation import prepare
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
-from mascarin.validation.observation import observe
-from mascarin.validation.sensors import Sensor
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
 
 SENSORS = {
-    "joint": Sensor("joint", 0.06, output="wall.interface_1_temperature"),
-    "core.temperature": Sensor("core", 0.06),
+    "joint": Sensor("joint", expanded_uncertainty=0.06, output="wall.interface_1_temperature"),
+    "core.temperature": Sensor("core", expanded_uncertainty=0.06),
 }
 SPAN: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "warm_up": "1d"}
 
@@ -192,7 +192,7 @@ def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
     fit = calibrate(
         building, climate, measured,
         vary=[free],
-        sensors={"core.temperature": Sensor("core", 0.06, relative_expanded_uncertainty=0.05)},
+        sensors={"core.temperature": Sensor("core", expanded_uncertainty=0.06, relative=0.05)},
         options=SearchOptions(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     assert fit.minima[0].start[0] == pytest.approx(1.5)
@@ -224,11 +224,11 @@ def seven() -> CalibrationProblem:
     building = study.context.variants.building_of(variant)
     free = [fit_parameter(building, path) for path in study.context.variants.plan_of(variant).parameters]
     sensors = {
-        "room.operative_temperature": Sensor("room_air", 0.3),
-        "ceiling.energain_plasterboard_temperature": Sensor("pcm_plasterboard", 0.3),
-        "ceiling.outside_temperature": Sensor("pcm_top", 0.3),
-        "air_gap.air_temperature": Sensor("gap_air", 0.3),
-        "roof.inside_temperature": Sensor("steel_sheet", 0.3),
+        "room.operative_temperature": Sensor("room_air", expanded_uncertainty=0.3),
+        "ceiling.energain_plasterboard_temperature": Sensor("pcm_plasterboard", expanded_uncertainty=0.3),
+        "ceiling.outside_temperature": Sensor("pcm_top", expanded_uncertainty=0.3),
+        "air_gap.air_temperature": Sensor("gap_air", expanded_uncertainty=0.3),
+        "roof.inside_temperature": Sensor("steel_sheet", expanded_uncertainty=0.3),
     }
     simulation = Simulation(
         building,
@@ -382,3 +382,21 @@ def test_a_heat_flux_needs_an_uncertainty(
             InputError, match=r"sensors: wall.inside_flux: found no uncertainty, expected one"
         ):
             calibrate(building, climate, logger, sensors={flux: "flux"}, **given)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"mean": ("wall.inside_flux", "wall.outside_flux")},
+        {"use": False},
+        {"periods": {"identification": ("2023-03-02", "2023-03-03")}},
+    ],
+)
+def test_keys_that_only_a_study_reads_are_refused(
+    more: dict[str, Any], building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    logger = Measurements.from_table(table, timezone="UTC+1")
+    sensors = {"core.temperature": Sensor("core", **more)}
+    (key,) = more
+    with pytest.raises(InputError, match=rf"sensors: core\.temperature: found {key}, expected keys"):
+        calibrate(building, climate, logger, sensors=sensors, vary=["surfaces.wall.outside.absorptance"])

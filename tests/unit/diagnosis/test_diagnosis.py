@@ -25,7 +25,7 @@ from diagnosis_support import (
     slots,
 )
 from mascarin.calibration.errors.day_blocks import DayGaussian
-from mascarin.diagnosis.causes import Finding, covariance_of, diagnose, log_prior, scores_of
+from mascarin.diagnosis.causes import CauseEstimate, covariance_of, diagnose, log_prior, scores_of
 from mascarin.diagnosis.hypotheses import Cause
 from mascarin.diagnosis.likelihood_ratio import Scores, Simulator, p_value
 from mascarin.diagnosis.sensor_faults import shifted, white_noise
@@ -56,7 +56,7 @@ def _simulated() -> Floats:
     return Simulator(gaussian, hypotheses, np.inf).largest(zero, 1999, np.random.default_rng(1))
 
 
-def _named(fault: Floats | float, seed: int, draws: int = 199) -> tuple[Finding, ...]:
+def _named(fault: Floats | float, seed: int, draws: int = 199) -> tuple[CauseEstimate, ...]:
     return diagnose(drawn(seed, fault), COVARIANCE, draws=draws).findings
 
 

@@ -297,9 +297,9 @@ def test_discrete_parameters_that_genopt_does_not_accept(
     assert any("accepted beyond GenOpt" in n for n in outcome.notes)
 
 
-def test_a_removed_algorithm_names_its_replacement(tmp_path: Path) -> None:
+def test_an_algorithm_that_does_not_exist_is_refused(tmp_path: Path) -> None:
     ini = write_project(tmp_path, algorithm="Main = MascarinDE; Seed = 1;")
-    with pytest.raises(InputError, match=r"'MascarinDE' was removed; choose MascarinCMAES .* or PSOCC"):
+    with pytest.raises(InputError, match="algorithm 'MascarinDE' is not known"):
         optimize(ini, run=runner(bowl))
 
 

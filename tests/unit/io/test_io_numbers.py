@@ -7,6 +7,7 @@ import pytest
 from mascarin._io.numbers import beside_limit, decimals_for, fixed, with_interval
 from mascarin.figures import text
 from mascarin.pages.study.sections import criteria, parameters
+from mascarin.study_document.document import StudyDocument
 
 
 @pytest.mark.parametrize(
@@ -65,7 +66,7 @@ def test_the_report_shows_the_digits_of_the_interval() -> None:
         "unit": "degC",
         "range": [20, 30],
     }
-    study = {"parameters": {"materials.pcm.law.temperature": entry}}
+    study = StudyDocument.read({"parameters": {"materials.pcm.law.temperature": entry}})
     [row] = parameters.content(study, None)["rows"]  # type: ignore[arg-type, index]
     assert (row["fitted"], row["interval"]) == ("24.020", "23.978 to 24.062")
 
@@ -80,5 +81,5 @@ def test_the_report_shows_that_a_limit_is_missed() -> None:
         "model": "fitted", "name": "|rmse| <= 0.25 K", "sensor": "room", "period": "identification",
         "metric": "rmse", "value": 0.2503, "limit": 0.25, "unit": "K", "passed": False,
     }  # fmt: skip
-    [group] = criteria.content({"criteria": [verdict]}, None)  # type: ignore[arg-type, misc]
+    [group] = criteria.content(StudyDocument.read({"criteria": [verdict]}), None)  # type: ignore[arg-type, misc]
     assert (group["rows"][0]["value"], group["rows"][0]["limit"]) == ("0.2503", "0.25")

@@ -21,8 +21,8 @@ from mascarin.simulation.preparation.initial import MeasuredStart
 from mascarin.simulation.preparation.initial_state import (
     Ambient,
     GivenStart,
+    InitialTemperatures,
     Known,
-    Profile,
     given,
     profile,
     walls,
@@ -270,7 +270,7 @@ def test_a_measured_start_has_the_measured_temperatures(linear: Building, climat
     start = MeasuredStart(table(sunny=late, **{"shady b": one}), SENSORS)
     trial = Simulation(linear, climate, step="1h", initial=start)
     initial = trial.initial
-    assert isinstance(initial, Profile)
+    assert isinstance(initial, InitialTemperatures)
     assert initial.air == (22.0, 17.0)
     wall = walls(linear, linear.to_engine(3600.0, {}).nodes)[0]
     at = wall.at_depth(0.03)

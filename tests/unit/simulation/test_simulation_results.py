@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from mascarin import __version__
 from mascarin.errors import InputError
 from mascarin.simulation.checks.energy import FLOWS, EnergyLedger
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.weather import Climate
@@ -123,7 +123,7 @@ def test_netcdf_and_back(run: Results, tmp_path: Path) -> None:
 
 def test_results_read_back_are_equal(run: Results, tmp_path: Path) -> None:
     file = tmp_path / "run.nc"
-    full = replace(run, warnings=(RunWarning("surfaces.north, layer pcm: stayed solid", Kind.LATENT),))
+    full = replace(run, warnings=(RunWarning("surfaces.north, layer pcm: stayed solid", WarningKind.LATENT),))
     full.to_netcdf(file)
     back = Results.open(file)
     assert back == full
@@ -208,7 +208,7 @@ def test_results_can_be_pickled(run: Results) -> None:
 
 
 def test_results_are_described_in_a_few_lines(run: Results) -> None:
-    lines = [RunWarning(f"warning {k}", Kind.STEP) for k in range(30)]
+    lines = [RunWarning(f"warning {k}", WarningKind.STEP) for k in range(30)]
     text = repr(replace(run, warnings=tuple(lines)))
     assert len(text.splitlines()) == 15
     assert max(len(line) for line in text.splitlines()) <= 100

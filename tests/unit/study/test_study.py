@@ -20,6 +20,9 @@ import pytest
 
 from mascarin import cli
 from mascarin._io.tables import read_csv
+from mascarin.study_document.comparison import LedgerEntry, MetricValues
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.entry import ResultEntry
 from study_support import BUILDING, NOISE, STUDY, TRUTH, Bench, logger_table
 
 METRICS = {
@@ -113,6 +116,28 @@ def test_the_files_that_are_left(done: Done) -> None:
     assert not [name for name in names if name.endswith((".part", ".npy"))]
     for figure in figures:
         assert ET.parse(done.out / figure).getroot().tag.endswith("svg")  # noqa: S314 (our own file)
+
+
+def undeclared(entry: object, where: str = "") -> list[str]:
+    """Keys of results that their model does not declare; models, metrics and flows have their own names."""
+    if isinstance(entry, dict | list):
+        pairs = entry.items() if isinstance(entry, dict) else enumerate(entry)
+        return [key for name, value in pairs for key in undeclared(value, f"{where}.{name}")]
+    if not isinstance(entry, ResultEntry):
+        return []
+    extra = (
+        []
+        if isinstance(entry, MetricValues | LedgerEntry)
+        else [f"{where}.{key}" for key in entry.model_extra or {}]
+    )
+    values = {key: getattr(entry, key) for key in entry.model_fields_set}
+    return [*extra, *undeclared({k: v for k, v in values.items() if f"{where}.{k}" not in extra}, where)]
+
+
+def test_the_results_are_read_back_without_loss(done: Done) -> None:
+    document = StudyDocument.read(done.content)
+    assert document.to_dict() == done.content
+    assert undeclared(document) == []
 
 
 def test_the_schema_of_the_result(done: Done) -> None:

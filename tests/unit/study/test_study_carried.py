@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -78,8 +79,8 @@ def test_an_edited_posterior_is_refused(bench: Bench, tmp_path: Path) -> None:
 def test_bands_of_the_same_season_hold_and_name_no_extrapolation_of_weather(bench: Bench) -> None:
     validation = Study.from_yaml(bench.folder / "again.yaml").validate(bench.folder / "compared")
     for name, entry in validation.bands.items():
-        assert entry["held"]["identification"] > 0.95, name
-        assert 0.2 < entry["half_width"] < 1.5
+        assert (entry.held["identification"] or 0.0) > 0.95, name
+        assert 0.2 < (entry.half_width or 0.0) < 1.5
     table = validation.to_dataframe()
     assert table["joint.prediction_band [K]"].notna().all()
     assert (bench.folder / "compared" / "series.csv").read_text(encoding="utf-8").startswith("time,")
@@ -119,9 +120,9 @@ def test_another_season_widens_the_bands_and_says_so(bench: Bench) -> None:
     assert not any("extrapolates" in text and "air temperature: the daily means of 7" in text
                    for text in here.remarks)  # fmt: skip
     for name, entry in validation.bands.items():
-        assert entry["extrapolated"] == 1.0
-        assert entry["half_width"] > 1.5 * here.bands[name]["half_width"]
-        assert min(share for share in entry["held"].values() if share is not None) > 0.9
+        assert entry.extrapolated == 1.0
+        assert (entry.half_width or 0.0) > 1.5 * (here.bands[name].half_width or math.inf)
+        assert min(share for share in entry.held.values() if share is not None) > 0.9
 
 
 def test_another_value_counts_as_known(bench: Bench) -> None:

@@ -37,7 +37,7 @@ def written(folder: Path, table: pd.DataFrame, sensors: dict[str, Any], **change
 
 
 def rms(study: Study, sensor: str) -> float:
-    return float(study.validate().content["sensors"][sensor]["identification"]["nominal"]["rmse"])
+    return float(study.validate().content.metrics(sensor, "identification", "nominal").rmse or 0.0)
 
 
 def test_a_sum_and_a_mean_are_those_of_the_outputs_and_columns(tmp_path: Path, table: pd.DataFrame) -> None:

@@ -102,7 +102,7 @@ def test_documents_of_shipped_studies_know_the_parameters_of_every_form(name: st
         paths = study.context.problem(variant).paths
         simulation = study.context.models.over_record(variant)
         run = compared(study.context, "fitted", simulation, simulation.values, None, label(choice))
-        models = coefficients(study.context, {"fitted": run}, (*paths, *published))["coefficients"]["models"]
+        models = coefficients(study.context, {"fitted": run}, (*paths, *published)).coefficients.models
         laws = {path.rpartition(".convection")[0] for path in paths if ".convection" in path}
         assert {f"{law}.convection" for law in laws} <= set(models["fitted"]), label(choice)
         assert all(value > 0.0 for value in models["fitted"].values())

@@ -22,7 +22,7 @@ from mascarin.calibration import (
 )
 from mascarin.errors import InputError
 from mascarin.examples import box
-from mascarin.validation.sensors import Sensor
+from mascarin.measurements import Sensor
 from mascarin.weather import Measurements
 from study_support import BUILDING, STUDY, TRUTH, Bench, logger_table, open_climate
 
@@ -176,7 +176,7 @@ def test_a_calibration_estimates_an_offset_that_is_stated(table: pd.DataFrame, t
         found(Sensor("joint", output=output, offset=0.3), method="emcee")
     with pytest.raises(InputError, match="which is not inside a wall"):
         found(Sensor("joint", output=output, depth=0.002))
-    with pytest.raises(InputError, match=r"found offset -0\.1"):
+    with pytest.raises(InputError, match=r"offset\n +found: -0\.1"):
         Sensor("joint", offset=-0.1)
 
 

@@ -65,11 +65,14 @@ def test_a_calibration_is_carried_to_another_building(tmp_path: Path) -> None:
     (tmp_path / "east.yaml").write_text(yaml.safe_dump(EAST), encoding="utf-8")
     results = Study.from_yaml(path).run(tmp_path / "out", figures=False)
     entry = results.transfer["east"]
-    assert entry["building"] == "Other wall"
+    assert entry.building == "Other wall"
     for sensor in ("joint", "core"):
-        for scores in entry["sensors"][sensor].values():
-            assert scores["calibrated"]["rmse"] < 0.5 * scores["described"]["rmse"]
-            assert scores["held"] > 0.85
+        for scores in entry.sensors[sensor].values():
+            before, after = scores.described.rmse, scores.calibrated.rmse
+            assert before is not None
+            assert after is not None
+            assert after < 0.5 * before
+            assert (scores.held or 0.0) > 0.85
     report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "Transfer of the calibration" in report
     assert "Other wall" in report

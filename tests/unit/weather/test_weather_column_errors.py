@@ -16,8 +16,8 @@ from mascarin.calibration import SearchOptions, solve
 from mascarin.cli import main
 from mascarin.errors import InputError
 from mascarin.examples import box
+from mascarin.measurements import Sensor
 from mascarin.sensitivity import sensitivity_analysis
-from mascarin.validation import Sensor
 from mascarin.weather.records.channels import CHANNELS, RADIATION
 from skies import NAMES, sky
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mascarin.tables.profile import Profile, index_nodes, pieces_for, steady, trapezoid_weights
+from mascarin.tables.profile import PiecewiseProfile, index_nodes, pieces_for, steady, trapezoid_weights
 
 MEANS = st.lists(st.floats(0.0, 1000.0), min_size=3, max_size=30)
 
@@ -20,12 +20,12 @@ def test_pieces_are_even_and_no_longer_than_five_minutes() -> None:
 
 
 def test_value_at_a_jump_is_that_of_the_interval_that_ends() -> None:
-    profile = Profile(0.0, 10.0, np.array([[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]))
+    profile = PiecewiseProfile(0.0, 10.0, np.array([[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]))
     assert profile.at(np.array([0.0, 5.0, 10.0, 10.1, 20.0])) == pytest.approx([1.0, 2.0, 3.0, 7.02, 9.0])
 
 
 def test_means_over_spans_that_fit_nothing() -> None:
-    profile = Profile(0.0, 10.0, np.array([[0.0, 0.0, 4.0], [4.0, 2.0, 0.0]]))
+    profile = PiecewiseProfile(0.0, 10.0, np.array([[0.0, 0.0, 4.0], [4.0, 2.0, 0.0]]))
     # By hand: 0 .. 7.5 has a triangle of 2 x 2.5 / 2; 7.5 .. 20 the rest of 10 + 20.
     assert profile.means(np.array([0.0, 7.5, 20.0])) == pytest.approx([2.5 / 7.5, 27.5 / 12.5], rel=1e-14)
 

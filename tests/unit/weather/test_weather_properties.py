@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mascarin.tables.profile import Profile, pieces_for, steady
+from mascarin.tables.profile import PiecewiseProfile, pieces_for, steady
 from mascarin.tables.steps import Steps
 from mascarin.weather import STAGES, Climate, Measurements, Place
 from mascarin.weather.forcing import column_means, column_values
@@ -78,7 +78,7 @@ def test_means_keep_their_integral_over_coarser_and_finer_intervals(
 def test_a_reconstruction_keeps_the_mean_of_every_interval(of: tuple[float, list[float]]) -> None:
     interval, values = of
     nodes = steady(np.array(values), pieces_for(interval), positive=True)
-    profile = Profile(0.0, interval, nodes)
+    profile = PiecewiseProfile(0.0, interval, nodes)
     found = profile.means(interval * np.arange(len(values) + 1))
     # Numbers near 1e-308 have fewer digits.
     np.testing.assert_allclose(found, values, rtol=1e-12, atol=1e-12 * max(values) + 1e-300)

@@ -16,7 +16,7 @@ from mascarin.building.parts.air.vent import Vent, VentControl
 from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, Opening, Zone
 from mascarin.building.parts.derived_output import DerivedOutput
-from mascarin.building.parts.envelope.surface import Construction, Sensor, Surface
+from mascarin.building.parts.envelope.surface import Construction, Surface, WallSensor
 from mascarin.building.parts.materials.material import Material
 from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
@@ -66,7 +66,9 @@ class Description(Part):
     shades: dict[Name, Shade] = Field(
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
     )
-    sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+    sensors: dict[Name, WallSensor] = Field(
+        default_factory=dict, description="Thermometers inside walls by name"
+    )
     derived_outputs: dict[Name, DerivedOutput] = Field(
         default_factory=dict, description="Outputs that follow from others by a formula, by name"
     )

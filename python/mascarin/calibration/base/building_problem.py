@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
+    from mascarin.measurements.observation import Observation
+    from mascarin.measurements.uncertainty import SensorUncertainty
     from mascarin.simulation.simulation import Simulation
-    from mascarin.validation.observation import Observation
-    from mascarin.validation.sensors import SensorUncertainty
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]

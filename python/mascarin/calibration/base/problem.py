@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.validation.sensors import SensorUncertainty
+from mascarin.measurements.uncertainty import SensorUncertainty
 
 Floats = NDArray[np.float64]
 Model = Callable[[Floats], ArrayLike]

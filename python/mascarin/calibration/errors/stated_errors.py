@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,15 @@ from mascarin.calibration.errors.joint_posterior import ErrorStatement
 from mascarin.calibration.errors.posterior_checks import judged
 from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.errors import InputError
-from mascarin.validation.scatter import scatter
+from mascarin.measurements.scatter import scatter
 
 if TYPE_CHECKING:
     from mascarin.calibration.base.result import Calibration
     from mascarin.calibration.base.search_options import SearchOptions
+    from mascarin.measurements.observation import Observation
+    from mascarin.measurements.sensor import Sensor
+    from mascarin.measurements.uncertainty import SensorUncertainty
     from mascarin.simulation.simulation import Simulation
-    from mascarin.validation.observation import Observation
-    from mascarin.validation.sensors import Sensor, SensorUncertainty
 
 Floats = NDArray[np.float64]
 
@@ -34,61 +35,17 @@ PERSISTENCE: Final = 5.0
 MIN_HOURS: Final = 48.0
 
 
-class States(Protocol):
-    """What a sensor states of its errors; see `SensorError`."""
-
-    @property
-    def offset(self) -> float | None:
-        """Standard uncertainty of a constant. [unit]"""
-        ...
-
-    @property
-    def common(self) -> float:
-        """The same of a constant that several sensors share. [unit]"""
-        ...
-
-    @property
-    def gain(self) -> float:
-        """The same of a gain. [-]"""
-        ...
-
-    @property
-    def reference(self) -> float:
-        """Reading at which a gain has no effect. [unit]"""
-        ...
-
-    @property
-    def clock(self) -> str | float | None:
-        """The same of the clock."""
-        ...
-
-    @property
-    def repeatability(self) -> float | None:
-        """Standard deviation of repeated readings. [unit]"""
-        ...
-
-    @property
-    def expanded_uncertainty(self) -> float | None:
-        """Half-width of the interval of 95 % of a reading. [unit]"""
-        ...
-
-    @property
-    def standard_uncertainty(self) -> float | None:
-        """Standard deviation of the error of a reading. [unit]"""
-        ...
-
-
-def only_scatter(sensor: States) -> bool:
+def only_scatter(sensor: Sensor) -> bool:
     """Whether a sensor says that its readings share no error: ``offset: 0``, or a repeatability alone.
 
     Parameters
     ----------
-    sensor : States
+    sensor : Sensor
         What it states.
 
     Examples
     --------
-    >>> from mascarin.validation import Sensor
+    >>> from mascarin.measurements import Sensor
     >>> only_scatter(Sensor("T", standard_uncertainty=0.1, offset=0.0)), only_scatter(Sensor("T"))
     (True, False)
     """
@@ -100,7 +57,7 @@ def only_scatter(sensor: States) -> bool:
     return sensor.repeatability is not None and not stated
 
 
-def shared_errors(sensor: States, stated: SensorUncertainty, random: float = math.nan) -> SensorError:
+def shared_errors(sensor: Sensor, stated: SensorUncertainty, random: float = math.nan) -> SensorError:
     """Errors that all readings of a sensor share.
 
     A stated uncertainty without an ``offset`` has two parts: the scatter of the readings, and an offset that
@@ -109,17 +66,18 @@ def shared_errors(sensor: States, stated: SensorUncertainty, random: float = mat
 
     Parameters
     ----------
-    sensor : States
+    sensor : Sensor
         What it states.
     stated : SensorUncertainty
         Standard uncertainty of a reading.
     random : float
-        Scatter of the record, see `mascarin.validation.scatter`; NaN if it is not known, and all of the
+        Scatter of the record, see `mascarin.measurements.scatter`; NaN if it is not known, and all of the
         uncertainty is then an offset. A stated ``repeatability`` takes its place. [unit]
 
     Examples
     --------
-    >>> from mascarin.validation.sensors import Sensor, SensorUncertainty
+    >>> from mascarin.measurements.sensor import Sensor
+    >>> from mascarin.measurements.uncertainty import SensorUncertainty
     >>> shared_errors(Sensor("T", standard_uncertainty=0.5), SensorUncertainty(0.5), random=0.3).offset
     0.4
     """

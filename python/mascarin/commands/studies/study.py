@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 from cyclopts import Parameter
 
@@ -17,11 +17,14 @@ from mascarin.commands.options.output import number, print_json, print_table
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.study import Study, StudyResults
+    from mascarin.study_document.analysis import ContradictionEntry
+    from mascarin.study_document.comparison import CriterionEntry
+    from mascarin.study_document.document import StudyDocument
+    from mascarin.study_document.estimates import ParameterEntry
     from mascarin.tables.quality import Stretch
 
 
 _SHOWN: Final = 10
-_METRICS: Final = ("rmse", "sd", "bias", "max_error")
 
 
 def study(
@@ -49,7 +52,7 @@ def study(
     figures : bool
         Write the figures as files, too; the report does not need them.
     """
-    from mascarin.study.results.document.comparison import run_warnings
+    from mascarin.study.results.document.comparison import criterion_entry, run_warnings
 
     opened = _open(file, allow_outside)
     results = opened.run(out, figures=figures, progress=True)
@@ -60,7 +63,7 @@ def study(
         lines += [line.after("sensitivity analysis") for line in results.sensitivity.warnings]
     _print_warnings([*(contradiction.text for contradiction in results.contradictions), *lines])
     _print_summary(opened, results, out)
-    verdicts = [verdict.to_dict() for verdict in results.criteria["fitted"]]
+    verdicts = [criterion_entry(verdict, "fitted") for verdict in results.criteria["fitted"]]
     return _exit_code(verdicts, lines)
 
 
@@ -91,16 +94,16 @@ def sensitivity(
     from mascarin.study import single_steps
 
     content = single_steps.sensitivity(_open(file, allow_outside).context, out, method=method)
-    _print_warnings(content["warnings"])
-    code = exit_code(warnings=content["warnings"])
+    _print_warnings(content.warnings)
+    code = exit_code(warnings=_of_the_runs(content))
     if as_json:
-        print_json(content)
+        print_json(content.to_dict())
         return code
     rows: list[tuple[str | float, ...]] = []
-    for output, indices in content["sensitivity"].items():
-        ranked = sorted(indices.items(), key=lambda item: -(item[1]["share"] or 0.0))
+    for output, indices in content.sensitivity.items():
+        ranked = sorted(indices.items(), key=lambda item: -(item[1].share or 0.0))
         rows += [
-            (output, path, *(round(value[key] or 0.0, 4) for key in ("share", "low", "high")))
+            (output, path, *(round(end or 0.0, 4) for end in (value.share, value.low, value.high)))
             for path, value in ranked[:_SHOWN]
         ]
     print_table(("sensor", "parameter", "S1", "low", "high"), rows)
@@ -131,25 +134,25 @@ def calibrate(
     from mascarin.study import single_steps
 
     content = single_steps.calibration(_open(file, allow_outside).context, out)
-    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
+    _print_warnings([*_texts(content.contradictions), *content.warnings])
     if as_json:
-        print_json(content)
+        print_json(content.to_dict())
     else:
         rows = [
             (
                 path,
-                "" if estimate["nominal"] is None else number(estimate["nominal"]),
+                "" if estimate.nominal is None else number(estimate.nominal),
                 *_with_interval(estimate),
-                estimate["unit"] or "",
+                estimate.unit or "",
             )
-            for path, estimate in content["parameters"].items()
+            for path, estimate in content.parameters.items()
         ]
         print_table(("parameter", "nominal", "fitted", "low", "high", "unit"), rows)
         print()
         _print_scores(content)
-        for note in content["notes"]:
-            print(f"note: {note['text']}", file=sys.stderr)
-    return _exit_code(_verdicts(content, "fitted"), content["warnings"], sound=content["sound"])
+        for note in content.notes:
+            print(f"note: {note.text}", file=sys.stderr)
+    return _exit_code(_verdicts(content, "fitted"), _of_the_runs(content), sound=content.sound)
 
 
 def validate(
@@ -176,13 +179,13 @@ def validate(
     """
     from mascarin.study import single_steps
 
-    content = single_steps.validation(_open(file, allow_outside).context, out).to_dict()
-    _print_warnings([*_texts(content["contradictions"]), *content["warnings"]])
+    content = single_steps.validation(_open(file, allow_outside).context, out).content
+    _print_warnings([*_texts(content.contradictions), *content.warnings])
     if as_json:
-        print_json(content)
+        print_json(content.to_dict())
     else:
         _print_scores(content)
-    return _exit_code(_verdicts(content, "nominal"), content["warnings"], sound=content["sound"])
+    return _exit_code(_verdicts(content, "nominal"), _of_the_runs(content), sound=content.sound)
 
 
 def _open(file: str, allow_outside: bool) -> Study:
@@ -224,15 +227,17 @@ def _suspicious(opened: Study) -> Iterator[str]:
         )
 
 
-def _with_interval(estimate: Mapping[str, Any]) -> tuple[str, str, str]:
+def _with_interval(estimate: ParameterEntry) -> tuple[str, str, str]:
     """Estimate and interval of a parameter, which may not be stated."""
-    shown = with_interval(estimate["fitted"], estimate["low"], estimate["high"])
-    return shown if estimate.get("stated", True) else (shown[0], "not stated", "")
+    if estimate.fitted is None:
+        return "", "", ""
+    shown = with_interval(estimate.fitted, estimate.low, estimate.high)
+    return shown if estimate.stated else (shown[0], "not stated", "")
 
 
-def _texts(contradictions: Sequence[Mapping[str, Any]]) -> list[str]:
+def _texts(contradictions: Sequence[ContradictionEntry]) -> list[str]:
     """What the model or the study contradicts, in sentences."""
-    return [str(contradiction["text"]) for contradiction in contradictions]
+    return [contradiction.text for contradiction in contradictions]
 
 
 def _print_warnings(lines: Sequence[str]) -> None:
@@ -241,12 +246,19 @@ def _print_warnings(lines: Sequence[str]) -> None:
         print(f"warning: {line}", file=sys.stderr)
 
 
-def _print_scores(content: Mapping[str, Any]) -> None:
+def _of_the_runs(content: StudyDocument) -> list[RunWarning]:
+    """Warnings with their kind, which says whether a run is sound."""
+    from mascarin.simulation.checks.warning_kinds import RunWarning
+
+    return [line for line in content.warnings if isinstance(line, RunWarning)]
+
+
+def _print_scores(content: StudyDocument) -> None:
     rows = [
-        (sensor, period, model, *(_rounded(scores[model][metric]) for metric in _METRICS))
-        for sensor, periods in content["sensors"].items()
+        (sensor, period, model, *(_rounded(value) for value in (m.rmse, m.sd, m.bias, m.max_error)))
+        for sensor, periods in content.sensors.items()
         for period, scores in periods.items()
-        for model in content["models"]
+        for model, m in scores.models.items()
     ]
     print_table(("sensor", "period", "model", "rmse", "sd", "bias", "max"), rows)
 
@@ -255,22 +267,22 @@ def _rounded(value: float | None) -> str | float:
     return "" if value is None else round(value, 3)
 
 
-def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]:
-    return [verdict for verdict in content["criteria"] if verdict["model"] == model]
+def _verdicts(content: StudyDocument, model: str) -> list[CriterionEntry]:
+    return [criterion for criterion in content.criteria if criterion.model == model]
 
 
 def _exit_code(
-    verdicts: Sequence[Mapping[str, Any]], warnings: Sequence[RunWarning], *, sound: bool = True
+    verdicts: Sequence[CriterionEntry], warnings: Sequence[RunWarning], *, sound: bool = True
 ) -> int:
     """Print the criteria that are missed; return the exit code."""
-    missed = [verdict for verdict in verdicts if not verdict["passed"]]
+    missed = [verdict for verdict in verdicts if not verdict.passed]
     for verdict in missed:
-        value, unit = verdict["value"], verdict["unit"]
+        value, unit = verdict.value, verdict.unit
         measured = "no common values"
-        if value is not None:
-            measured = f"{beside_limit(value, verdict['limit'], least=3)[0]} {unit.replace('degC', 'K')}"
-        where = f"{verdict['sensor']}, {verdict['period']}"
-        print(f"missed: {where}: {verdict['name']}; found {measured}", file=sys.stderr)
+        if value is not None and verdict.limit is not None:
+            measured = f"{beside_limit(value, verdict.limit, least=3)[0]} {unit.replace('degC', 'K')}"
+        where = f"{verdict.sensor}, {verdict.period}"
+        print(f"missed: {where}: {verdict.name}; found {measured}", file=sys.stderr)
     if verdicts:
         print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
     return exit_code(warnings=warnings, sound=sound, missed=len(missed))
@@ -288,12 +300,12 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
                 for period, m in periods.items()
             ]
     for house in results.transfer.values():
-        for sensor, spans in house["sensors"].items():
+        for sensor, spans in house.sensors.items():
             lines += [
-                f"{sensor:<16}{period:<16}{model:<10}{m[model]['rmse']:8.3f}{m[model]['sd']:8.3f}"
-                f"{m[model]['bias']:8.3f}{m[model]['max_error']:8.3f}  {house['building']}"
-                for period, m in spans.items()
-                for model in ("described", "calibrated")
+                f"{sensor:<16}{period:<16}{model:<10}{m.rmse:8.3f}{m.sd:8.3f}"
+                f"{m.bias:8.3f}{m.max_error:8.3f}  {house.building}"
+                for period, both in spans.items()
+                for model, m in (("described", both.described), ("calibrated", both.calibrated))
             ]
     lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
     if results.aims:

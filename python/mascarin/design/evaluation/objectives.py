@@ -16,7 +16,7 @@ from mascarin.design.evaluation.objective import Objective, ZoneObjective
 from mascarin.design.evaluation.reductions import Assessed, Beyond, CycleDays, Highest, Melted
 from mascarin.ensemble import Statistic
 from mascarin.errors import InputError
-from mascarin.study.file.field_types import Hours
+from mascarin.measurements.time_fields import Hours
 
 if TYPE_CHECKING:
     from typing import Self

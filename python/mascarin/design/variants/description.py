@@ -10,7 +10,7 @@ from pydantic import Field, StringConstraints, model_validator
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
 from mascarin.design.evaluation.objectives import AnyObjective
-from mascarin.study.file.field_types import Duration, Shift, Time
+from mascarin.measurements.time_fields import Duration, Shift, Time
 
 if TYPE_CHECKING:
     from typing import Self

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.design.variants.inputs import DesignInputs, Site
+    from mascarin.design.variants.inputs import DesignInputs, DesignSite
     from mascarin.design.variants.variables import Design
 
     Array = npt.NDArray[np.float64]
@@ -64,14 +64,14 @@ class Detail:
     closure: float
 
 
-def detail(inputs: DesignInputs, site: Site, design: Design | None, label: str) -> Detail:
+def detail(inputs: DesignInputs, site: DesignSite, design: Design | None, label: str) -> Detail:
     """Run one design, or the reference, in one climate.
 
     Parameters
     ----------
     inputs : DesignInputs
         The study.
-    site : Site
+    site : DesignSite
         The climate.
     design : Design or None
         The design; None is the reference.
@@ -143,7 +143,9 @@ def layers_of(building: Building) -> list[str]:
     ]
 
 
-def _building(inputs: DesignInputs, site: Site, design: Design | None) -> tuple[Building, dict[str, float]]:
+def _building(
+    inputs: DesignInputs, site: DesignSite, design: Design | None
+) -> tuple[Building, dict[str, float]]:
     """Building and parameters of a design."""
     if design is None:
         return (site.building.replace(inputs.file.reference) if inputs.file.reference else site.building), {}

@@ -36,7 +36,7 @@ _DEEP_SECTIONS: Final = ("humidity", "surfaces", "windows", "zones")
 
 
 @dataclass(frozen=True)
-class Site:
+class DesignSite:
     """A climate of the study: weather, period, and the building at that place.
 
     Attributes
@@ -79,7 +79,7 @@ class DesignInputs:
         The design file.
     building : Building
         The building that all designs begin with.
-    sites : tuple of Site
+    sites : tuple of DesignSite
         The climates.
     choices : Choices
         The variables.
@@ -90,7 +90,7 @@ class DesignInputs:
     file: DesignFile
     path: Path
     building: Building
-    sites: tuple[Site, ...]
+    sites: tuple[DesignSite, ...]
     choices: Choices
     uncertain: tuple[str, ...]
 
@@ -159,7 +159,7 @@ def in_mode(building: Building, objective: AnyObjective) -> Building:
     return building.replace(changes) if changes else building
 
 
-def _site(name: str, file: DesignFile, building: Building, beside: Beside, locations: Places) -> Site:
+def _site(name: str, file: DesignFile, building: Building, beside: Beside, locations: Places) -> DesignSite:
     climate_file = file.climates[name]
     with locations.blame("climates", name, "epw" if climate_file.epw is not None else "tmy"):
         text = str(climate_file.epw or climate_file.tmy)
@@ -182,7 +182,7 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, locat
             )
     site = climate.site
     words = f"{site.name or name} ({site.latitude:.2f}, {site.longitude:.2f})" if site is not None else name
-    return Site(name, words, climate, start, end, moved, file_hash(weather))
+    return DesignSite(name, words, climate, start, end, moved, file_hash(weather))
 
 
 def _dates(file: DesignFile, climate_file: ClimateFile) -> Iterator[str | None]:
@@ -331,7 +331,7 @@ def _uncertain_emissivities(building: Building, uncertain: Sequence[str]) -> Ite
             yield {path: 0.5 * (parameter.value + end)}
 
 
-def _check_validity(file: DesignFile, sites: Sequence[Site], locations: Places, faults: Faults) -> None:
+def _check_validity(file: DesignFile, sites: Sequence[DesignSite], locations: Places, faults: Faults) -> None:
     """Refuse a comfort index that has no value in most of the period, even in a room of 26 degC."""
     for name, objective in file.objectives.items():
         if not isinstance(objective, Comfort):

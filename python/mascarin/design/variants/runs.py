@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.design.evaluation.objectives import AnyObjective
-    from mascarin.design.variants.inputs import DesignInputs, Site
+    from mascarin.design.variants.inputs import DesignInputs, DesignSite
     from mascarin.design.variants.variables import Design
     from mascarin.simulation.checks.warning_kinds import RunWarning
 
@@ -151,7 +151,7 @@ class Runs:
             rows.append(row)
         return pd.DataFrame(rows)
 
-    def _of_reference(self, site: Site, building: Building, mode: Mode) -> dict[str, float]:
+    def _of_reference(self, site: DesignSite, building: Building, mode: Mode) -> dict[str, float]:
         """Objectives of one building that are possible for it."""
         possible: list[str] = []
         for name in mode.objectives:
@@ -194,7 +194,7 @@ class Runs:
 
     def _of_site(
         self,
-        site: Site,
+        site: DesignSite,
         columns: Mapping[str, Sequence[Any]],
         facts: LayerFacts,
         table: pd.DataFrame,
@@ -224,7 +224,7 @@ class Runs:
         return table
 
     def _reduced(
-        self, site: Site, building: Building, columns: Mapping[str, Sequence[Any]], mode: Mode
+        self, site: DesignSite, building: Building, columns: Mapping[str, Sequence[Any]], mode: Mode
     ) -> dict[str, Any]:
         """What is kept of each run of a mode; nothing where its objectives need none."""
         functions: dict[str, Callable[[Any], Any]] = {}
@@ -267,7 +267,7 @@ class Runs:
         }
 
     def _folder(
-        self, site: Site, functions: Mapping[str, object], columns: Mapping[str, Any], mode: Mode
+        self, site: DesignSite, functions: Mapping[str, object], columns: Mapping[str, Any], mode: Mode
     ) -> Path:
         """Folder of a store, named by all that its values depend on."""
         key = [

@@ -13,13 +13,15 @@ from markupsafe import Markup
 from mascarin._io import units
 from mascarin.figures import text
 from mascarin.figures.svg.chart import Array, Svg
+from mascarin.study_document.building import BuildingEntry, ConstructionEntry, LayerEntry, SurfaceEntry
+from mascarin.study_document.comparison import SensorEntry
 
 
-def _polygons(building: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Array]]:
+def _polygons(building: BuildingEntry) -> list[tuple[SurfaceEntry, Array]]:
     return [
-        (surface, np.array(surface["vertices"], dtype=np.float64))
-        for surface in building.get("surfaces", [])
-        if surface.get("vertices")
+        (surface, np.array(surface.vertices, dtype=np.float64))
+        for surface in building.surfaces
+        if surface.vertices
     ]
 
 
@@ -29,21 +31,21 @@ def _normal(vertices: Array) -> Array:
     return normal
 
 
-def _construction_class(building: Mapping[str, Any], name: str) -> str:
-    names = [c.get("name") for c in building.get("constructions", [])]
+def _construction_class(building: BuildingEntry, name: str) -> str:
+    names = [c.name for c in building.constructions]
     return f"fill-{names.index(name) % 8}" if name in names else "fill-0"
 
 
 # --- view from above ------------------------------------------------------------------------------
 
 
-def view(building: Mapping[str, Any]) -> Markup | None:
+def view(building: BuildingEntry) -> Markup | None:
     """Parallel projection of the outer surfaces from above, hidden edges dashed.
 
     Parameters
     ----------
-    building : mapping
-        As in :class:`~mascarin.pages.study.data.schema.BuildingEntry`.
+    building : BuildingEntry
+        The building.
 
     Returns
     -------
@@ -72,30 +74,30 @@ def view(building: Mapping[str, Any]) -> Markup | None:
         placed: Array = scale * (points @ frame.T) + offset
         return placed
 
-    visible: list[tuple[Mapping[str, Any], Array]] = []
-    hidden: list[tuple[Mapping[str, Any], Array]] = []
+    visible: list[tuple[SurfaceEntry, Array]] = []
+    hidden: list[tuple[SurfaceEntry, Array]] = []
     for surface, vertices in polygons:
-        faces_out = surface.get("outside") == "outdoors"
+        faces_out = surface.outside == "outdoors"
         faces_viewer = faces_out and float(_normal(vertices) @ to_eye) > 1e-9
         (visible if faces_viewer else hidden).append((surface, vertices))
     for surface, vertices in sorted(visible, key=lambda item: float((item[1] @ to_eye).mean())):
-        kind = _construction_class(building, str(surface.get("construction")))
+        kind = _construction_class(building, surface.construction)
         svg.polygon(on_page(vertices), f"face {kind}")
     for surface, vertices in hidden:
-        inner = surface.get("outside") != "outdoors"
+        inner = surface.outside != "outdoors"
         svg.polygon(on_page(vertices), "hidden-edge inner" if inner else "hidden-edge")
     _name_surfaces(svg, [(surface, on_page(vertices)) for surface, vertices in visible])
     _compass(svg, frame)
     _scale_bar(svg, scale, width, height)
-    return svg.markup(f"Drawing of {building.get('name', 'the building')} seen from the north-east and above")
+    return svg.markup(f"Drawing of {building.name or 'the building'} seen from the north-east and above")
 
 
-def _name_surfaces(svg: Svg, faces: Sequence[tuple[Mapping[str, Any], Array]]) -> None:
+def _name_surfaces(svg: Svg, faces: Sequence[tuple[SurfaceEntry, Array]]) -> None:
     """Write names on surfaces where they do not cover another name or a smaller surface."""
     taken: list[tuple[float, float, float]] = []
     boxes = [(outline.min(axis=0), outline.max(axis=0)) for _, outline in faces]
     for (surface, outline), (low, high) in zip(faces, boxes, strict=True):
-        name = text.plain_path(str(surface.get("name")))
+        name = text.plain_path(surface.name)
         half = 3.1 * len(name)
         if float(high[0] - low[0]) < 1.5 * half:
             continue
@@ -139,15 +141,15 @@ def _scale_bar(svg: Svg, scale: float, width: float, height: float) -> None:
 # --- section --------------------------------------------------------------------------------------
 
 
-def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]]) -> Markup | None:
+def section(building: BuildingEntry, sensors: Mapping[str, SensorEntry]) -> Markup | None:
     """Section through the middle from south to north, with zones and sensors.
 
     Parameters
     ----------
-    building : mapping
-        As in :class:`~mascarin.pages.study.data.schema.BuildingEntry`.
-    sensors : mapping
-        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; the output gives where a sensor is.
+    building : BuildingEntry
+        The building.
+    sensors : mapping of str to SensorEntry
+        The output gives where a sensor is.
 
     Returns
     -------
@@ -163,7 +165,7 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     if len(cuts) < 3:
         return None
     low, high = all_points[:, 1:].min(axis=0), all_points[:, 1:].max(axis=0)
-    longest = max((len(str(info.get("label", ""))) for info in sensors.values()), default=0)
+    longest = max((len(info.label or "") for info in sensors.values()), default=0)
     # Wide enough for the longest name beside the section, about 6.4 px for each letter.
     room = max(150.0, 46.0 + 6.4 * longest) if sensors else 46.0
     width, height, margin = 270.0 + room, 360.0, 46.0
@@ -177,10 +179,10 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
         return np.column_stack([x, y])
 
     svg = Svg(width, height)
-    _zone_fills(svg, cuts, [str(zone.get("name")) for zone in building.get("zones", [])], on_page)
+    _zone_fills(svg, cuts, [zone.name for zone in building.zones], on_page)
     for surface, cut in cuts:
         (x1, y1), (x2, y2) = on_page(cut)
-        kind = _construction_class(building, str(surface.get("construction"))).replace("fill", "stroke")
+        kind = _construction_class(building, surface.construction).replace("fill", "stroke")
         svg.line(float(x1), float(y1), float(x2), float(y2), f"cut {kind}")
     bottom = float(on_page(low[None, :])[0][1])
     svg.label(margin, bottom + 22, "S", "small", "middle")
@@ -201,12 +203,12 @@ def _cut(vertices: Array, x: float) -> Array | None:
     return np.stack([points[0], far])
 
 
-def _facing(surface: Mapping[str, Any], zone: str) -> bool:
-    return zone in (surface.get("outside"), surface.get("inside"))
+def _facing(surface: SurfaceEntry, zone: str) -> bool:
+    return zone in (surface.outside, surface.inside)
 
 
 def _zone_fills(
-    svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], zones: Sequence[str], on_page: Any
+    svg: Svg, cuts: Sequence[tuple[SurfaceEntry, Array]], zones: Sequence[str], on_page: Any
 ) -> None:
     for number, zone in enumerate(zones):
         bounds = [cut for surface, cut in cuts if _facing(surface, zone)]
@@ -245,16 +247,16 @@ def _height_at(outline: Array, x: float) -> float:
 
 def _sensor_marks(
     svg: Svg,
-    cuts: Sequence[tuple[Mapping[str, Any], Array]],
-    sensors: Mapping[str, Any],
+    cuts: Sequence[tuple[SurfaceEntry, Array]],
+    sensors: Mapping[str, SensorEntry],
     on_page: Any,
     x_text: float,
 ) -> None:
     spots = []
     for number, info in enumerate(sensors.values(), start=1):
-        spot = _spot(str(info.get("output", "")), cuts, on_page)
+        spot = _spot(info.output, cuts, on_page)
         if spot is not None:
-            spots.append((number, str(info.get("label", "")), spot))
+            spots.append((number, info.label or "", spot))
     spots.sort(key=lambda item: item[2][1])
     spread = 24.0
     y_first = (
@@ -272,12 +274,12 @@ def _sensor_marks(
 
 
 def _spot(
-    output: str, cuts: Sequence[tuple[Mapping[str, Any], Array]], on_page: Any
+    output: str, cuts: Sequence[tuple[SurfaceEntry, Array]], on_page: Any
 ) -> tuple[float, float] | None:
     """Position of an output in the section: the middle of a zone, or a position across a wall."""
     owner, _, what = output.partition(".")
     for surface, cut in cuts:
-        if surface.get("name") == owner:
+        if surface.name == owner:
             ends = on_page(cut)
             x, y = (
                 ends[0] + 0.62 * (ends[1] - ends[0])
@@ -300,24 +302,24 @@ def _spot(
 
 
 def layers(
-    building: Mapping[str, Any], construction: Mapping[str, Any], sensors: Mapping[str, Any]
+    building: BuildingEntry, construction: ConstructionEntry, sensors: Mapping[str, SensorEntry]
 ) -> Markup:
     """Layers of a construction from outside (left) to inside; widths increase with the thickness.
 
     Parameters
     ----------
-    building : mapping
-        As in :class:`~mascarin.pages.study.data.schema.BuildingEntry`.
-    construction : mapping
-        ``name`` and ``layers``.
-    sensors : mapping
-        As in :class:`~mascarin.pages.study.data.schema.SensorInfo`; those in surfaces of this construction
+    building : BuildingEntry
+        The building.
+    construction : ConstructionEntry
+        The construction.
+    sensors : mapping of str to SensorEntry
+        Those in surfaces of this construction
         are marked.
     """
-    entries = list(construction.get("layers", []))
+    entries = list(construction.layers)
     thick = _thickness(entries)
     widths = _widths(thick)
-    total_widths = [_widths(_thickness(c.get("layers", []))).sum() for c in building.get("constructions", [])]
+    total_widths = [_widths(_thickness(c.layers)).sum() for c in building.constructions]
     # One scale for all constructions, so that thickness can be compared.
     widths = np.maximum(300.0 * widths / max([widths.sum(), *total_widths]), 15.0) if len(widths) else widths
     svg = Svg(420.0, 132.0 + 17.0 * len(entries))
@@ -327,17 +329,17 @@ def layers(
         fill_of(svg, layer, (float(x0), float(x1)), (top, bottom))
         svg.label(0.5 * float(x0 + x1), bottom + 14.0, str(number), "tick", "middle")
         svg.label(60.0, bottom + 17.0 * number + 16.0, _layer_text(number, layer), "layer-name")
-    sides = _neighbors(building, str(construction.get("name")))
+    sides = _neighbors(building, construction.name)
     svg.label(0.0, top + 34.0, "outside", "small")
     svg.label(0.0, 12.0, f"outside: {sides[0]}" if sides[0] else "", "tick")
     svg.label(float(edges[-1]) + 8.0, top + 34.0, "inside", "small")
     svg.label(416.0, 12.0, f"inside: {sides[1]}" if sides[1] else "", "tick", "end")
     _layer_sensors(svg, building, construction, sensors, edges, thick, top)
-    return svg.markup(f"Layers of {construction.get('name')} from outside to inside")
+    return svg.markup(f"Layers of {construction.name} from outside to inside")
 
 
-def _thickness(entries: Sequence[Mapping[str, Any]]) -> Array:
-    return np.array([float(layer.get("thickness") or 0.0) for layer in entries])
+def _thickness(entries: Sequence[LayerEntry]) -> Array:
+    return np.array([float(layer.thickness or 0.0) for layer in entries])
 
 
 def _widths(thick: Array) -> Array:
@@ -346,17 +348,15 @@ def _widths(thick: Array) -> Array:
     return widths
 
 
-def fill_of(
-    svg: Svg, layer: Mapping[str, Any], across: tuple[float, float], down: tuple[float, float]
-) -> None:
+def fill_of(svg: Svg, layer: LayerEntry, across: tuple[float, float], down: tuple[float, float]) -> None:
     """Draw one layer: a rectangle with the look of its material.
 
     Parameters
     ----------
     svg : Svg
         Where to.
-    layer : mapping
-        ``kind``, ``conductivity`` and ``density``.
+    layer : LayerEntry
+        Of it, kind, conductivity and density.
     across, down : (float, float)
         Ends of the rectangle. [px]
     """
@@ -369,10 +369,10 @@ def fill_of(
         _hatch(svg, x0, x1, top, bottom)
 
 
-def _look(layer: Mapping[str, Any]) -> str:
+def _look(layer: LayerEntry) -> str:
     """Style of a layer: by its kind, else by its conductivity and density."""
-    kind = str(layer.get("kind", "solid"))
-    conductivity, density = layer.get("conductivity"), layer.get("density")
+    kind = layer.kind
+    conductivity, density = layer.conductivity, layer.density
     if kind != "solid" or not isinstance(conductivity, int | float):
         return kind
     if conductivity < 0.07:
@@ -395,23 +395,23 @@ def _droplets(svg: Svg, x0: float, x1: float, top: float, bottom: float) -> None
             svg.add("circle", cx=float(x), cy=float(y), r=1.9, class_="droplet")
 
 
-def _layer_text(number: int, layer: Mapping[str, Any]) -> str:
-    name = text.plain_path(str(layer.get("material") or layer.get("name")))
-    if layer.get("kind") == "resistance":
-        return f"{number}  {name}, {text.with_unit(layer.get('resistance'), 'm2 K/W')}"
-    thickness = layer.get("thickness")
+def _layer_text(number: int, layer: LayerEntry) -> str:
+    name = text.plain_path(str(layer.material or layer.name))
+    if layer.kind == "resistance":
+        return f"{number}  {name}, {text.with_unit(layer.resistance, 'm2 K/W')}"
+    thickness = layer.thickness
     size = "" if thickness is None else f", {text.significant(1000.0 * float(thickness), 3)}\u00a0mm"
-    conductivity = layer.get("conductivity")
+    conductivity = layer.conductivity
     pair = conductivity if isinstance(conductivity, list) else [conductivity]
     shown = "/".join(text.significant(k) for k in pair if k is not None)
     return f"{number}  {name}{size}" + (f", {shown}\u00a0{units.shown('W/(m K)')}" if shown else "")
 
 
-def _neighbors(building: Mapping[str, Any], construction: str) -> tuple[str, str]:
+def _neighbors(building: BuildingEntry, construction: str) -> tuple[str, str]:
     sides: tuple[list[str], list[str]] = ([], [])
-    for surface in building.get("surfaces", []):
-        if surface.get("construction") == construction:
-            for names, side in zip(sides, (surface.get("outside"), surface.get("inside")), strict=True):
+    for surface in building.surfaces:
+        if surface.construction == construction:
+            for names, side in zip(sides, (surface.outside, surface.inside), strict=True):
                 shown = text.plain_path(str(side))
                 if shown not in names:
                     names.append(shown)
@@ -420,27 +420,23 @@ def _neighbors(building: Mapping[str, Any], construction: str) -> tuple[str, str
 
 def _layer_sensors(
     svg: Svg,
-    building: Mapping[str, Any],
-    construction: Mapping[str, Any],
-    sensors: Mapping[str, Any],
+    building: BuildingEntry,
+    construction: ConstructionEntry,
+    sensors: Mapping[str, SensorEntry],
     edges: Array,
     thick: Array,
     top: float,
 ) -> None:
-    names = {
-        s.get("name")
-        for s in building.get("surfaces", [])
-        if s.get("construction") == construction.get("name")
-    }
-    probes = {p.get("name"): p for p in building.get("probes", [])}
+    names = {s.name for s in building.surfaces if s.construction == construction.name}
+    probes = {p.name: p for p in building.probes}
     for number, info in enumerate(sensors.values(), start=1):
-        owner, _, what = str(info.get("output", "")).partition(".")
+        owner, _, what = info.output.partition(".")
         x: float | None = None
-        if owner in probes and probes[owner].get("surface") in names:
+        if owner in probes and probes[owner].surface in names:
             depths = np.concatenate([[0.0], np.cumsum(thick)])
-            x = float(np.interp(float(probes[owner].get("depth", 0.0)), depths, edges))
+            x = float(np.interp(probes[owner].depth, depths, edges))
         elif owner in names:
-            x = _face_place(what, edges, [str(e.get("name")) for e in construction.get("layers", [])])
+            x = _face_place(what, edges, [e.name for e in construction.layers])
         if x is not None:
             svg.line(x, top - 10.0, x, top + 26.0, "leader")
             svg.add("circle", cx=x, cy=top + 26.0, r=3.2, class_="sensor-dot")

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from mascarin.errors import did_you_mean
-from mascarin.genopt.algorithms.catalog import ALGORITHMS, REMOVED, Algorithm
+from mascarin.genopt.algorithms.catalog import ALGORITHMS, Algorithm
 from mascarin.genopt.algorithms.searches import Context
 from mascarin.genopt.algorithms.settings import check_groups, checked
 from mascarin.genopt.files.project import Project
@@ -112,8 +112,6 @@ def chosen(project: Project) -> str:
     if main is None:
         location = project.algorithm.end or project.algorithm.location
         report.error(location, "missing specification of 'Main' in 'Algorithm'")
-    elif main.value in REMOVED:
-        report.error(main.location, f"algorithm '{main.value}' was removed; {REMOVED[main.value]}")
     elif main.value not in ALGORITHMS:
         hint = did_you_mean(main.value, ALGORITHMS)
         report.error(main.location, f"algorithm '{main.value}' is not known. {hint}".rstrip())

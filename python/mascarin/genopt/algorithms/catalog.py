@@ -130,9 +130,3 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     ),
 }
 """All algorithms by name, GenOpt's own first."""
-
-REMOVED: Final = {
-    "MascarinDE": "choose MascarinCMAES for continuous parameters, or PSOCC, which also takes discrete ones "
-    "(docs/coming-from-genopt.md)"
-}
-"""Algorithms of earlier versions, and what to choose instead."""

@@ -23,8 +23,8 @@ from mascarin._io.sealed import own_files
 from mascarin.calibration.base.cost import Cost, CostName
 from mascarin.calibration.base.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.measurements.observation import instants, means
 from mascarin.simulation.preparation.engine_run import CompiledRun
-from mascarin.validation.observation import instants, means
 
 if TYPE_CHECKING:
     import numpy.typing as npt

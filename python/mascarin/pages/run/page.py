@@ -16,6 +16,7 @@ from mascarin.figures.svg.chart import Axis, Chart
 from mascarin.pages.frame.template import environment, frame
 from mascarin.pages.study.data.series import Array
 from mascarin.pages.study.sections.energy import ledger_bars
+from mascarin.study_document.comparison import LedgerEntry, LedgerTerm
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -311,7 +312,9 @@ def _energy(results: Results) -> dict[str, Any]:
     heats = [*into.items(), ("Stored in walls and air", results.energy.stored / 1e6)]
     rows = [(label, text.significant(heat / 3.6, 4)) for label, heat in heats]
     return {
-        "drawing": ledger_bars({"terms": [{"label": label, "value": heat} for label, heat in heats]}),
+        "drawing": ledger_bars(
+            LedgerEntry(terms=[LedgerTerm(label=label, value=heat) for label, heat in heats])
+        ),
         "rows": rows,
         "closure": text.significant(results.energy.relative_residual, 2),
         "closes": results.energy.closes,

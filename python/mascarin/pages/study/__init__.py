@@ -1,7 +1,7 @@
 """The report of a study: one HTML file without anything outside of it.
 
 Its only input are the results of a study: the content of ``study.json``
-(:mod:`mascarin.pages.study.data.schema`) and its series (:mod:`mascarin.pages.study.data.series`). Styles,
+(:mod:`mascarin.study_document`) and its series (:mod:`mascarin.pages.study.data.series`). Styles,
 scripts and pictures are part of the file, and its content security policy forbids the browser to load
 anything else.
 """
@@ -18,6 +18,7 @@ from mascarin.pages.study.data.folder import read_folder
 from mascarin.pages.study.data.payload import check, tidy
 from mascarin.pages.study.data.series import Column, Series
 from mascarin.pages.study.html import page
+from mascarin.study_document.document import StudyDocument
 
 __all__ = ["Column", "Series", "is_report", "render", "write", "write_folder"]
 
@@ -25,13 +26,13 @@ __all__ = ["Column", "Series", "is_report", "render", "write", "write_folder"]
 _HEAD_BYTES: Final = 4096  # bytes
 
 
-def render(study: Mapping[str, Any], series: Series) -> str:
+def render(study: StudyDocument | Mapping[str, Any], series: Series) -> str:
     """Make the page.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     series : Series
         Curves; they are thinned if there are too many values for a page.
 
@@ -52,8 +53,9 @@ def render(study: Mapping[str, Any], series: Series) -> str:
     >>> "<h1>An empty study</h1>" in page
     True
     """
-    check(study, series)
-    return page(tidy(study), series.thinned())
+    document = StudyDocument.read(study)
+    check(document, series)
+    return page(tidy(document), series.thinned())
 
 
 def write_folder(out: Path) -> Path:
@@ -94,7 +96,7 @@ def write_folder(out: Path) -> Path:
         ) from error
 
 
-def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:
+def write(path: Path, study: StudyDocument | Mapping[str, Any], series: Series) -> Path:
     """Make the page and write it to a file.
 
     Parameters

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from mascarin.pages.frame.cross_references import CrossReferences
 from mascarin.pages.frame.template import CURVES, environment, frame
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.page import context, explorer
+from mascarin.study_document.document import StudyDocument
 
 
-def page(study: Mapping[str, Any], series: Series) -> str:
+def page(study: StudyDocument, series: Series) -> str:
     """Make the HTML of a report.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     series : Series
         Curves.
     """

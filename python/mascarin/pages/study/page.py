@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from datetime import datetime
 from string import ascii_uppercase
 from types import ModuleType
@@ -39,6 +39,8 @@ from mascarin.pages.study.sections import (
     sensitivity,
     summary,
 )
+from mascarin.study_document.analysis import TableEntry
+from mascarin.study_document.document import StudyDocument
 
 #: In the order of the page: the summary, then the appendices, which are folded on a screen.
 SECTIONS: Final[tuple[ModuleType, ...]] = (
@@ -60,33 +62,33 @@ SECTIONS: Final[tuple[ModuleType, ...]] = (
 )
 
 
-def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+def context(study: StudyDocument, series: Series) -> dict[str, Any]:
     """Everything the template needs.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     series : Series
         Curves.
     """
-    observed = study.get("observed", {})
+    observed = study.observed
     return {
-        "title": study["title"],
-        "intro": study.get("intro", []),
+        "title": study.title,
+        "intro": study.intro,
         "looks": _looks(study, series),
-        "observed": {"label": observed.get("label", "measured"), "note": observed.get("note", "")},
-        "contradictions": [" ".join(note_words(study, entry)) for entry in study.get("contradictions", [])],
+        "observed": {"label": observed.label, "note": observed.note},
+        "contradictions": [" ".join(note_words(study, entry)) for entry in study.contradictions],
         "facts": _facts(study),
         "headline": headline(study, series),
         "sections": _sections(study, series),
-        "version": study.get("mascarin_version", ""),
-        "created": _created(study.get("created")),
-        "day": _created(study.get("created")).partition(",")[0],
+        "version": study.mascarin_version,
+        "created": _created(study.created),
+        "day": _created(study.created).partition(",")[0],
     }
 
 
-def headline(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+def headline(study: StudyDocument, series: Series) -> dict[str, Any] | None:
     """Curves beside the introduction."""
     shown = curves.headline(study, series)
     if shown is None:
@@ -98,16 +100,16 @@ def headline(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
     }
 
 
-def _looks(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+def _looks(study: StudyDocument, series: Series) -> dict[str, Any]:
     """What the legend of the curves of a sensor shows."""
     model, color_of = main_model(study), model_looks(study)
     main = model_label(study, model)
-    nominal = model_label(study, "nominal") if "nominal" in study.get("models", {}) else ""
+    nominal = model_label(study, "nominal") if "nominal" in study.models else ""
     return {
         "main": {"label": main, "color": color_of.get(main, "")},
         "nominal": {"label": nominal, "color": color_of[nominal]} if nominal and model != "nominal" else None,
         "band": any(key.startswith("band/") for key in series.columns),
-        "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
+        "uncertain": any(info.uncertainty for info in study.sensor_info.values()),
     }
 
 
@@ -118,22 +120,22 @@ def _created(raw: str | None) -> str:
     return f"{text.day(time)}, {time:%H:%M}"
 
 
-def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
+def _facts(study: StudyDocument) -> list[dict[str, str]]:
     """Main results for the head of the page."""
     facts: list[dict[str, str]] = []
     judged = judged_criteria(study)
     if judged:
-        met = sum(1 for c in judged if c.get("passed"))
+        met = sum(1 for c in judged if c.passed)
         kind = "pass" if met == len(judged) else "fail"
         facts.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
     facts += coverage_facts(study)
     facts += _errors(study)
-    fitted = [p for p in study.get("parameters", {}).values() if "fitted" in p]
+    fitted = [p for p in study.parameters.values() if p.fitted is not None]
     if fitted:
-        sensed = len({path for shares in study.get("sensitivity", {}).values() for path in shares})
+        sensed = len({path for shares in study.sensitivity.values() for path in shares})
         note = f"of {sensed} analyzed" if sensed else "from the measurements"
         facts.append(_fact("Calibrated parameters", str(len(fitted)), note))
-    closure = study.get("ledger", {}).get("closure")
+    closure = study.ledger.closure
     if closure is not None:
         facts.append(
             _fact(
@@ -149,13 +151,13 @@ def _fact(name: str, value: str, note: str, kind: str = "") -> dict[str, str]:
     return {"name": name, "value": value, "note": note, "kind": kind}
 
 
-def coverage_facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
+def coverage_facts(study: StudyDocument) -> list[dict[str, str]]:
     """Part of the values of the last period that lies inside the prediction bands.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
     covered = coverage(study)
     if covered is None:
@@ -172,7 +174,7 @@ def _percents(shares: Collection[float]) -> str:
     return " and ".join(f"{100.0 * share:g}\u00a0%" for share in sorted(shares))
 
 
-def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
+def _errors(study: StudyDocument) -> list[dict[str, str]]:
     """Standard deviation of the error over the sensors in the last period with metrics, for each unit."""
     scattered = scatter(study)
     if scattered is None:
@@ -188,7 +190,7 @@ def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
     ]
 
 
-def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
+def _sections(study: StudyDocument, series: Series) -> list[dict[str, Any]]:
     """The sections with content; appendices have letters."""
     sections: list[dict[str, Any]] = []
     for module in SECTIONS:
@@ -196,7 +198,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
         if content:
             key = module.__name__.rpartition(".")[2]
             appendices = sum(section["folded"] for section in sections)
-            tables = [_further_table(t) for t in _tables(study) if t.get("section", "comparison") == key]
+            tables = [_further_table(t) for t in _tables(study) if t.section == key]
             sections.append(
                 {
                     "id": key.replace("_", "-"),
@@ -211,29 +213,29 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
     return sections
 
 
-def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def _tables(study: StudyDocument) -> list[TableEntry]:
     """All further tables: those by themselves, and those of the diagnosis and of the choice of days."""
-    section_tables = [study.get(key, {}).get("table") for key in ("days", "diagnosis")]
-    return [*study.get("tables", []), *(table for table in section_tables if table)]
+    section_tables = (study.days.table, study.diagnosis.table)
+    return [*study.tables, *(table for table in section_tables if table is not None)]
 
 
-def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:
-    columns = table.get("columns", [])
+def _further_table(table: TableEntry) -> dict[str, Any]:
+    columns = table.columns
     rows = _cells(table)
     return {
-        "key": "further-" + "-".join(str(table.get("title", "")).lower().split()),
+        "key": "further-" + "-".join(table.title.lower().split()),
         "numeric": [any(row[k]["numeric"] for row in rows if k < len(row)) for k in range(len(columns))],
-        "title": table.get("title", ""),
-        "caption": table.get("caption", ""),
+        "title": table.title,
+        "caption": table.caption,
         "columns": columns,
         "rows": rows,
     }
 
 
-def _cells(table: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+def _cells(table: TableEntry) -> list[list[dict[str, Any]]]:
     """Cells of a table: numbers with the digits of their uncertainty, else those of a column alike."""
-    columns, rows = list(table.get("columns", [])), table.get("rows", [])
-    sizes = dict(table.get("uncertainty", {}))
+    columns, rows = list(table.columns), table.rows
+    sizes = dict(table.uncertainty)
     sizes |= {other: other for other in sizes.values()}
     shown = []
     for k, name in enumerate(columns):
@@ -241,7 +243,7 @@ def _cells(table: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
         if name in sizes:
             size = [row[columns.index(sizes[name])] for row in rows]
             words = [text.with_uncertainty(v, s) for v, s in zip(values, size, strict=True)]
-        elif name in table.get("significant", ()):
+        elif name in table.significant:
             words = [text.significant(value, 2) for value in values]
         else:
             words = text.alike([{True: "yes", False: "no"}[v] if isinstance(v, bool) else v for v in values])
@@ -253,22 +255,22 @@ def _cell(words: str, value: Any) -> dict[str, Any]:
     return {"text": words, "numeric": isinstance(value, int | float) and not isinstance(value, bool)}
 
 
-def explorer(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+def explorer(study: StudyDocument, series: Series) -> dict[str, Any]:
     """Give what the interactive curves need, ready for JSON."""
     return {
         "series": _shown_units(series.to_dict()),
-        "observed": study.get("observed", {}).get("label", "measured"),
-        "models": {key: model_label(study, key) for key in study.get("models", {})},
-        "colors": colors.models(study.get("models", {})),
+        "observed": study.observed.label,
+        "models": {key: model_label(study, key) for key in study.models},
+        "colors": colors.models(study.models),
         "main": main_model(study),
         "sensors": {
             key: {
                 "label": label_of(study, key),
                 "unit": units.shown(unit_of(study, key)),
                 "difference": units.difference(unit_of(study, key)),
-                "uncertainty": info.get("uncertainty", 0.0),
+                "uncertainty": info.uncertainty,
             }
-            for key, info in study.get("sensor_info", {}).items()
+            for key, info in study.sensor_info.items()
         },
         "spans": _spans(study),
     }
@@ -279,9 +281,6 @@ def _shown_units(raw: dict[str, Any]) -> dict[str, Any]:
     return {**raw, "columns": columns}
 
 
-def _spans(study: Mapping[str, Any]) -> list[Sequence[str]]:
+def _spans(study: StudyDocument) -> list[Sequence[str]]:
     """Short periods to be tinted behind the curves."""
-    return [
-        (period_label(study, period), *study["periods"][period]["spans"][0])
-        for period in short_periods(study)
-    ]
+    return [(period_label(study, period), *study.periods[period].spans[0]) for period in short_periods(study)]

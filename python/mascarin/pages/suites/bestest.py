@@ -20,8 +20,8 @@ from mascarin.verification.bestest.quantities import (
     MONTHS,
     ORIENTATIONS,
     THROUGH_GLASS,
-    Quantity,
-    Year,
+    BestestQuantity,
+    BestestYear,
     bins,
     energy,
     hours_of,
@@ -47,16 +47,18 @@ _CLASSES: Final = ("c0", "c1", "c2", "c3", "c6", "c7")
 _HOURS: Final = np.arange(24, dtype=np.float64) + 0.5
 
 
-def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> Path:
+def write(
+    path: Path, rows: Sequence[BestestQuantity], years: Mapping[str, BestestYear], facts: Mapping[str, str]
+) -> Path:
     """Write the page to a file.
 
     Parameters
     ----------
     path : Path
         Where to.
-    rows : sequence of Quantity
+    rows : sequence of BestestQuantity
         All quantities.
-    years : mapping of str to Year
+    years : mapping of str to BestestYear
         Hourly means by case.
     facts : mapping of str to str
         How to reproduce the results, as name and value.
@@ -69,7 +71,9 @@ def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts
     return atomic.write(path, render(rows, years, facts))
 
 
-def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> str:
+def render(
+    rows: Sequence[BestestQuantity], years: Mapping[str, BestestYear], facts: Mapping[str, str]
+) -> str:
     """Make the page; the parameters are those of `write`."""
     held = [row for row in rows if row.range is not None]
     rows_by_case = {(row.case, row.quantity): row for row in held}
@@ -117,7 +121,7 @@ def _words(quantity: str) -> str:
 
 # ------------------------------------------------------------------ bars
 
-Rows = Mapping[tuple[str, str], Quantity]
+Rows = Mapping[tuple[str, str], BestestQuantity]
 Group = tuple[str, tuple[Case, ...]]
 _GROUPS: Final[tuple[Group, ...]] = (
     ("low mass", MAIN[:8]),
@@ -138,7 +142,7 @@ def _bars(rows_by_case: Rows, quantities: Sequence[str], unit: str) -> list[dict
     return figures
 
 
-def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> dict[str, Any]:
+def _bar_chart(title: str, rows: Sequence[tuple[str, BestestQuantity]], unit: str) -> dict[str, Any]:
     """A group of bars for each row: the six programs, then Mascarin, and a band over their range."""
     values = [v for _, row in rows for v in (*_theirs(row).programs.values(), row.value)]
     y = Axis.over(values, around=0.0)
@@ -160,18 +164,18 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
     return {"title": f"{title}, {units.shown(unit)}", "drawing": chart.markup(f"{title}. {said}")}
 
 
-def _outside(row: Quantity) -> str:
+def _outside(row: BestestQuantity) -> str:
     shown_value = f"{_shown(row, row.value)} {units.shown(row.unit)}"
     whose = "the six programs" if (row.case, row.quantity) in ranges() else "--ranges"
     return f"{row.case}: {_words(row.quantity)}, {shown_value} outside of the range {_span(row)} of {whose}"
 
 
-def _span(row: Quantity) -> str:
+def _span(row: BestestQuantity) -> str:
     # With as many digits as the value: rounded, they could suggest the opposite.
     return f"{_shown(row, _theirs(row).low)} to {_shown(row, _theirs(row).high)}"
 
 
-def _theirs(row: Quantity) -> Range:
+def _theirs(row: BestestQuantity) -> Range:
     """The range of a quantity: that of the six programs, or that of the user for an own case."""
     return row.range or ranges()[row.case, row.quantity]
 
@@ -225,7 +229,7 @@ def _differences(rows_by_case: Rows) -> list[dict[str, Any]]:
     return rows
 
 
-def _difference(case_row: Quantity, base_row: Quantity) -> dict[str, Any]:
+def _difference(case_row: BestestQuantity, base_row: BestestQuantity) -> dict[str, Any]:
     theirs = [
         value - _theirs(base_row).programs[program]
         for program, value in _theirs(case_row).programs.items()
@@ -243,7 +247,7 @@ def _difference(case_row: Quantity, base_row: Quantity) -> dict[str, Any]:
 # ------------------------------------------------------------------ hourly days, months, bins
 
 
-def _days(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+def _days(years: Mapping[str, BestestYear]) -> list[dict[str, Any]]:
     """The charts that the standard requires, without cases that were not run."""
     figures = []
     for title, month, day, unit, curves in _DAYS:
@@ -257,7 +261,7 @@ def _days(years: Mapping[str, Year]) -> list[dict[str, Any]]:
     return figures
 
 
-def _day_values(year: Year, series: str, month: str, day: int) -> Array:
+def _day_values(year: BestestYear, series: str, month: str, day: int) -> Array:
     hours = hours_of(month, day)
     if series == "load":
         return (year.heating[hours] - year.cooling[hours]) / 1e3
@@ -306,7 +310,7 @@ _DAYS: Final = (
 )  # fmt: skip
 
 
-def _months(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+def _months(years: Mapping[str, BestestYear]) -> list[dict[str, Any]]:
     return [
         {
             "case": name,
@@ -317,7 +321,7 @@ def _months(years: Mapping[str, Year]) -> list[dict[str, Any]]:
     ]
 
 
-def _month(year: Year, hours: slice, word: str) -> dict[str, str]:
+def _month(year: BestestYear, hours: slice, word: str) -> dict[str, str]:
     cells = {"name": word}
     for kind, watts in (("heating", year.heating), ("cooling", year.cooling)):
         part = watts[hours]
@@ -328,7 +332,7 @@ def _month(year: Year, hours: slice, word: str) -> dict[str, str]:
     return cells
 
 
-def _bins(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+def _bins(years: Mapping[str, BestestYear]) -> list[dict[str, Any]]:
     if "900FF" not in years:
         return []
     counts = bins(years["900FF"].temperature)
@@ -348,7 +352,7 @@ def _bins(years: Mapping[str, Year]) -> list[dict[str, Any]]:
     ]
 
 
-def _table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
+def _table(rows: Sequence[BestestQuantity]) -> list[dict[str, Any]]:
     return [
         {
             "case": row.case,
@@ -363,12 +367,12 @@ def _table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
     ]
 
 
-def _beside(row: Quantity) -> dict[str, str]:
+def _beside(row: BestestQuantity) -> dict[str, str]:
     theirs = row.range
     if theirs is None:
         return dict.fromkeys(("low", "mean", "high"), text.NONE)
     return {key: _shown(row, getattr(theirs, key)) for key in ("low", "mean", "high")}
 
 
-def _shown(row: Quantity, value: float) -> str:
+def _shown(row: BestestQuantity, value: float) -> str:
     return text.fixed(value, {"kWh/m2": 0, "degC": 1}.get(row.unit, 3))

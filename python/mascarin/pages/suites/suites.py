@@ -12,23 +12,23 @@ from mascarin._io import atomic
 from mascarin.figures import text
 from mascarin.pages.frame.template import environment, frame
 from mascarin.verification.suites.peers import in_words, standing
-from mascarin.verification.suites.running import Result
-from mascarin.verification.suites.verdict import WITHOUT_NUMBER, Line, Verdict
+from mascarin.verification.suites.running import SuiteResult
+from mascarin.verification.suites.verdict import WITHOUT_NUMBER, SuiteVerdict, VerdictLine
 
 #: Significant digits of the numbers.
 _DIGITS: Final = 4
 #: Verdict -> class of its mark.
-_CLASSES: Final = {Verdict.INSIDE: "pass", Verdict.MISS: "fail"}
+_CLASSES: Final = {SuiteVerdict.INSIDE: "pass", SuiteVerdict.MISS: "fail"}
 
 
-def write(path: Path, results: Sequence[Result], facts: Mapping[str, str]) -> Path:
+def write(path: Path, results: Sequence[SuiteResult], facts: Mapping[str, str]) -> Path:
     """Write the page to a file.
 
     Parameters
     ----------
     path : Path
         Where to.
-    results : sequence of Result
+    results : sequence of SuiteResult
         All suites.
     facts : mapping of str to str
         How to reproduce the results, as name and value.
@@ -41,7 +41,7 @@ def write(path: Path, results: Sequence[Result], facts: Mapping[str, str]) -> Pa
     return atomic.write(path, render(results, facts))
 
 
-def render(results: Sequence[Result], facts: Mapping[str, str]) -> str:
+def render(results: Sequence[SuiteResult], facts: Mapping[str, str]) -> str:
     """Make the page; the parameters are those of `write`."""
     lines = [line for result in results for line in result.lines]
     ranks = [line.rank for line in lines if line.rank is not None]
@@ -65,16 +65,16 @@ def render(results: Sequence[Result], facts: Mapping[str, str]) -> str:
                 }
                 for result in results
             ],
-            inside=sum(line.verdict == Verdict.INSIDE for line in lines),
+            inside=sum(line.verdict == SuiteVerdict.INSIDE for line in lines),
             count=sum(line.limits is not None for line in lines),
-            misses=sum(line.verdict == Verdict.MISS for line in lines),
+            misses=sum(line.verdict == SuiteVerdict.MISS for line in lines),
             first=sum(rank[0] == 1 for rank in ranks),
             ranked=len(ranks),
         )
     )
 
 
-def _content(result: Result) -> dict[str, Any]:
+def _content(result: SuiteResult) -> dict[str, Any]:
     suite = result.suite
     facts = {
         "Source": suite.source, "Licence": suite.licence, "A number is inside if it is": suite.rule,
@@ -96,7 +96,7 @@ def _content(result: Result) -> dict[str, Any]:
     }
 
 
-def _row(line: Line, programs: Sequence[str]) -> dict[str, Any]:
+def _row(line: VerdictLine, programs: Sequence[str]) -> dict[str, Any]:
     low, high = line.limits if line.limits is not None else (math.nan, math.nan)
     rank = "" if line.rank is None else f"{line.rank[0]} of {line.rank[1]}"
     return {

@@ -12,6 +12,7 @@ from mascarin.building.parts.materials.phases import phase
 from mascarin.figures import text
 from mascarin.figures.svg.building_drawings import fill_of
 from mascarin.figures.svg.chart import Svg
+from mascarin.study_document.building import LayerEntry
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -123,11 +124,11 @@ def drawing(name: str, layers: Sequence[Mapping[str, Any]], scale: float) -> Mar
         density = layer.get("density")
         fill_of(
             svg,
-            {
-                "kind": layer["kind"],
-                "conductivity": layer["conductivity"][0] if "conductivity" in layer else None,
-                "density": None if density is None else density[0],
-            },
+            LayerEntry(
+                kind=layer["kind"],
+                conductivity=layer["conductivity"][0] if "conductivity" in layer else None,
+                density=None if density is None else density[0],
+            ),
             (float(x0), float(x1)),
             (top, bottom),
         )

@@ -12,9 +12,9 @@ from mascarin.sensitivity.base.factors import Floats
 from mascarin.sensitivity.base.jackknife import Ratio, above_zero, interval, student_reach
 from mascarin.sensitivity.base.result import Sensitivity
 from mascarin.sensitivity.base.runs import Collector
-from mascarin.sensitivity.salib.estimators import ESTIMATORS, Part, components
+from mascarin.sensitivity.salib.estimators import ESTIMATORS, ReplicateIndices, components
 from mascarin.sensitivity.salib.plans import SalibPlan
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 SQUARES: Final = (
     "part of the squared elementary effects: equal to the first-order index where the model is linear, a "
@@ -113,7 +113,7 @@ class SalibCollector(Collector[SalibPlan, Sensitivity]):
         super().__init__(plan, outputs, units=units)
         self._estimator = ESTIMATORS[plan.method](plan)
         self._bases: list[Floats] = []
-        self._parts: list[list[Part]] = []
+        self._parts: list[list[ReplicateIndices]] = []
         self._scale = np.zeros(len(self.outputs))
 
     def _take(self, replicate: int, y: Floats) -> None:
@@ -152,7 +152,7 @@ class SalibCollector(Collector[SalibPlan, Sensitivity]):
             "runs": len(plan),
             "seed": plan.seed,
             "warnings": tuple(
-                RunWarning(f"'{output}' does not depend on any of the varied parameters", Kind.METHOD)
+                RunWarning(f"'{output}' does not depend on any of the varied parameters", WarningKind.METHOD)
                 for output, none in zip(self.outputs, constant, strict=True)
                 if none
             ),

@@ -17,7 +17,7 @@ _MAX_OMITTED_VARIANCE: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ReplicateIndices:
     """The result of one replicate for one output.
 
     Attributes
@@ -48,7 +48,7 @@ class Estimator(ABC):
         self.plan = plan
 
     @abstractmethod
-    def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
+    def part(self, u: Floats, y: Floats, basis: Floats) -> ReplicateIndices:
         """Analyze one replicate.
 
         Parameters
@@ -66,9 +66,9 @@ class Estimator(ABC):
             The parts of the variance and the effects.
         """
 
-    def _part(self, first: Floats, total: Floats, variance: float, effect: Floats) -> Part:
+    def _part(self, first: Floats, total: Floats, variance: float, effect: Floats) -> ReplicateIndices:
         none = np.full(effect.shape, np.nan)
-        return Part(first, total, variance, effect, none, none)
+        return ReplicateIndices(first, total, variance, effect, none, none)
 
     def _slopes(self, u: Floats, y: Floats) -> Floats:
         """Change of the mean over time over the range, by linear regression on one factor; NaN for groups."""
@@ -84,7 +84,7 @@ class Estimator(ABC):
 
 
 class _RbdFast(Estimator):
-    def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
+    def part(self, u: Floats, y: Floats, basis: Floats) -> ReplicateIndices:
         first = np.zeros(len(self.plan.groups))
         for component in (y @ basis).T:
             result = salib("analyze.rbd_fast").analyze(
@@ -95,7 +95,7 @@ class _RbdFast(Estimator):
 
 
 class _Sobol(Estimator):
-    def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
+    def part(self, u: Floats, y: Floats, basis: Floats) -> ReplicateIndices:
         # The rows of a base point: A, then A with one column of B each, then B.
         step = len(self.plan.groups) + 2
         free = np.r_[np.arange(0, len(y), step), np.arange(step - 1, len(y), step)]
@@ -113,7 +113,7 @@ class _Sobol(Estimator):
 
 
 class _Morris(Estimator):
-    def part(self, u: Floats, y: Floats, basis: Floats) -> Part:
+    def part(self, u: Floats, y: Floats, basis: Floats) -> ReplicateIndices:
         single = np.bincount(self.plan.group_of) == 1
         squares = (self._squares if single.all() else self._squares_of_groups)(u, y @ basis)
         effects = self._effects(u, y.mean(axis=1))
@@ -123,7 +123,7 @@ class _Morris(Estimator):
         # The factors of a group move in different directions.
         effect[~single] = np.nan
         spread[~single] = np.nan
-        return Part(squares, squares, float(squares.sum()), effect, size, spread)
+        return ReplicateIndices(squares, squares, float(squares.sum()), effect, size, spread)
 
     def _squares(self, u: Floats, components: Floats) -> Floats:
         """Mean squared effect (G,), summed over the components (N, K), from mean and spread."""

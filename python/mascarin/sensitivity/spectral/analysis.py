@@ -46,7 +46,7 @@ from mascarin.sensitivity.spectral.designs import Design
 from mascarin.sensitivity.spectral.replicates import Replicate, transform
 from mascarin.sensitivity.spectral.result import SpectralSensitivity
 from mascarin.sensitivity.spectral.spectrum import power_threshold
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 
 class SpectralCollector(Collector[Design, SpectralSensitivity]):
@@ -144,7 +144,7 @@ def _analyzed(
         runs=len(plan),
         seed=plan.seed,
         warnings=tuple(
-            RunWarning(f"'{output}' does not depend on any of the varied parameters", Kind.METHOD)
+            RunWarning(f"'{output}' does not depend on any of the varied parameters", WarningKind.METHOD)
             for output, none in zip(outputs, constant, strict=True)
             if none
         ),

@@ -213,9 +213,9 @@ class SpectralSensitivity(Sensitivity):
         return {"effect_rms": self.effect_rms, "raw_share": self.raw_index}
 
 
-def lines(spectrum: Spectrum) -> list[figures.Line]:
+def lines(spectrum: Spectrum) -> list[figures.SpectrumLine]:
     """Return the peaks of a spectrum in the form in which they are drawn."""
-    return [figures.Line(peak.line, peak.power, peak.kind, peak.label) for peak in spectrum.peaks]
+    return [figures.SpectrumLine(peak.line, peak.power, peak.kind, peak.label) for peak in spectrum.peaks]
 
 
 def _by_hour(power: Floats, variance: Floats, hour: ArrayLike | None) -> tuple[Floats, Floats, Floats]:

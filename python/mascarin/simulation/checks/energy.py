@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -74,7 +74,7 @@ def balance_warnings(residuals: Array, first: int = 0, precision: str = "double"
         "temperatures may be wrong by as much or more: use another time-stepping scheme "
         "('apparent-capacity' never closes) or a shorter step"
     )
-    return [RunWarning(text, Kind.ENERGY_BALANCE)]
+    return [RunWarning(text, WarningKind.ENERGY_BALANCE)]
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class EnergyLedger:
             "may be wrong by as much or more: use another time-stepping scheme ('apparent-capacity' never "
             "closes) or a shorter step"
         )
-        return [RunWarning(text, Kind.ENERGY_BALANCE)]
+        return [RunWarning(text, WarningKind.ENERGY_BALANCE)]
 
     @classmethod
     def read(cls, raw: Mapping[str, Any]) -> Self:

@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io.sealed.own_files import json_of
 from mascarin.simulation.checks.energy import balance_warnings
 from mascarin.simulation.checks.step_check import STEPS
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -104,7 +104,7 @@ class Judgement:
             f"step of {_shorter(step_seconds, beyond, self.span):g} min"
             f"{'' if scheme == _MONOTONE else f', or the scheme {_MONOTONE}'}"
         )
-        return [RunWarning(text, Kind.CAUSE)]
+        return [RunWarning(text, WarningKind.CAUSE)]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -166,7 +166,7 @@ def ensemble_warnings(
         "their results. Take a shorter step, which a run of this member alone names, or the scheme "
         "backward-euler"
     )
-    return [*lines, RunWarning(text, Kind.CAUSE)]
+    return [*lines, RunWarning(text, WarningKind.CAUSE)]
 
 
 def all_sound(table: Mapping[str, Any] | Any, precision: str = "double") -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -145,4 +145,4 @@ class Bends:
                 f"reacts faster: its temperature is wrong by about {error:.1g} K (root mean square); take a "
                 f"step of {better} min"
             )
-            yield RunWarning(text, Kind.STEP)
+            yield RunWarning(text, WarningKind.STEP)

@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 
 from mascarin.simulation.checks.energy import CLOSED
 from mascarin.simulation.checks.step_check import STEPS
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 VAPOUR_FLOWS: Final = ("outdoor_air", "interzone", "gains", "humidifying", "drying", "condensation")
 """Flows of vapour into the zones; drying and condensation take vapour away and are negative."""
@@ -82,14 +82,14 @@ class VapourLedger:
                 "between that of the air and of the surfaces that drive it, and is less accurate there; "
                 f"take a step of {better} min"
             )
-            messages.append(RunWarning(text, Kind.STEP))
+            messages.append(RunWarning(text, WarningKind.STEP))
         if not self.closes:
             text = (
                 "the vapour balance does not close: the vapour stored and the vapour that flowed in differ "
                 f"by {self.relative_residual:.1e} of all vapour exchanged, expected {CLOSED:g} at most. "
                 "Humidities may be wrong by as much or more: take a shorter step"
             )
-            messages.append(RunWarning(text, Kind.VAPOUR_BALANCE))
+            messages.append(RunWarning(text, WarningKind.VAPOUR_BALANCE))
         lost = -self.into["condensation"]
         if lost > 0.01 * self.exchanged:
             text = (
@@ -97,7 +97,7 @@ class VapourLedger:
                 f"{100 * lost / self.exchanged:.0f} % of all vapour exchanged. It is taken away, and its "
                 "heat is not given to the room. Check the sources of vapour and the ventilation"
             )
-            messages.append(RunWarning(text, Kind.SATURATION))
+            messages.append(RunWarning(text, WarningKind.SATURATION))
         return messages
 
     @classmethod

@@ -9,12 +9,12 @@ from typing import Any, Final, Self
 from mascarin._io.sealed.own_files import json_of
 
 
-class Kind(StrEnum):
+class WarningKind(StrEnum):
     """What a warning of a run is about.
 
     Examples
     --------
-    >>> Kind("vapour_balance") in UNSOUND, Kind.LATENT in UNSOUND
+    >>> WarningKind("vapour_balance") in UNSOUND, WarningKind.LATENT in UNSOUND
     (True, False)
     """
 
@@ -31,7 +31,9 @@ class Kind(StrEnum):
     UNKNOWN = "unknown"
 
 
-UNSOUND: Final = frozenset({Kind.ENERGY_BALANCE, Kind.VAPOUR_BALANCE, Kind.CAUSE, Kind.FAILURE})
+UNSOUND: Final = frozenset(
+    {WarningKind.ENERGY_BALANCE, WarningKind.VAPOUR_BALANCE, WarningKind.CAUSE, WarningKind.FAILURE}
+)
 """Kinds that say that results are not to be used as they are: exit code 1."""
 
 
@@ -44,29 +46,29 @@ class RunWarning(str):
     ----------
     text : str
         The warning.
-    kind : Kind
+    kind : WarningKind
         What it is about.
 
     Examples
     --------
-    >>> line = RunWarning("the energy balance does not close", Kind.ENERGY_BALANCE)
+    >>> line = RunWarning("the energy balance does not close", WarningKind.ENERGY_BALANCE)
     >>> line.after("tampa").kind
-    <Kind.ENERGY_BALANCE: 'energy_balance'>
+    <WarningKind.ENERGY_BALANCE: 'energy_balance'>
     >>> print(line.after("tampa"))
     tampa: the energy balance does not close
     """
 
     __slots__ = ("kind",)
 
-    kind: Kind
+    kind: WarningKind
 
-    def __new__(cls, text: str, kind: Kind) -> Self:
+    def __new__(cls, text: str, kind: WarningKind) -> Self:
         """Make the text, which does not change."""
         line = super().__new__(cls, text)
         line.kind = kind
         return line
 
-    def __reduce__(self) -> tuple[type[RunWarning], tuple[str, Kind]]:
+    def __reduce__(self) -> tuple[type[RunWarning], tuple[str, WarningKind]]:
         """Text and kind, for a copy in another process."""
         return type(self), (str(self), self.kind)
 
@@ -86,19 +88,19 @@ class RunWarning(str):
         return RunWarning(f"{words}: {self}", self.kind)
 
 
-def of_kind(kind: Kind, lines: Iterable[str]) -> list[RunWarning]:
+def of_kind(kind: WarningKind, lines: Iterable[str]) -> list[RunWarning]:
     """Texts as warnings of one kind; what has a kind keeps it.
 
     Parameters
     ----------
-    kind : Kind
+    kind : WarningKind
         The kind.
     lines : iterable of str
         The texts.
 
     Examples
     --------
-    >>> [line.kind.value for line in of_kind(Kind.BUILDING, ["zones.room: a volume of 0.3 m3"])]
+    >>> [line.kind.value for line in of_kind(WarningKind.BUILDING, ["zones.room: a volume of 0.3 m3"])]
     ['building']
     """
     return [line if isinstance(line, RunWarning) else RunWarning(line, kind) for line in lines]
@@ -112,7 +114,7 @@ def kinds_of(lines: Iterable[str]) -> list[str]:
     lines : iterable of str
         The warnings.
     """
-    return [line.kind.value for line in of_kind(Kind.UNKNOWN, lines)]
+    return [line.kind.value for line in of_kind(WarningKind.UNKNOWN, lines)]
 
 
 def with_kinds(lines: Sequence[str], kinds: Sequence[str] | None) -> list[RunWarning]:
@@ -136,8 +138,8 @@ def with_kinds(lines: Sequence[str], kinds: Sequence[str] | None) -> list[RunWar
     True
     """
     if kinds is None:
-        return of_kind(Kind.UNKNOWN, lines)
-    return [RunWarning(line, Kind(kind)) for line, kind in zip(lines, kinds, strict=True)]
+        return of_kind(WarningKind.UNKNOWN, lines)
+    return [RunWarning(line, WarningKind(kind)) for line, kind in zip(lines, kinds, strict=True)]
 
 
 def warnings_of(attributes: Mapping[str, Any]) -> list[RunWarning]:

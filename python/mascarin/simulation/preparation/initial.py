@@ -13,10 +13,10 @@ from mascarin.simulation.preparation.initial_state import (
     LIMITS,
     Ambient,
     GivenStart,
+    InitialTemperatures,
+    InitialWall,
     Known,
-    Profile,
     StartError,
-    Wall,
     given,
     located,
     profile,
@@ -62,14 +62,14 @@ class MeasuredStart:
     measurements: Measurements
     sensors: Mapping[str, str | Sequence[str]]
 
-    def known(self, building: Building, wall_list: Sequence[Wall], start: datetime) -> Known:
+    def known(self, building: Building, wall_list: Sequence[InitialWall], start: datetime) -> Known:
         """The first value of each sensor.
 
         Parameters
         ----------
         building : Building
             The building.
-        wall_list : sequence of Wall
+        wall_list : sequence of InitialWall
             Its walls.
         start : datetime
             Start of the run.
@@ -166,7 +166,7 @@ def resolved(
     nodes: Mapping[tuple[str, str], int],
     ambient: Ambient,
     start: datetime,
-) -> Profile:
+) -> InitialTemperatures:
     """Temperatures everywhere in a building.
 
     Parameters

@@ -136,7 +136,7 @@ class Ambient:
 
 
 @dataclass(frozen=True)
-class Profile:
+class InitialTemperatures:
     """Temperatures at the start of a run, in the order of the engine.
 
     Attributes
@@ -154,7 +154,7 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Wall:
+class InitialWall:
     """A surface, window or frame along its thermal resistance, from the outside.
 
     Attributes
@@ -198,7 +198,7 @@ class Wall:
         return resistance_before
 
 
-def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall]:
+def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[InitialWall]:
     """All surfaces, then the windows, then their frames: the order of the engine.
 
     Parameters
@@ -215,11 +215,13 @@ def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall
     for window in building.windows.values():
         if window.frame is not None:
             resistance = max(1.0 / window.frame.u_value - sum(FILMS), _LEAST)
-            wall_list.append(Wall("", building.surfaces[window.surface].sides, ((0.0, resistance),), ()))
+            wall_list.append(
+                InitialWall("", building.surfaces[window.surface].sides, ((0.0, resistance),), ())
+            )
     return wall_list
 
 
-def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int]) -> Wall:
+def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int]) -> InitialWall:
     surface = building.surfaces[name]
     layers: list[tuple[float, float]] = []
     cells: list[float] = []
@@ -235,16 +237,16 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
         count = nodes[surface.construction, layer.name]
         cells += [before + (i + 0.5) / count * resistance for i in range(count)]
         layers.append((float(layer.thickness), resistance))
-    return Wall(name, surface.sides, tuple(layers), tuple(cells))
+    return InitialWall(name, surface.sides, tuple(layers), tuple(cells))
 
 
-def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
+def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> InitialWall:
     """Nodes of a window as in the engine: pane surfaces at gaps, and middles of panes with heat capacity."""
     if isinstance(glazing, SimpleGlazing):
         films = glazing.outside_film + glazing.inside_film
         total = float(1.0 / glazing.u_value - films)
         outer = min(_PANE, 0.25 * total)
-        return Wall(name, sides, ((0.0, total),), (outer, total - outer))
+        return InitialWall(name, sides, ((0.0, total),), (outer, total - outer))
     layers: list[tuple[float, float]] = []
     cells: list[float] = []
     for k, pane in enumerate(glazing.panes):
@@ -256,19 +258,19 @@ def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
         if not last:
             gap = glazing.gaps[k]
             layers.append((0.0, 1.0 / gap.conductance if isinstance(gap, GivenGap) else _GAP))
-    return Wall(name, sides, tuple(layers), tuple(cells))
+    return InitialWall(name, sides, tuple(layers), tuple(cells))
 
 
-def _behind(glass: Wall, blind: Blind) -> Wall:
+def _behind(glass: InitialWall, blind: Blind) -> InitialWall:
     """A glazing with an open blind, whose node is the surface: that of the glass is one more node."""
     opened = (0.0, _OPEN)
     if blind.position == "outside":
         cells = (_OPEN, *(cell + _OPEN for cell in glass.cells))
-        return Wall(glass.name, glass.sides, (opened, *glass.layers), cells)
-    return Wall(glass.name, glass.sides, (*glass.layers, opened), (*glass.cells, glass.whole))
+        return InitialWall(glass.name, glass.sides, (opened, *glass.layers), cells)
+    return InitialWall(glass.name, glass.sides, (*glass.layers, opened), (*glass.cells, glass.whole))
 
 
-def given(start: GivenStart, wall_list: Sequence[Wall], building: Building) -> Known:
+def given(start: GivenStart, wall_list: Sequence[InitialWall], building: Building) -> Known:
     """Known temperatures as the user gave them.
 
     Raises
@@ -302,14 +304,16 @@ def given(start: GivenStart, wall_list: Sequence[Wall], building: Building) -> K
 _SINGULAR: Final = {"zones": "zone", "surfaces": "surface or window"}
 
 
-def located(output: Output, wall_list: Sequence[Wall], building: Building) -> tuple[str, float | None] | None:
+def located(
+    output: Output, wall_list: Sequence[InitialWall], building: Building
+) -> tuple[str, float | None] | None:
     """Position of an output that is a temperature of the state: zone and None, or surface and position.
 
     Parameters
     ----------
     output : Output
         An output of the building.
-    wall_list : sequence of Wall
+    wall_list : sequence of InitialWall
         Its walls.
     building : Building
         The building.
@@ -332,7 +336,9 @@ def located(output: Output, wall_list: Sequence[Wall], building: Building) -> tu
     return None
 
 
-def profile(building: Building, wall_list: Sequence[Wall], start: Known, ambient: Ambient) -> Profile:
+def profile(
+    building: Building, wall_list: Sequence[InitialWall], start: Known, ambient: Ambient
+) -> InitialTemperatures:
     """All temperatures from those that are known.
 
     Air of unknown temperature takes the default, or the mean of the others. In a wall the temperature is
@@ -343,7 +349,7 @@ def profile(building: Building, wall_list: Sequence[Wall], start: Known, ambient
     ----------
     building : Building
         The building.
-    wall_list : sequence of Wall
+    wall_list : sequence of InitialWall
         Its walls.
     start : Known
         Known temperatures.
@@ -366,7 +372,9 @@ def profile(building: Building, wall_list: Sequence[Wall], start: Known, ambient
         positions, values = zip(*points, strict=True)
         cells += np.interp(wall.cells, positions, values).tolist()
         faces += np.interp([0.0, wall.whole], positions, values).tolist()
-    return Profile(tuple(cells), tuple(faces), tuple(air.values()), start.words + _advice(building))
+    return InitialTemperatures(
+        tuple(cells), tuple(faces), tuple(air.values()), start.words + _advice(building)
+    )
 
 
 def _airs(building: Building, start: Known) -> dict[str, float]:
@@ -383,7 +391,7 @@ def _airs(building: Building, start: Known) -> dict[str, float]:
 
 
 def _points(
-    wall: Wall, inside: Sequence[tuple[float, float]], air: Mapping[str, float], ambient: Ambient
+    wall: InitialWall, inside: Sequence[tuple[float, float]], air: Mapping[str, float], ambient: Ambient
 ) -> list[tuple[float, float]]:
     """Positions and temperatures between which a wall is interpolated, from outside to inside."""
     points = _merged(inside)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _AT_ONCE: Final = 2**22
 
 
-class Limits:
+class ParameterLimits:
     """Limits of parameters, in the order of a parameter vector.
 
     Parameters

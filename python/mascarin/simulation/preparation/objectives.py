@@ -126,13 +126,6 @@ class Gradient:
         ).rename_axis("parameter")
         return table.sort_values("over its range", key=np.abs, ascending=False)
 
-    def table(self) -> pd.DataFrame:
-        """Deprecated name of `to_dataframe`."""
-        return self.to_dataframe()
-
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if name != "table"]
-
     def __repr__(self) -> str:
         table = self.to_dataframe()
         columns = (table.index, table["slope"], table["parameter unit"], table["over its range"])

@@ -11,7 +11,11 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.simulation.checks.formula_laws import require_laws
 from mascarin.simulation.preparation.engine_run import MEMORY, CompiledRun
-from mascarin.simulation.preparation.limits import Limits, require_control_times, require_set_points_apart
+from mascarin.simulation.preparation.limits import (
+    ParameterLimits,
+    require_control_times,
+    require_set_points_apart,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -302,5 +306,5 @@ class VectorRuns:
             require_control_times(self.building, vectors, positions=self._positions, seconds=seconds)
 
     @cached_property
-    def _limits(self) -> Limits:
-        return Limits([self.building.parameter(path) for path in self.compiled.paths])
+    def _limits(self) -> ParameterLimits:
+        return ParameterLimits([self.building.parameter(path) for path in self.compiled.paths])

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import EngineDescription, Output
-    from mascarin.simulation.preparation.initial_state import Profile
+    from mascarin.simulation.preparation.initial_state import InitialTemperatures
     from mascarin.simulation.preparation.options import Scheme, TimeLike
     from mascarin.simulation.preparation.weather_inputs import WeatherInputs
 
@@ -249,7 +249,7 @@ def start_of(
     description: EngineDescription,
     forcing: Array,
     start: datetime,
-) -> float | Profile | None:
+) -> float | InitialTemperatures | None:
     """Temperature or temperatures at the start; None to repeat the first period."""
     if initial is None or isinstance(initial, float):
         return initial
@@ -260,7 +260,7 @@ def start_of(
 
 
 def settings_of(
-    initial: float | Profile | None,
+    initial: float | InitialTemperatures | None,
     forcing: Array,
     *,
     step_seconds: float,

@@ -18,13 +18,14 @@ Rasmussen C.E., Williams C.K.I. (2006), Gaussian Processes for Machine Learning,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin._io.units import difference
 from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import factors_of
+from mascarin.study_document.comparison import BandEntry
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.building.parts.posterior import Posterior, SensorPosterior
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
@@ -76,8 +77,8 @@ class Bands:
     distance: Array
     words: tuple[str, ...]
 
-    def entries(self, observation: Observation, used: Mapping[str, Flags]) -> dict[str, Any]:
-        """The bands for a JSON file: sensor -> half_width, parameters, extrapolated, held by period.
+    def entries(self, observation: Observation, used: Mapping[str, Flags]) -> dict[str, BandEntry]:
+        """The bands in numbers, by sensor.
 
         Parameters
         ----------
@@ -95,13 +96,13 @@ class Bands:
             for period, use in used.items():
                 compared = finite & use[:, s]
                 shares[period] = float(inside[compared, s].mean()) if compared.any() else None
-            entries[name] = {
-                "confidence": self.confidence,
-                "half_width": _mean(self.half_width[:, s]),
-                "parameters": _mean(self.parameters[:, s]),
-                "extrapolated": float(np.mean(self.distance[:, s] > 0.0)),
-                "held": shares,
-            }
+            entries[name] = BandEntry(
+                confidence=self.confidence,
+                half_width=_mean(self.half_width[:, s]),
+                parameters=_mean(self.parameters[:, s]),
+                extrapolated=float(np.mean(self.distance[:, s] > 0.0)),
+                held=shares,
+            )
         return entries
 
     def beside(self, series: pd.DataFrame, names: Sequence[str], units: Sequence[str]) -> pd.DataFrame:

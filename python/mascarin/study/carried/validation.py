@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.study_document.comparison import BandEntry
+    from mascarin.study_document.document import StudyDocument
+
 
 @dataclass(frozen=True, eq=False)
 class Validation:
@@ -15,32 +18,31 @@ class Validation:
 
     Attributes
     ----------
-    content : dict
+    content : StudyDocument
         The content of ``validation.json``.
     series : pandas.DataFrame
         The content of ``series.csv``.
     """
 
-    content: dict[str, Any]
+    content: StudyDocument
     series: pd.DataFrame
 
     @property
     def remarks(self) -> list[str]:
         """Where the posterior extrapolates, and what contradicts the study; read them first."""
-        return [str(entry["text"]) for entry in self.content["contradictions"]]
+        return [entry.text for entry in self.content.contradictions]
 
     @property
-    def bands(self) -> dict[str, Any]:
+    def bands(self) -> dict[str, BandEntry]:
         """Half-width of the bands of each sensor, and the part of the values inside, by period.
 
         Empty for a building without a posterior.
         """
-        bands: dict[str, Any] = self.content.get("band", {})
-        return bands
+        return self.content.band
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for a JSON file."""
-        return self.content
+        return self.content.to_dict()
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return measured and predicted series, with their bands."""

@@ -18,9 +18,9 @@ from mascarin.study.file.free_parameters import fit_parameters
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.file.description import IdentificationPlan, Sensor
-    from mascarin.validation.observation import Observation
 
 
 #: Work that is lost at most when a study is killed. [s]
@@ -65,7 +65,7 @@ def problem(
         rows,
         fit_parameters(simulation.building, plan),
         {
-            name: sensor.stated_uncertainty(simulation.building.output(sensor.output).unit, name)
+            name: sensor.uncertainty(simulation.building.output(sensor.output).unit, f"sensors.{name}")
             for name, sensor in sensors.items()
             if sensor.use
         },

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin import __version__
+from mascarin.measurements.observation import Observation, observe
 from mascarin.study.context.calibration import problem
 from mascarin.study.context.error_rule import estimates_errors
 from mascarin.study.context.models import StudyModels
 from mascarin.study.context.periods import StudyPeriods
 from mascarin.study.context.variants import Variants
 from mascarin.validation.comparison import Metrics, compare
-from mascarin.validation.observation import Observation, observe
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -12,10 +12,10 @@ from mascarin.study.context.phase_change import melting_layers
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.measurements.time_fields import Duration
     from mascarin.simulation.preparation.options import TimeLike
     from mascarin.study.context.periods import StudyPeriods
     from mascarin.study.context.variants import Variants
-    from mascarin.study.file.field_types import Duration
     from mascarin.study.file.study_inputs import StudyInputs
 
 

@@ -16,20 +16,20 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.errors import InputError
+from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import IdentificationPlan
 from mascarin.tables.timezones import moment
-from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.measurements.observation import Observation
+    from mascarin.measurements.time_fields import Duration
     from mascarin.study.file.description import SensorPeriods, StudyPlan
-    from mascarin.study.file.field_types import Duration
     from mascarin.study.file.locations import Places
     from mascarin.study.file.study_inputs import StudyInputs
     from mascarin.tables.grid import Grid
-    from mascarin.validation.observation import Observation
 
     Flags = npt.NDArray[np.bool_]
 
@@ -37,7 +37,7 @@ NAMED: Final = ("identification", "corroboration")
 
 
 @dataclass(frozen=True)
-class Span:
+class PeriodSpan:
     """One period and where the study states it.
 
     Attributes
@@ -52,7 +52,7 @@ class Span:
     end: pd.Timestamp
     place: tuple[str | int, ...]
 
-    def overlaps(self, other: Span) -> bool:
+    def overlaps(self, other: PeriodSpan) -> bool:
         """Whether both have an instant in common."""
         return self.start < other.end and other.start < self.end
 
@@ -78,12 +78,12 @@ class Timeline:
     def __init__(self, plan: StudyPlan, zone: Any, places: Places) -> None:
         self._plan, self._zone, self._places = plan, zone, places
 
-    def warm_up(self) -> Span | None:
+    def warm_up(self) -> PeriodSpan | None:
         """The warm-up, which is not compared."""
         period = self._plan.periods.warm_up
         return None if period is None else self._span(period, ("periods", "warm_up"))
 
-    def spans(self, name: str, sensor: str | None = None) -> list[Span]:
+    def spans(self, name: str, sensor: str | None = None) -> list[PeriodSpan]:
         """Periods of a name: those of a sensor where it has its own, else those of the study.
 
         Parameters
@@ -101,7 +101,7 @@ class Timeline:
             periods += self._read(sensor_periods, name, ("sensors", str(sensor), "periods", name))
         return periods
 
-    def every(self, name: str) -> list[Span]:
+    def every(self, name: str) -> list[PeriodSpan]:
         """Periods of a name of the study and of all sensors, each once."""
         sensors = (sensor for sensor in self._plan.sensors)
         spans = [*self.spans(name), *(span for sensor in sensors for span in self.spans(name, sensor))]
@@ -164,23 +164,23 @@ class Timeline:
             return np.asarray((hour >= start) & (hour < end))
         return np.asarray((hour >= start) | (hour < end))
 
-    def _read(self, periods: SensorPeriods | Any, name: str, place: tuple[str, ...]) -> list[Span]:
+    def _read(self, periods: SensorPeriods | Any, name: str, place: tuple[str, ...]) -> list[PeriodSpan]:
         return [self._span(period, place) for period in getattr(periods, name) or ()]
 
-    def _span(self, period: str | tuple[str, str], place: tuple[str, ...]) -> Span:
+    def _span(self, period: str | tuple[str, str], place: tuple[str, ...]) -> PeriodSpan:
         import pandas as pd
 
         with self._places.blame(*place):
             if isinstance(period, str):
                 start = moment(period, self._zone, place[-1]).normalize()
-                return Span(start, start + pd.Timedelta(days=1), place)
+                return PeriodSpan(start, start + pd.Timedelta(days=1), place)
             start, end = (moment(text, self._zone, place[-1]) for text in period)
             if end <= start:
                 raise InputError(
                     f"found {start:%Y-%m-%d %H:%M} .. {end:%Y-%m-%d %H:%M}, expected the end after the "
                     "start; exchange the two times"
                 )
-            return Span(start, end, place)
+            return PeriodSpan(start, end, place)
 
 
 class StudyPeriods:
@@ -274,12 +274,12 @@ class StudyPeriods:
         return step or self._plan.step
 
 
-def overlap(known: list[Span], held: list[Span]) -> tuple[Span, Span] | None:
+def overlap(known: list[PeriodSpan], held: list[PeriodSpan]) -> tuple[PeriodSpan, PeriodSpan] | None:
     """The first two periods that have an instant in common; None where there are none."""
     return next(((a, b) for a in known for b in held if a is not b and a.overlaps(b)), None)
 
 
-def _during(observation: Observation, spans: list[Span]) -> Flags:
+def _during(observation: Observation, spans: list[PeriodSpan]) -> Flags:
     inside = np.zeros(len(observation.times), dtype=np.bool_)
     for span in spans:
         inside |= observation.during(span.start, span.end)

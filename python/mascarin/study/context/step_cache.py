@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from mascarin._io.sealed import own_files
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.context.context import StudyContext
     from mascarin.study.context.storage import Workspace
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
 
@@ -203,7 +203,7 @@ def _decoded(tree: Any, arrays: Mapping[str, Any], known: Sequence[object]) -> A
         case {"list": list(items)}:
             return [_decoded(one, arrays, known) for one in items]
         case {"warning": str(text), "kind": str(kind)}:
-            return RunWarning(text, Kind(kind))
+            return RunWarning(text, WarningKind(kind))
         case {"value": None | str() | bool() | int() | float() as value}:
             return value
     raise ValueError("it holds something else than what is kept")

@@ -39,7 +39,7 @@ _WIDE: Final = 0.5
 _RADIANT: Final = "mean_radiant_temperature"
 
 
-class Store:
+class SeriesStore:
     """Arrays in the folder of the study, by what they depend on.
 
     Parameters
@@ -72,7 +72,7 @@ class Store:
         return json.loads(bytes(stored.astype(np.uint8)).decode())
 
 
-class Model:
+class DiagnosisModel:
     """The fitted model, its parameters in ranges, and its series at averaged instants of the comparison.
 
     Parameters
@@ -83,7 +83,7 @@ class Model:
         The fitted model over the whole record.
     fit : Calibration
         Its calibration.
-    store : Store
+    store : SeriesStore
         Intermediate results.
     progress : bool, callable or None
         Where the progress of many runs is shown.
@@ -94,7 +94,7 @@ class Model:
         setup: StudyContext,
         simulation: Simulation,
         fit: Calibration,
-        store: Store,
+        store: SeriesStore,
         progress: ProgressOption = None,
     ) -> None:
         self.setup, self.simulation, self.store = setup, simulation, store

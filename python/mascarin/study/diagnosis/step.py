@@ -12,14 +12,15 @@ import numpy as np
 from mascarin.calibration.errors.day_blocks import DayGrid
 from mascarin.calibration.errors.discrepancy import DayData, hour_basis
 from mascarin.calibration.errors.sensor_errors import error_columns
+from mascarin.calibration.errors.stated_errors import shared_errors
 from mascarin.diagnosis.causes import diagnose
 from mascarin.diagnosis.hypotheses import Candidate, Diagnosis, DiagnosisInput
-from mascarin.diagnosis.sensor_faults import Series, sensor_candidates, stated_errors, white_noise
+from mascarin.diagnosis.sensor_faults import SensorSeries, sensor_candidates, stated_errors, white_noise
 from mascarin.linear_algebra import one_thread
 from mascarin.progress import reporting
 from mascarin.study.diagnosis import words
 from mascarin.study.diagnosis.missing_paths import input_errors, missing_paths, simulated_with
-from mascarin.study.diagnosis.model import Model, Store
+from mascarin.study.diagnosis.model import DiagnosisModel, SeriesStore
 from mascarin.study.diagnosis.other_laws import forms
 from mascarin.study.file.description import DiscrepancyPlan
 from mascarin.study.steps.error_model import scatter_of
@@ -90,7 +91,7 @@ def diagnosis(
         Without causes where nothing is significant.
     """
     causes: list[Cause] = list(words.of_table(setup))
-    model = Model(setup, run.simulation, fit, Store(workspace), progress)
+    model = DiagnosisModel(setup, run.simulation, fit, SeriesStore(workspace), progress)
     vector = run.simulation.vector(fit.values)
     with reporting(progress, "diagnosis") as report:
         noise, excess = _noise(setup, model, vector)
@@ -115,7 +116,7 @@ def _weight(combination: Combination | None) -> float:
 
 
 def diagnosis_input(
-    setup: StudyContext, model: Model, vector: Array, weight: float, number: int = 1
+    setup: StudyContext, model: DiagnosisModel, vector: Array, weight: float, number: int = 1
 ) -> DiagnosisInput | None:
     """Plain arrays of a study: residuals, known effects and candidates.
 
@@ -123,7 +124,7 @@ def diagnosis_input(
     ----------
     setup : StudyContext
         The study.
-    model : Model
+    model : DiagnosisModel
         Its fitted model.
     vector : ndarray, shape (P,)
         Its parameter vector. [unit of each]
@@ -181,14 +182,14 @@ def diagnosis_input(
 
 
 def _series(
-    setup: StudyContext, model: Model, mask: npt.NDArray[np.bool_], vector: Array, simulated: Array
-) -> Series:
+    setup: StudyContext, model: DiagnosisModel, mask: npt.NDArray[np.bool_], vector: Array, simulated: Array
+) -> SensorSeries:
     names = setup.observation.names
-    return Series(
+    return SensorSeries(
         tuple(names),
         simulated,
         mask,
-        np.array([max(setup.plan.sensors[n].uncertainty, 1e-9) / 1.96 for n in names]),
+        np.array([max(setup.plan.sensors[n].expanded, 1e-9) / 1.96 for n in names]),
         model.interval,
         tuple(output.unit for output in model.simulation.outputs[: len(names)]),
         DayGrid.of(model.hours, interval=model.interval / 3600.0, sensors=len(names)),
@@ -204,20 +205,20 @@ def _directions(effects: Array, mask: npt.NDArray[np.bool_], uncertainty: Array)
     return np.asarray(effects @ vectors[:, value > _SMALL**2])
 
 
-def _sensor_errors(setup: StudyContext, model: Model, simulated: Array) -> Array:
+def _sensor_errors(setup: StudyContext, model: DiagnosisModel, simulated: Array) -> Array:
     """Effects (n, S, k) of the errors that the sensors state; an uncertainty alone is one of the offset."""
     names, errors = setup.observation.names, []
     for s, name in enumerate(names):
         sensor = setup.plan.sensors[name]
-        stated = sensor.stated_uncertainty(model.simulation.outputs[s].unit, name)
-        error = sensor.shared_errors(stated, scatter_of(setup, name))
-        offset = error.offset if error.offset or error.common else sensor.uncertainty / 1.96
+        stated = sensor.uncertainty(model.simulation.outputs[s].unit, f"sensors.{name}")
+        error = shared_errors(sensor, stated, scatter_of(setup, name))
+        offset = error.offset if error.offset or error.common else sensor.expanded / 1.96
         errors.append(replace(error, offset=offset))
     return error_columns(names, errors, simulated, model.interval)[0]
 
 
 def _parameters(
-    model: Model, series: Series, vector: Array, slopes: Array, center: Array, sd: Array
+    model: DiagnosisModel, series: SensorSeries, vector: Array, slopes: Array, center: Array, sd: Array
 ) -> Iterator[Candidate]:
     """Values of parameters that their priors do not allow."""
     for k, path in enumerate(model.paths):
@@ -232,7 +233,9 @@ def _parameters(
         )  # fmt: skip
 
 
-def _laws(model: Model, series: Series, vector: Array, simulated: Array) -> Iterator[Candidate]:
+def _laws(
+    model: DiagnosisModel, series: SensorSeries, vector: Array, simulated: Array
+) -> Iterator[Candidate]:
     """Other laws of parts of the model."""
     building, outputs = model.simulation.building, model.simulation.outputs[: len(series.names)]
     surfaces = list(building.surfaces)
@@ -246,7 +249,9 @@ def _laws(model: Model, series: Series, vector: Array, simulated: Array) -> Iter
             yield Candidate("form", "form", (part,), signature, 1.0, _LAW, detail=kind)
 
 
-def _paths(model: Model, series: Series, vector: Array, simulated: Array) -> Iterator[Candidate]:
+def _paths(
+    model: DiagnosisModel, series: SensorSeries, vector: Array, simulated: Array
+) -> Iterator[Candidate]:
     """Heat flows that the model does not have."""
     for zone, what, changes, size, unit in missing_paths(model.simulation.building):
         other = model.of_form((zone, what), changes, vector)
@@ -256,7 +261,7 @@ def _paths(model: Model, series: Series, vector: Array, simulated: Array) -> Ite
 
 
 def _inputs(
-    setup: StudyContext, model: Model, series: Series, vector: Array, simulated: Array
+    setup: StudyContext, model: DiagnosisModel, series: SensorSeries, vector: Array, simulated: Array
 ) -> Iterator[Candidate]:
     """Errors of measured inputs of the model."""
     for error in input_errors(setup, model.simulation, vector):
@@ -274,7 +279,7 @@ def _inputs(
 
 
 def _noise(
-    setup: StudyContext, model: Model, vector: Array
+    setup: StudyContext, model: DiagnosisModel, vector: Array
 ) -> tuple[dict[str, float], list[tuple[str, float, float, str]]]:
     """White noise of each sensor, and where it exceeds the stated uncertainty: name, size, error, unit."""
     # At every sample: slow errors of the model vanish in the second differences.
@@ -284,7 +289,7 @@ def _noise(
     for s, name in enumerate(setup.observation.names):
         sd, error = white_noise(errors[:, s], interval)
         noise[name] = sd
-        stated = max(setup.plan.sensors[name].uncertainty, 1e-9) / 1.96
+        stated = max(setup.plan.sensors[name].expanded, 1e-9) / 1.96
         if math.isfinite(sd) and sd - _SURE * error > _NOISY * stated:
             excess.append((name, sd, error, model.simulation.outputs[s].unit))
     return noise, excess

@@ -12,7 +12,7 @@ from mascarin._io.numbers import with_uncertainty
 from mascarin.diagnosis.hypotheses import GROUPS, WORDS, Cause
 
 if TYPE_CHECKING:
-    from mascarin.diagnosis.causes import Finding
+    from mascarin.diagnosis.causes import CauseEstimate
     from mascarin.diagnosis.hypotheses import Candidate, Diagnosis
     from mascarin.study.context.context import StudyContext
 
@@ -68,7 +68,7 @@ def of_noise(excess: Sequence[tuple[str, float, float, str]]) -> Cause:
     )
 
 
-def of_finding(setup: StudyContext, finding: Finding) -> Cause:
+def of_finding(setup: StudyContext, finding: CauseEstimate) -> Cause:
     """A cause that the residuals name, or the candidates that they cannot tell apart."""
     candidate, since = finding.candidate, _since(setup, finding.candidate.start)
     statement = _statement(setup, finding, since)
@@ -112,7 +112,7 @@ def summary(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _statement(setup: StudyContext, finding: Finding, since: str) -> str:
+def _statement(setup: StudyContext, finding: CauseEstimate, since: str) -> str:
     """What is wrong if the candidate is the cause, with its size."""
     candidate, size = finding.candidate, _size(finding)
     what, subject = candidate.what, " and ".join(candidate.subject)
@@ -142,7 +142,7 @@ def _statement(setup: StudyContext, finding: Finding, since: str) -> str:
     return f"{subject}: the law '{candidate.detail}' explains the measurements better than the present one"
 
 
-def _of_sensor(setup: StudyContext, finding: Finding, since: str) -> str:
+def _of_sensor(setup: StudyContext, finding: CauseEstimate, since: str) -> str:
     candidate, size, name = finding.candidate, _size(finding), finding.candidate.subject[0]
     match candidate.what:
         case "swapped" | "swap_step":
@@ -179,7 +179,7 @@ def _since(setup: StudyContext, start: float) -> str:
     return f" from about {local[0].normalize() + pd.Timedelta(hours=start):%Y-%m-%d %H:%M} on"
 
 
-def _size(finding: Finding) -> str:
+def _size(finding: CauseEstimate) -> str:
     value = with_uncertainty(abs(finding.value), finding.error)
     error = with_uncertainty(finding.error, finding.error) if finding.error > 0.0 else ""
     return f"{value}{f' ± {error}' if error else ''} {finding.candidate.unit}".rstrip()

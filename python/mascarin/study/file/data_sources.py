@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building.base.part import Part, fault, insist
-from mascarin.study.file.field_types import Columns, Duration, Shift, TimeZone
+from mascarin.measurements.time_fields import Duration, Shift
+from mascarin.study.file.field_types import Columns, TimeZone
 
 if TYPE_CHECKING:
     from typing import Self
@@ -22,7 +23,7 @@ OF_THE_TABLE: Final = (
 FILE_KEYS: Final = ("building", "epw", "tmy", "table", "study")
 
 
-class Table(Part):
+class TableSource(Part):
     """A table of measured columns."""
 
     table: str = Field(
@@ -86,7 +87,7 @@ class Table(Part):
         return {key: getattr(self, key) for key in keys}
 
 
-class MeasuredTable(Table):
+class MeasuredTable(TableSource):
     """A table of measurements, whose columns may have other names in the study and in the building."""
 
     columns: dict[str, str | dict[str, Any]] = Field(
@@ -125,7 +126,7 @@ class MeasuredTable(Table):
         return name
 
 
-class MeasuredWeather(Table):
+class MeasuredWeather(TableSource):
     """Weather from a measured table."""
 
     columns: dict[str, Columns] = Field(description="Climate channel -> column")

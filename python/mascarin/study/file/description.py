@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from mascarin.building.base.names import Name
 from mascarin.building.base.part import Part, fault, insist
@@ -13,21 +13,14 @@ from mascarin.building.parts.weather import Weather
 from mascarin.calibration.base.search_options import WITH_SQUARES, PosteriorName, SlopesName
 from mascarin.calibration.base.search_options import MethodName as FitMethod
 from mascarin.comfort import ComfortSettings
+from mascarin.measurements.sensor import Sensor as Sensor
+from mascarin.measurements.sensor import SensorPeriods as SensorPeriods
+from mascarin.measurements.sensor import with_output
+from mascarin.measurements.time_fields import Duration, Hours, Span, Spans, Stretch, Time
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, MeasuredTable, with_shared_table
-from mascarin.study.file.field_types import (
-    Duration,
-    Hours,
-    Initial,
-    Span,
-    Spans,
-    Stretch,
-    Time,
-    require_bounds,
-)
-from mascarin.study.file.sensor import Sensor as Sensor
-from mascarin.study.file.sensor import SensorPeriods as SensorPeriods
+from mascarin.study.file.field_types import Initial, require_bounds
 from mascarin.validation.comparison import METRICS
 from mascarin.validation.criteria import Criterion
 
@@ -249,7 +242,7 @@ class Limit(Criterion, Part):
     """One limit on one metric, for some or all sensors and periods."""
 
 
-class Published(Part):
+class PublishedScores(Part):
     """One sensor and period of a publication."""
 
     sd: float = Field(ge=0.0, description="Standard deviation of the error [degC]")
@@ -284,7 +277,7 @@ class PublishedParameter(Part):
     )
 
 
-class Reference(Part):
+class Publication(Part):
     """Results of a publication, shown beside those of the study."""
 
     label: str = Field(description="Name in the report")
@@ -297,7 +290,7 @@ class Reference(Part):
         (), description="Its identified parameters, for a table in the form of the publication"
     )
     parameter_note: str = Field("", description="Remark below the title of that table")
-    sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
+    sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], PublishedScores]] = Field(
         description="Sensor -> period -> numbers"
     )
 
@@ -356,7 +349,9 @@ class StudyPlan(Part):
         "measurement", description="What the data are called: measurement, virtual experiment"
     )
     observed_note: str = Field("", description="What readers of the report must know about the data")
-    sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
+    sensors: dict[Name, Annotated[Sensor, AfterValidator(with_output)]] = Field(
+        min_length=1, description="Sensors by name"
+    )
     weather: Weather | None = Field(
         None,
         description="Gain, offset and clock of columns of the weather, in place of those of the building",
@@ -385,7 +380,7 @@ class StudyPlan(Part):
     identification: IdentificationPlan | None = Field(
         None, description="Parameters to identify; without it the building can only be compared"
     )
-    reference: Reference | None = Field(
+    reference: Publication | None = Field(
         None, description="Numbers of a publication, shown beside the results"
     )
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")

@@ -13,10 +13,10 @@ from mascarin.sensitivity.methods import plan as design
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.measurements.time_fields import Duration
     from mascarin.sensitivity import Factor
     from mascarin.sensitivity.methods import Plan
     from mascarin.study.file.description import SensitivityPlan
-    from mascarin.study.file.field_types import Duration
     from mascarin.study.file.locations import Places
 
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.factors import check_plan
 from mascarin.study.file.free_parameters import free_parameter
-from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -32,7 +32,7 @@ def check_names(plan: StudyPlan, building: Building, places: Places, faults: Fau
     """
     for name, sensor in plan.sensors.items():
         with places.noting(faults, "sensors", name, "output"):
-            sensor.stated_uncertainty(building.output(sensor.output).unit, name)
+            sensor.uncertainty(building.output(sensor.output).unit, f"sensors.{name}")
     with places.noting(faults, "sensors"):
         if not any(sensor.use for sensor in plan.sensors.values()):
             raise InputError("found use: false on every sensor, expected at least one that is used")

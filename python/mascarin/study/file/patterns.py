@@ -9,7 +9,7 @@ from mascarin.building.base.wildcards import is_pattern
 from mascarin.building.parameters.ties import How, expanded, with_ties
 from mascarin.building.parts.derived_output import Derived
 from mascarin.errors import InputError
-from mascarin.study.file.sensor import DERIVED
+from mascarin.measurements.sensor import DERIVED
 
 if TYPE_CHECKING:
     from mascarin.building import Building, Output

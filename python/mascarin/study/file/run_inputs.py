@@ -11,7 +11,7 @@ from mascarin._io.regular import requiring
 from mascarin.building.base.part import Part
 from mascarin.building.engine_input import measured_columns
 from mascarin.building.files.yaml_document import validated
-from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, Table, with_shared_table
+from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, TableSource, with_shared_table
 from mascarin.study.file.inputs import Beside, filled, find, open_climate
 from mascarin.study.file.locations import Places
 from mascarin.weather import Measurements
@@ -25,7 +25,9 @@ class RunInputs(Part):
     """Weather, and a table of measurements: what a run takes from a study, or from a file with these keys."""
 
     climate: ClimateSource = Field(description="Weather data")
-    measurements: Table | None = Field(None, description="Table with the measured columns of the building")
+    measurements: TableSource | None = Field(
+        None, description="Table with the measured columns of the building"
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -36,8 +36,12 @@ def study_schema() -> dict[str, Any]:
     whole = schema["anyOf"][0]
     whole["required"].remove("measurements")
     whole["allOf"] = [_once(key) for key in shared]
-    old = {"deprecated": True, "description": "Older name of expanded_uncertainty", "type": "number"}
-    parts["Sensor"]["properties"]["uncertainty"] = old
+    keys = parts["Sensor"]["properties"]
+    for name, usual in (
+        ("uncertainty", "expanded_uncertainty"),
+        ("relative_expanded_uncertainty", "relative"),
+    ):
+        keys[name] = {"deprecated": True, "description": f"Another name of {usual}", "type": "number"}
     return schema
 
 

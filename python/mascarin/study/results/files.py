@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
@@ -24,6 +24,7 @@ from mascarin.study.results.document.whole import document
 from mascarin.study.results.tables import tables_of, write_tables
 from mascarin.study.steps.calibration_result import building_with_posterior
 from mascarin.study.steps.comfort import comfort_figures, comfort_table, rated
+from mascarin.study_document.document import StudyDocument
 from mascarin.validation.days import EXTRAPOLATION_RATIO
 
 if TYPE_CHECKING:
@@ -56,8 +57,8 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     comfort = rated(findings)
     of_comfort = {"comfort": comfort_table(comfort)} if comfort else {}
     tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
-    atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
-    atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
+    atomic.write(out / "study.json", as_json(document(findings)))
+    atomic.write(out / RUN, as_json(run_facts(findings)))
     calibrated = building_with_posterior(
         findings.context,
         findings.fitted,
@@ -97,13 +98,18 @@ def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:
     ]
 
 
-def run_facts(findings: Findings) -> dict[str, Any]:
+def run_facts(findings: Findings) -> StudyDocument:
     """Date and run time, which differ between two runs of the same study; all results are the same."""
-    return {
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "run_time": round(findings.seconds, 1),
-        "processors": os.cpu_count(),
-    }
+    return StudyDocument(
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        run_time=round(findings.seconds, 1),
+        processors=os.cpu_count(),
+    )
+
+
+def as_json(content: StudyDocument) -> str:
+    """The text of a result file."""
+    return json.dumps(content.to_dict(), indent=1, allow_nan=False) + "\n"
 
 
 def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from mascarin.study.results.files import run_facts
 from mascarin.study.results.tables import metrics_table, tables_of
 from mascarin.study.steps.calibration_result import building_with_posterior
 from mascarin.study.steps.findings import Findings
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,7 +131,7 @@ class StudyResults(Findings):
         dict
             Ready for JSON.
         """
-        return document(self)
+        return document(self).to_dict()
 
     @property
     def building(self) -> Building:
@@ -157,7 +158,7 @@ class StudyResults(Findings):
         OSError
             The file cannot be written.
         """
-        content = {**document(self), **run_facts(self)}
+        content = StudyDocument.joined(document(self), run_facts(self))
         table = StringIO(self.to_dataframe("series").to_csv(index=False, lineterminator="\n"))
         return reports.write(Path(path), content, read_series(table, "series", content))
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin._io import atomic
+from mascarin.measurements.uncertainty import COVERAGE_FACTOR
 from mascarin.study.steps.residuals import DRIVERS
-from mascarin.validation.sensors import COVERAGE_FACTOR
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -171,7 +171,10 @@ def validation_series(study: StudyContext, run: ModelRun) -> pd.DataFrame:
     for s, name in enumerate(observation.names):
         unit = run.results.outputs[s].unit
         difference = unit.replace("degC", "K")
-        measured, stated = observation.measured[:, s], study.plan.sensors[name].stated_uncertainty(unit, name)
+        measured, stated = (
+            observation.measured[:, s],
+            study.plan.sensors[name].uncertainty(unit, f"sensors.{name}"),
+        )
         half = COVERAGE_FACTOR * np.hypot(stated.absolute, stated.relative * measured)
         period = np.full(len(measured), "", dtype=object)
         for word in ("blind", "corroboration", "identification"):

@@ -12,17 +12,17 @@ from mascarin._io.limits import above, below
 from mascarin.calibration.building_calibration import CONSTANT, MAX_CONSTANT_SHARE
 from mascarin.calibration.errors.stated_errors import require_errors
 from mascarin.errors import InputError
+from mascarin.measurements.observation import require_comparable
 from mascarin.study.context.error_rule import reason_of, states_errors
 from mascarin.study.context.periods import overlap
 from mascarin.study.steps.comfort import require_rooms
-from mascarin.validation.observation import require_comparable
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
     from mascarin.study.context.context import StudyContext
-    from mascarin.study.context.periods import Span
+    from mascarin.study.context.periods import PeriodSpan
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
@@ -78,7 +78,7 @@ def _elsewhere(study: StudyContext) -> None:
         records.append((f"'{name}'", other))
 
 
-def _compared(study: StudyContext) -> list[Span]:
+def _compared(study: StudyContext) -> list[PeriodSpan]:
     timeline = study.periods.timeline
     return [*timeline.every("identification"), *timeline.every("corroboration")]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin.study.steps.residuals import drivers
+from mascarin.study_document.analysis import TableEntry
 from mascarin.validation.days import EXTRAPOLATION_RATIO, DayChoice, choose_days
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def days(
     )  # fmt: skip
 
 
-def days_table(found: DayChoice) -> dict[str, Any]:
+def days_table(found: DayChoice) -> TableEntry:
     """The proposed and the farthest days, as a table of the report."""
     ratio = found.ratio
     far = sorted(np.flatnonzero(found.extrapolated).tolist(), key=lambda d: -ratio[d])[:5]
@@ -86,19 +87,19 @@ def days_table(found: DayChoice) -> dict[str, Any]:
                 ", ".join(outside) or "none",
             ]
         )
-    return {
-        "title": "Choice of days",
-        "caption": (
+    return TableEntry(
+        title="Choice of days",
+        caption=(
             "Days to identify or measure on next, in their order: each adds the most information to the days "
             "before it (D-optimal). The gain is the fall of the logarithm of the volume of the confidence "
             "region; the reduction is that of the variance of the predictions on all days that were not used "
             "[%]. The leverage is the variance of the prediction from the estimated parameters, relative to "
             f"the days of the identification; days above {EXTRAPOLATION_RATIO:g} are extrapolations."
         ),
-        "columns": ["day", "order", "gain", "reduction", "leverage", "drivers outside of the identification"],
-        "rows": rows,
-        "section": "comparison",
-    }
+        columns=["day", "order", "gain", "reduction", "leverage", "drivers outside of the identification"],
+        rows=rows,
+        section="comparison",
+    )
 
 
 def day_words(found: DayChoice) -> list[str]:

@@ -7,7 +7,7 @@ correlations between the parameters.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from mascarin.building.engine_input.ratings import window_ratings
 from mascarin.building.heat_loss import heat_loss
 from mascarin.errors import InputError
 from mascarin.study.context.phase_change import daily_range, day_of, latent_heat_of, melting_layers
+from mascarin.study_document.analysis import TableEntry
+from mascarin.study_document.estimates import DerivedEntry
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,10 +67,11 @@ class DerivedQuantity:
     low: float
     high: float
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain values for a JSON file, with six digits."""
+    @property
+    def entry(self) -> DerivedEntry:
+        """The quantity for the results of a study, with six digits."""
         numbers = {key: float(f"{getattr(self, key):.6g}") for key in ("value", "low", "high")}
-        return {"name": self.name, "unit": self.unit, **numbers}
+        return DerivedEntry(name=self.name, unit=self.unit, **numbers)
 
 
 def derived_quantities(fit: Calibration, joint: JointPosterior | None = None) -> list[DerivedQuantity]:
@@ -186,7 +189,7 @@ def latent_heat_used(
     return quantities
 
 
-def conductance_table(fit: Calibration) -> dict[str, Any] | None:
+def conductance_table(fit: Calibration) -> TableEntry | None:
     """Conductances by destination, as described and calibrated, as a table of the report.
 
     Parameters
@@ -196,7 +199,7 @@ def conductance_table(fit: Calibration) -> dict[str, Any] | None:
 
     Returns
     -------
-    dict or None
+    TableEntry or None
         None without a building or without any conductance.
     """
     building = fit.nominal_building
@@ -219,24 +222,24 @@ def conductance_table(fit: Calibration) -> dict[str, Any] | None:
         for row in described
     ]
     return (
-        {
-            "title": CONDUCTANCES,
-            "caption": BASIS,
-            "columns": ["to", "element", "kind", "zone", "described [W/K]", "calibrated [W/K]"],
-            "rows": rows,
-            "section": "parameters",
-            "significant": ["described [W/K]", "calibrated [W/K]"],
-        }
+        TableEntry(
+            title=CONDUCTANCES,
+            caption=BASIS,
+            columns=["to", "element", "kind", "zone", "described [W/K]", "calibrated [W/K]"],
+            rows=rows,
+            section="parameters",
+            significant=["described [W/K]", "calibrated [W/K]"],
+        )
         if rows
         else None
     )
 
 
-def derived_table(found: list[DerivedQuantity]) -> dict[str, Any]:
+def derived_table(found: list[DerivedQuantity]) -> TableEntry:
     """The same as a table of the report."""
-    return {
-        "title": TITLE,
-        "caption": (
+    return TableEntry(
+        title=TITLE,
+        caption=(
             "From the description with the estimates: laws by wind at 4 m/s, correlations of surfaces as in "
             "ISO 6946, infiltration, with that of pressure tests, at 4 m/s and 10 K; ventilation and latent "
             "heat are left out. Solar apertures are those of windows at normal incidence and of opaque outer "
@@ -244,8 +247,8 @@ def derived_table(found: list[DerivedQuantity]) -> dict[str, Any]:
             "days. The intervals are those of the calibration with the correlations of its parameters; "
             "numbers that are not calibrated count as known."
         ),
-        "columns": ["quantity", "value", "95 % low", "95 % high", "unit"],
-        "rows": [[one.name, one.value, one.low, one.high, one.unit] for one in found],
-        "section": "parameters",
-        "significant": ["value", "95 % low", "95 % high"],
-    }
+        columns=["quantity", "value", "95 % low", "95 % high", "unit"],
+        rows=[[one.name, one.value, one.low, one.high, one.unit] for one in found],
+        section="parameters",
+        significant=["value", "95 % low", "95 % high"],
+    )

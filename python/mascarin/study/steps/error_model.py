@@ -13,11 +13,11 @@ from mascarin.calibration import SearchOptions
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
 from mascarin.calibration.errors.joint_posterior import ErrorStatement
 from mascarin.calibration.errors.sensor_errors import error_columns
-from mascarin.calibration.errors.stated_errors import sizes_of
+from mascarin.calibration.errors.stated_errors import shared_errors, sizes_of
+from mascarin.measurements.scatter import scatter
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.context.step_cache import kept, kept_series
 from mascarin.study.file.description import DiscrepancyPlan
-from mascarin.validation.scatter import scatter
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from mascarin.calibration import Calibration
     from mascarin.calibration.errors.joint_posterior import JointPosterior
     from mascarin.calibration.errors.sensor_errors import SensorError
+    from mascarin.measurements.observation import Observation
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.context.context import StudyContext
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
 
@@ -84,8 +84,8 @@ def sensor_errors(study: StudyContext, names: list[str]) -> tuple[SensorError, .
     for name in names:
         sensor = study.plan.sensors[name]
         unit = study.building.output(sensor.output).unit
-        stated = sensor.stated_uncertainty(unit, name)
-        errors.append(sensor.shared_errors(stated, scatter_of(study, name)))
+        stated = sensor.uncertainty(unit, f"sensors.{name}")
+        errors.append(shared_errors(sensor, stated, scatter_of(study, name)))
     return tuple(errors)
 
 

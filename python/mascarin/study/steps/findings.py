@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, within_reach
 from mascarin.study.context.forms import Choice, label
+from mascarin.study_document.comparison import MetricValues
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from mascarin.study.context.context import Scores, StudyContext
     from mascarin.study.steps.derived_quantities import DerivedQuantity
     from mascarin.study.steps.error_model import Unknowns
+    from mascarin.study_document.comparison import TransferEntry
     from mascarin.tables.quality import Stretch
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
@@ -225,8 +227,8 @@ class Findings:
         By what the calibrated model contradicts its own data or what is known; read them first.
     derived : list of DerivedQuantity
         Heat loss, capacity, time constant and U values of the calibrated building, with intervals.
-    transfer : dict
-        Other houses, seasons and phases with the estimates; see `mascarin.study.transfer.comparison`.
+    transfer : dict of str to TransferEntry
+        Other houses, seasons and phases with the estimates.
     """
 
     context: StudyContext
@@ -249,7 +251,7 @@ class Findings:
     combination: Combination | None = None
     contradictions: list[Contradiction] = field(default_factory=list)
     derived: list[DerivedQuantity] = field(default_factory=list)
-    transfer: dict[str, Any] = field(default_factory=dict)
+    transfer: dict[str, TransferEntry] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
@@ -274,3 +276,8 @@ def scores_of(runs: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Met
             for period, metrics in periods.items():
                 found.setdefault(sensor, {}).setdefault(period, {})[model] = metrics
     return found
+
+
+def metric_values(metrics: Metrics) -> MetricValues:
+    """Metrics as the results of a study hold them."""
+    return MetricValues(**metrics.to_dict())

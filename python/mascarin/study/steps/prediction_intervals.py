@@ -9,6 +9,8 @@ import numpy as np
 from mascarin.calibration.errors.posterior_checks import NOT_STATED
 from mascarin.study.context.step_cache import kept_series
 from mascarin.study.steps.findings import PredictionIntervals
+from mascarin.study_document.analysis import TableEntry
+from mascarin.study_document.comparison import BandEntry
 from mascarin.validation.series import effective_samples
 
 if TYPE_CHECKING:
@@ -102,7 +104,7 @@ def prediction_intervals(
     return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage, np.zeros_like(half))
 
 
-def interval_table(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
+def interval_table(study: StudyContext, found: PredictionIntervals) -> TableEntry:
     """Half-width and coverage of the intervals, as a table of the report."""
     rows = []
     for s, name in enumerate(study.observation.names):
@@ -117,19 +119,19 @@ def interval_table(study: StudyContext, found: PredictionIntervals) -> dict[str,
                 *(_number(100.0 * share) for share in shares),
             ]
         )
-    return {
-        "title": "Prediction intervals",
-        "caption": (
+    return TableEntry(
+        title="Prediction intervals",
+        caption=(
             f"{100.0 * found.confidence:g} % prediction interval of the fitted model. It combines the "
             "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
             f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The "
             "columns of the periods show the coverage: "
             f"the part of the measured values inside the interval. [%]{_doubt(found)}"
         ),
-        "columns": ["sensor", "unit", "mean half-width", *study.during],
-        "rows": rows,
-        "section": "comparison",
-    }
+        columns=["sensor", "unit", "mean half-width", *study.during],
+        rows=rows,
+        section="comparison",
+    )
 
 
 def _doubt(found: PredictionIntervals) -> str:
@@ -141,17 +143,17 @@ def _doubt(found: PredictionIntervals) -> str:
     return ""
 
 
-def interval_entry(study: StudyContext, found: PredictionIntervals) -> dict[str, Any]:
-    """The intervals for study.json: sensor -> half_width, parameters, error, held."""
+def interval_entries(study: StudyContext, found: PredictionIntervals) -> dict[str, BandEntry]:
+    """The intervals in numbers, by sensor."""
     return {
-        name: {
-            "confidence": found.confidence,
+        name: BandEntry(
+            confidence=found.confidence,
             **({} if found.stated else {"stated": False}),
-            "half_width": _number(np.mean(found.half_width[:, s])),
-            "parameters": _number(np.mean(found.parameters[:, s])),
-            "error": _number(found.error[s]),
-            "held": {period: _number(shares[s]) for period, shares in found.coverage.items()},
-        }
+            half_width=_number(np.mean(found.half_width[:, s])),
+            parameters=_number(np.mean(found.parameters[:, s])),
+            error=_number(found.error[s]),
+            held={period: _number(shares[s]) for period, shares in found.coverage.items()},
+        )
         for s, name in enumerate(study.observation.names)
     }
 

@@ -179,7 +179,7 @@ def _scatters(study: StudyContext) -> Iterator[Contradiction]:
     """Sensors whose record scatters by more than they state."""
     for name, sensor in study.plan.sensors.items():
         unit = study.building.output(sensor.output).unit
-        stated, random = sensor.stated_uncertainty(unit, name).absolute, scatter_of(study, name)
+        stated, random = sensor.uncertainty(unit, f"sensors.{name}").absolute, scatter_of(study, name)
         if math.isfinite(random) and random > _SCATTERS * stated > 0.0:
             yield Contradiction(
                 "statement",
@@ -198,7 +198,7 @@ def _twins(study: StudyContext) -> Iterator[Contradiction]:
         if sensor.adds:
             continue  # its columns are parts of it
         unit = study.building.output(sensor.output).unit
-        allowed = math.sqrt(2.0) * sensor.stated_uncertainty(unit, name).absolute
+        allowed = math.sqrt(2.0) * sensor.uncertainty(unit, f"sensors.{name}").absolute
         read = [study.measurements.at(c, observation.times, observation.interval) for c in sensor.columns]
         for column, values in zip(sensor.columns[1:], read[1:], strict=True):
             apart = values - read[0]

@@ -96,7 +96,7 @@ def error_sources(
     return find_error_sources(
         {name: error[blind, s] for name, s in analyzed.items()},
         {path: effect[:, columns] for path, effect in found.items()},
-        standard_uncertainty=[setup.plan.sensors[name].uncertainty / NORMAL_95 for name in analyzed],
+        standard_uncertainty=[setup.plan.sensors[name].expanded / NORMAL_95 for name in analyzed],
         allowed=effects.room,
         days=np.asarray((local[blind] - local[0]).days),
         weight=independent_weight(setup.inputs.calibration_plan, observation.interval),

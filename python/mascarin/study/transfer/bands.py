@@ -35,7 +35,7 @@ def bands_of(study: StudyContext, run: ModelRun) -> tuple[Bands | None, list[Con
     observation, outputs, stated = study.observation, [], []
     for s, (name, sensor) in enumerate(study.plan.sensors.items()):
         output = study.building.output(sensor.output)
-        sizes = sensor.stated_uncertainty(output.unit, name)
+        sizes = sensor.uncertainty(output.unit, f"sensors.{name}")
         measured = np.abs(observation.measured[:, s])
         size = float(np.mean(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
         outputs.append(output.name)

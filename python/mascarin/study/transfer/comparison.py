@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
 from mascarin.study.context.context import StudyContext
 from mascarin.study.steps.calibration_result import building_with_posterior
+from mascarin.study.steps.findings import metric_values
 from mascarin.study.steps.model_runs import nominal
 from mascarin.study.transfer.bands import bands_of
+from mascarin.study_document.analysis import TableEntry
+from mascarin.study_document.comparison import TransferEntry, TransferScores
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -21,7 +25,7 @@ if TYPE_CHECKING:
 TITLE = "Transfer of the calibration"
 
 
-def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, Any]:
+def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, TransferEntry]:
     """Compare every study of ``transfer`` before and after the estimates are put into its building.
 
     Parameters
@@ -33,9 +37,8 @@ def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        Plain values, by name: ``building``, ``words``, and ``sensors``: sensor -> period -> ``described`` and
-        ``calibrated`` metrics, and ``held``, the part of the values inside of the bands.
+    dict of str to TransferEntry
+        By name.
     """
     if not study.inputs.transfer:
         return {}
@@ -48,7 +51,7 @@ def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, Any]:
     }
 
 
-def _compared(other: StudyContext, fit: Calibration, calibrated: Building) -> dict[str, Any]:
+def _compared(other: StudyContext, fit: Calibration, calibrated: Building) -> TransferEntry:
     described = nominal(other)
     estimates, missing = dict(fit.values), []
     for path in fit.values:
@@ -66,59 +69,59 @@ def _compared(other: StudyContext, fit: Calibration, calibrated: Building) -> di
     held = {} if bands is None else bands.entries(moved.observation, moved.used)
     unknown = f"estimates of parameters that '{other.building.name}' does not have: {', '.join(missing)}"
     lines = [unknown] if missing else []
-    return {
-        "building": other.building.name,
-        "words": [*lines, *(word.text for word in words)],
-        "sensors": {
+    return TransferEntry(
+        building=other.building.name,
+        words=[*lines, *(word.text for word in words)],
+        sensors={
             sensor: {
-                period: {
-                    "described": described.scores[sensor][period].to_dict(),
-                    "calibrated": metrics.to_dict(),
-                    "held": held.get(sensor, {}).get("held", {}).get(period),
-                    "unit": _unit(run, number),
-                }
+                period: TransferScores(
+                    described=metric_values(described.scores[sensor][period]),
+                    calibrated=metric_values(metrics),
+                    held=held[sensor].held.get(period) if sensor in held else None,
+                    unit=_unit(run, number),
+                )
                 for period, metrics in periods.items()
                 if metrics.n
             }
             for number, (sensor, periods) in enumerate(run.scores.items())
         },
-    }
+    )
 
 
 def _unit(run: ModelRun, number: int) -> str:
     return run.results.outputs[number].unit.replace("degC", "K")
 
 
-def transfer_table(study: StudyContext, transfer: dict[str, Any]) -> dict[str, Any]:
+def transfer_table(study: StudyContext, transfer: Mapping[str, TransferEntry]) -> TableEntry:
     """Errors before and after, and what the bands hold, as a table of the report."""
     rows = []
     for name, entry in transfer.items():
         sensors = study.inputs.transfer[name].plan.sensors
-        for sensor, periods in entry["sensors"].items():
+        for sensor, periods in entry.sensors.items():
             for period, scores in periods.items():
-                held = scores["held"]
+                held = scores.held
                 rows.append(
                     [
-                        entry["building"],
+                        entry.building,
                         sensors[sensor].label or sensor.replace("_", " "),
                         period,
-                        scores["unit"],
+                        scores.unit,
                         *(
-                            scores[model][key]
-                            for key in ("rmse", "bias")
-                            for model in ("described", "calibrated")
+                            value
+                            for before, after in [(scores.described, scores.calibrated)]
+                            for value in (before.rmse, after.rmse, before.bias, after.bias)
                         ),
                         None if held is None else 100.0 * held,
                     ]
                 )
-    return {
-        "title": TITLE,
-        "caption": (
+    return TableEntry(
+        title=TITLE,
+        caption=(
             "Other houses, seasons and phases, of which nothing was identified: as described, and with the "
             "estimates of this study in their building. Inside: part of the measured values in the bands of "
             "the calibration. [%]"
         ),
-        "columns": [
+        columns=[
             "building",
             "sensor",
             "period",
@@ -129,12 +132,12 @@ def transfer_table(study: StudyContext, transfer: dict[str, Any]) -> dict[str, A
             "bias calibrated",
             "inside [%]",
         ],
-        "rows": rows,
-        "section": "comparison",
-        "significant": ["rmse described", "rmse calibrated", "bias described", "bias calibrated"],
-    }
+        rows=rows,
+        section="comparison",
+        significant=["rmse described", "rmse calibrated", "bias described", "bias calibrated"],
+    )
 
 
-def transfer_notes(transfer: dict[str, Any]) -> list[str]:
+def transfer_notes(transfer: Mapping[str, TransferEntry]) -> list[str]:
     """Where the bands extrapolate, and what was not transferred, in sentences."""
-    return [f"{name}: {word}" for name, entry in transfer.items() for word in entry["words"]]
+    return [f"{name}: {word}" for name, entry in transfer.items() for word in entry.words]

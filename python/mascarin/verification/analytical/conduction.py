@@ -25,7 +25,7 @@ STEP_ERROR: Final = 0.0404
 MARGIN: Final = 2.0
 
 
-class Layer(NamedTuple):
+class ConductionLayer(NamedTuple):
     """A layer of a test wall: m, W/(m K), kg/m3, J/(kg K), finite volumes."""
 
     thickness: float
@@ -50,7 +50,7 @@ class Layer(NamedTuple):
         return cell**2 * (0.25 + depth / self.depth / 12.0)
 
 
-def materials(layers: Sequence[Layer]) -> str:
+def materials(layers: Sequence[ConductionLayer]) -> str:
     """Write the materials and the construction `wall` of a list of layers as YAML."""
     lines = ["materials:"]
     for k, layer in enumerate(layers):
@@ -68,7 +68,7 @@ def materials(layers: Sequence[Layer]) -> str:
 
 # --- a sinusoid into a thick wall --------------------------------------------------------------------------
 
-_THICK: Final = Layer(1.5, 1.75, 2240.0, 900.0, 300)
+_THICK: Final = ConductionLayer(1.5, 1.75, 2240.0, 900.0, 300)
 _DEPTHS: Final = (0.0775, 0.1525, 0.3075)  # centres of volumes
 
 
@@ -98,14 +98,14 @@ def _semi_infinite(name: str) -> Iterator[Check]:
 
 _OUTER, _INNER = 25.0, 1.0 / 0.13  # surface heat transfer coefficients of ISO 6946, W/(m2 K)
 _WALL: Final = (
-    Layer(0.020, 0.87, 1800.0, 1000.0, 10),
-    Layer(0.100, 0.035, 20.0, 1450.0, 20),
-    Layer(0.240, 0.80, 1700.0, 900.0, 60),
-    Layer(0.015, 0.40, 1100.0, 1000.0, 8),
+    ConductionLayer(0.020, 0.87, 1800.0, 1000.0, 10),
+    ConductionLayer(0.100, 0.035, 20.0, 1450.0, 20),
+    ConductionLayer(0.240, 0.80, 1700.0, 900.0, 60),
+    ConductionLayer(0.015, 0.40, 1100.0, 1000.0, 8),
 )
 
 
-def transfer(layers: Sequence[Layer]) -> Complex:
+def transfer(layers: Sequence[ConductionLayer]) -> Complex:
     """Compute the transfer matrix of a wall for a daily oscillation (ISO 13786:2017, 7.2).
 
     It maps (temperature, flux) inside to outside, with the signs of the standard, surface resistances
@@ -113,7 +113,7 @@ def transfer(layers: Sequence[Layer]) -> Complex:
 
     Parameters
     ----------
-    layers : sequence of Layer
+    layers : sequence of ConductionLayer
         Outside to inside.
 
     Returns
@@ -137,12 +137,12 @@ def transfer(layers: Sequence[Layer]) -> Complex:
     return surface(_OUTER) @ product
 
 
-def conductance(layers: Sequence[Layer]) -> float:
+def conductance(layers: Sequence[ConductionLayer]) -> float:
     """Compute the thermal transmittance with surface resistances. [W/(m2 K)]"""
     return 1.0 / (1.0 / _OUTER + 1.0 / _INNER + sum(layer.thickness / layer.conductivity for layer in layers))
 
 
-def _response(layers: Sequence[Layer], step: float, *, inside: bool) -> tuple[complex, float]:
+def _response(layers: Sequence[ConductionLayer], step: float, *, inside: bool) -> tuple[complex, float]:
     """Inside flux per kelvin of a daily oscillation of the air of one side; mean flux. [W/(m2 K), W/m2]"""
     days = 20
     t = setup.times(days * setup.DAY, 60.0)
@@ -194,7 +194,7 @@ def _convective_step(name: str) -> Iterator[Check]:
     from scipy.special import erfc, erfcx
 
     h, rise, step, end = 8.0, 20.0, 60.0, 4 * setup.HOUR
-    layer = Layer(1.2, 0.8, 1700.0, 900.0, 960)
+    layer = ConductionLayer(1.2, 0.8, 1700.0, 900.0, 960)
     a = layer.conductivity / (layer.density * layer.specific_heat)
     depth = 0.05 + 0.5 * layer.thickness / layer.nodes
     text = (

@@ -47,7 +47,7 @@ THROUGH_GLASS: Final = "glass.transmitted_solar"
 
 
 @dataclass(frozen=True)
-class Quantity:
+class BestestQuantity:
     """A number of a case, with the results of the six programs.
 
     Attributes
@@ -94,7 +94,7 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Year:
+class BestestYear:
     """The hourly means of a case.
 
     Attributes
@@ -196,24 +196,24 @@ def energy(watts: Array) -> float:
     return float(watts.sum()) / 1e6
 
 
-def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
+def quantities(years: Mapping[str, BestestYear], case: Case) -> list[BestestQuantity]:
     """Compute every quantity of a case for which the six programs have results.
 
     Parameters
     ----------
-    years : mapping of str to Year
+    years : mapping of str to BestestYear
         Years by case, with those that the quantities of the case refer to.
     case : Case
         The case.
 
     Returns
     -------
-    list of Quantity
+    list of BestestQuantity
     """
     values = {**_loads(years[case.name]), **_floating(years[case.name]), **_sun(years, case)}
     reference_ranges = ranges()
     return [
-        Quantity(
+        BestestQuantity(
             case.name,
             name,
             reference_ranges[case.name, name].unit,
@@ -228,7 +228,7 @@ def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
 
 def quantities_of(
     name: str, series: Mapping[str, Array], reference_ranges: Mapping[tuple[str, str], Range] | None = None
-) -> list[Quantity]:
+) -> list[BestestQuantity]:
     """Compute loads and temperatures of any building.
 
     Parameters
@@ -243,7 +243,7 @@ def quantities_of(
 
     Returns
     -------
-    list of Quantity
+    list of BestestQuantity
         Annual and peak loads, and extremes and mean of the air temperature, as ``zone.quantity``.
     """
     computed = []
@@ -254,7 +254,7 @@ def quantities_of(
         )
         for quantity, (value, when) in numbers.items():
             unit = _UNITS[quantity.split("_")[0]]
-            computed.append(Quantity(name, f"{zone}.{quantity}", unit, value, when, None))
+            computed.append(BestestQuantity(name, f"{zone}.{quantity}", unit, value, when, None))
     zones = {output.partition(".")[0] for output in series}
     return (
         computed
@@ -264,8 +264,8 @@ def quantities_of(
 
 
 def _with_range(
-    computed: Quantity, reference_ranges: Mapping[tuple[str, str], Range], *, lone: bool
-) -> Quantity:
+    computed: BestestQuantity, reference_ranges: Mapping[tuple[str, str], Range], *, lone: bool
+) -> BestestQuantity:
     """The same quantity with its range, if there is one."""
     short = computed.quantity.partition(".")[2]
     for name in case_names(computed.case):
@@ -309,7 +309,7 @@ def facing(case: Case) -> str:
     return "west" if case.opening == "east_west" else "south"
 
 
-def _loads(year: Year) -> dict[str, tuple[float, str]]:
+def _loads(year: BestestYear) -> dict[str, tuple[float, str]]:
     if not year.case.conditioned:
         return {}
     return {**_load("heating", year.heating), **_load("cooling", year.cooling)}
@@ -324,7 +324,7 @@ def _load(kind: str, watts: Array) -> dict[str, tuple[float, str]]:
     }
 
 
-def _floating(year: Year) -> dict[str, tuple[float, str]]:
+def _floating(year: BestestYear) -> dict[str, tuple[float, str]]:
     if year.case.floating is None:
         return {}
     return _extremes(year.temperature)
@@ -338,7 +338,7 @@ def _extremes(air: Array) -> dict[str, tuple[float, str]]:
     }
 
 
-def _sun(years: Mapping[str, Year], case: Case) -> dict[str, tuple[float, str]]:
+def _sun(years: Mapping[str, BestestYear], case: Case) -> dict[str, tuple[float, str]]:
     """Incident and transmitted solar radiation; transmitted is per area of glass."""
     year = years[case.name]
     orientation = facing(case)

@@ -17,7 +17,7 @@ from mascarin.verification.bestest.quantities import (
     ONTO_GLASS,
     ORIENTATIONS,
     THROUGH_GLASS,
-    Year,
+    BestestYear,
     facing,
     has_solar_quantities,
     partners,
@@ -51,7 +51,7 @@ def run(
     step: str | float = STEP,
     workers: int = WORKERS,
     progress: ProgressOption = False,
-) -> tuple[dict[str, Year], dict[Path, dict[str, Array]]]:
+) -> tuple[dict[str, BestestYear], dict[Path, dict[str, Array]]]:
     """Simulate cases, those that their quantities refer to, and buildings of the user in the same way.
 
     Parameters
@@ -71,7 +71,7 @@ def run(
 
     Returns
     -------
-    dict of str to Year
+    dict of str to BestestYear
         Hourly means by case.
     dict of Path to dict of str to ndarray, shape (8760,)
         Hourly means of loads and air temperatures by file and output. [W, degC]
@@ -114,12 +114,12 @@ def _await(futures: Sequence[Future[Any]], report: Report) -> None:
     report(len(futures), len(futures))
 
 
-def run_one(case: Case, climate: Climate, step: str | float = STEP) -> Year:
+def run_one(case: Case, climate: Climate, step: str | float = STEP) -> BestestYear:
     """Simulate a case over the year, after 30 days of December."""
     from mascarin.building import load
 
     hourly, residual = _simulate(load(case.file), climate, step, outputs(case))
-    return Year(case, dict(_series(case, hourly)), residual)
+    return BestestYear(case, dict(_series(case, hourly)), residual)
 
 
 def _run_own(building: Building, climate: Climate, step: str | float) -> dict[str, Array]:

@@ -93,7 +93,7 @@ def folder_of(data: str) -> Path | None:
 
 
 @dataclass(frozen=True)
-class Place:
+class CasePlace:
     """Where and when the weather of a case is.
 
     Parameters

@@ -7,18 +7,18 @@ from collections.abc import Iterable, Mapping
 from typing import Final
 
 from mascarin._io.limits import at_least, at_most
-from mascarin.verification.suites.verdict import Line
+from mascarin.verification.suites.verdict import VerdictLine
 
 #: What stands in place of numbers of other programs.
 NONE: Final = "none"
 
 
-def standing(lines: Iterable[Line]) -> dict[str, tuple[int, int]]:
+def standing(lines: Iterable[VerdictLine]) -> dict[str, tuple[int, int]]:
     """Count what each program has inside.
 
     Parameters
     ----------
-    lines : iterable of Line
+    lines : iterable of VerdictLine
         Of one suite.
 
     Returns
@@ -28,7 +28,7 @@ def standing(lines: Iterable[Line]) -> dict[str, tuple[int, int]]:
 
     Examples
     --------
-    >>> line = Line("1", "load", "W", 101.0, 100.0, (99.0, 102.0), {"A": 99.5, "B": 103.0})
+    >>> line = VerdictLine("1", "load", "W", 101.0, 100.0, (99.0, 102.0), {"A": 99.5, "B": 103.0})
     >>> standing([line])
     {'A': (1, 1), 'B': (0, 1)}
     """

@@ -11,36 +11,36 @@ from typing import Any
 from mascarin.progress import ProgressOption, reporting
 from mascarin.verification.suites.case_data import FOLDER, CaseData, folder_of
 from mascarin.verification.suites.suite import Suite
-from mascarin.verification.suites.verdict import Line, Verdict
+from mascarin.verification.suites.verdict import SuiteVerdict, VerdictLine
 
 
 @dataclass(frozen=True)
-class Result:
+class SuiteResult:
     """A suite with its numbers.
 
     Parameters
     ----------
     suite : Suite
         The suite.
-    lines : tuple of Line
+    lines : tuple of VerdictLine
         Its numbers; none where its reference is missing.
     missing : str
         Why it was not run; empty where it was.
     """
 
     suite: Suite
-    lines: tuple[Line, ...] = ()
+    lines: tuple[VerdictLine, ...] = ()
     missing: str = ""
 
     @property
-    def counts(self) -> dict[Verdict, int]:
+    def counts(self) -> dict[SuiteVerdict, int]:
         """Number of lines by verdict."""
         return dict(Counter(line.verdict for line in self.lines))
 
     @property
     def failed(self) -> bool:
         """Whether a number is a new miss, or a worse one than was written down."""
-        return Verdict.MISS in self.counts
+        return SuiteVerdict.MISS in self.counts
 
     @property
     def summary(self) -> str:
@@ -50,9 +50,11 @@ class Result:
         counts = self.counts
         judged = sum(number for verdict, number in counts.items() if verdict in _JUDGED)
         uncommon = [
-            f"{number} {verdict.value}" for verdict, number in counts.items() if verdict != Verdict.INSIDE
+            f"{number} {verdict.value}"
+            for verdict, number in counts.items()
+            if verdict != SuiteVerdict.INSIDE
         ]
-        return ", ".join([f"{counts.get(Verdict.INSIDE, 0)} of {judged} inside", *uncommon])
+        return ", ".join([f"{counts.get(SuiteVerdict.INSIDE, 0)} of {judged} inside", *uncommon])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -70,10 +72,10 @@ class Result:
 
 
 #: Verdicts of numbers that a suite asks for.
-_JUDGED = (Verdict.INSIDE, Verdict.MISS, Verdict.KNOWN_MISS, Verdict.AMBIGUOUS)
+_JUDGED = (SuiteVerdict.INSIDE, SuiteVerdict.MISS, SuiteVerdict.KNOWN_MISS, SuiteVerdict.AMBIGUOUS)
 
 
-def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Result]:
+def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[SuiteResult]:
     """Run suites, one after the other.
 
     Parameters
@@ -85,7 +87,7 @@ def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Resul
 
     Returns
     -------
-    list of Result
+    list of SuiteResult
         In the same order; one whose reference numbers are not there says so.
     """
     results = []
@@ -99,8 +101,8 @@ def run(suites: Sequence[Suite], progress: ProgressOption = False) -> list[Resul
                     f"not run: no folder suites/{suite.data} in {FOLDER}. Set the environment variable "
                     f"{FOLDER} to the folder with the reference numbers (sources: mascarin suites --list)"
                 )
-                results.append(Result(suite, missing=missing))
+                results.append(SuiteResult(suite, missing=missing))
             else:
-                results.append(Result(suite, tuple(suite.lines(CaseData(folder)))))
+                results.append(SuiteResult(suite, tuple(suite.lines(CaseData(folder)))))
         report(len(suites), len(suites))
     return results

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.verification.suites.verdict import KnownMiss, Line, Verdict
+from mascarin.verification.suites.verdict import KnownMiss, SuiteVerdict, VerdictLine
 
 if TYPE_CHECKING:
     from mascarin.verification.suites.case_data import CaseData
@@ -33,7 +33,7 @@ _KEYS: Final = {
 }
 
 #: Gives the lines of a suite from its data.
-Cases = Callable[["CaseData"], Iterator[Line]]
+Cases = Callable[["CaseData"], Iterator[VerdictLine]]
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class Suite:
         cases: Cases = module.lines
         return cases
 
-    def lines(self, data: CaseData) -> Iterator[Line]:
+    def lines(self, data: CaseData) -> Iterator[VerdictLine]:
         """Run its cases, and say of each number what is known.
 
         Parameters
@@ -139,11 +139,11 @@ class Suite:
             yield line.judged(self.known_misses, self.open_cases)
         nothing = float("nan")
         for verdict, reasons in (
-            (Verdict.NOT_EXPRESSIBLE, self.not_expressible),
-            (Verdict.NOT_RUN, self.not_run),
+            (SuiteVerdict.NOT_EXPRESSIBLE, self.not_expressible),
+            (SuiteVerdict.NOT_RUN, self.not_run),
         ):
             for case, reason in reasons.items():
-                yield Line(case, "", "", nothing, nothing, verdict=verdict, cause=reason)
+                yield VerdictLine(case, "", "", nothing, nothing, verdict=verdict, cause=reason)
 
 
 def _reasons(tree: dict[str, Any], key: str) -> dict[str, str]:

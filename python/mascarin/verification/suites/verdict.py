@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
-class Verdict(StrEnum):
+class SuiteVerdict(StrEnum):
     """What is said of a number."""
 
     INSIDE = "inside"
@@ -36,13 +36,13 @@ class Verdict(StrEnum):
 
 
 #: Verdicts of lines without a number.
-WITHOUT_NUMBER: Final = (Verdict.NOT_EXPRESSIBLE, Verdict.NOT_RUN)
+WITHOUT_NUMBER: Final = (SuiteVerdict.NOT_EXPRESSIBLE, SuiteVerdict.NOT_RUN)
 #: A known miss may grow by this part of half the width of its limits before it counts as a worse one. [-]
 _GROWTH: Final = 0.1
 
 
 @dataclass(frozen=True)
-class Line:
+class VerdictLine:
     """A number of a case.
 
     Parameters
@@ -62,7 +62,7 @@ class Line:
 
     Examples
     --------
-    >>> line = Line("1", "load", "W", 101.0, 100.0, around(100.0, 2.0), {"A": 99.5, "B": 103.0})
+    >>> line = VerdictLine("1", "load", "W", 101.0, 100.0, around(100.0, 2.0), {"A": 99.5, "B": 103.0})
     >>> line.inside, line.rank
     (True, (2, 3))
     """
@@ -75,7 +75,7 @@ class Line:
     limits: tuple[float, float] | None = None
     peers: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
-    verdict: Verdict = Verdict.INFORMATION
+    verdict: SuiteVerdict = SuiteVerdict.INFORMATION
     cause: str = ""
 
     @property
@@ -99,7 +99,9 @@ class Line:
             return None
         return 1 + sum(distance < abs(self.deviation) for distance in distances), 1 + len(distances)
 
-    def judged(self, misses: Mapping[tuple[str, str], KnownMiss], open_cases: Mapping[str, str]) -> Line:
+    def judged(
+        self, misses: Mapping[tuple[str, str], KnownMiss], open_cases: Mapping[str, str]
+    ) -> VerdictLine:
         """Say what is known of it.
 
         Parameters
@@ -111,7 +113,7 @@ class Line:
 
         Examples
         --------
-        >>> line = Line("1", "load", "W", 104.0, 100.0, around(100.0, 2.0))
+        >>> line = VerdictLine("1", "load", "W", 104.0, 100.0, around(100.0, 2.0))
         >>> line.judged({}, {}).verdict.value
         'miss'
         >>> line.judged({("1", "load"): KnownMiss(4.0, "films are fixed")}, {}).verdict.value
@@ -120,13 +122,13 @@ class Line:
         if self.inside is None:
             return self
         if self.inside:
-            return replace(self, verdict=Verdict.INSIDE)
+            return replace(self, verdict=SuiteVerdict.INSIDE)
         miss = misses.get((self.case, self.quantity))
         if miss is not None and miss.covers(self):
-            return replace(self, verdict=Verdict.KNOWN_MISS, cause=miss.cause)
+            return replace(self, verdict=SuiteVerdict.KNOWN_MISS, cause=miss.cause)
         if self.case in open_cases:
-            return replace(self, verdict=Verdict.AMBIGUOUS, cause=open_cases[self.case])
-        return replace(self, verdict=Verdict.MISS)
+            return replace(self, verdict=SuiteVerdict.AMBIGUOUS, cause=open_cases[self.case])
+        return replace(self, verdict=SuiteVerdict.MISS)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON; a number that is none is null."""
@@ -161,7 +163,7 @@ class KnownMiss:
     deviation: float
     cause: str
 
-    def covers(self, line: Line) -> bool:
+    def covers(self, line: VerdictLine) -> bool:
         """Whether a line deviates to the same side, and not by more than it did."""
         low, high = line.limits or (0.0, 0.0)
         growth = _GROWTH * 0.5 * (high - low)
@@ -186,7 +188,7 @@ def largest(
     unit: str,
     series: tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike],
     tolerance: float,
-) -> Line:
+) -> VerdictLine:
     """A line of the place at which a series deviates most from its reference.
 
     Parameters
@@ -209,7 +211,7 @@ def largest(
     worst = int(np.abs(errors).argmax())
     reference = float(references[worst])
     spread = float(np.sqrt((errors**2).mean()))
-    return Line(
+    return VerdictLine(
         case,
         quantity,
         unit,

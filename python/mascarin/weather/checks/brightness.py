@@ -9,7 +9,6 @@ exceed it in good records: 10 rows of each record of the Twin Houses, 25 hours o
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,11 +16,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin._io.sealed.cache import Cached, cached
 from mascarin.tables.arrays import Flags
 from mascarin.tables.quality import Stretch, runs
 from mascarin.tables.times import stamps_of
-from mascarin.tables.timezones import zone_name
+from mascarin.weather.checks.once import said_once
 from mascarin.weather.derived import completion
 from mascarin.weather.records.record import WeatherRecord
 
@@ -77,29 +75,14 @@ def findings(record: WeatherRecord, latitude: float, longitude: float) -> tuple[
     tuple of str
         A sentence for each column: number of rows, the first time, the worst value, what to check.
     """
-    grid = record.grid
     columns = [record.columns[name] for name in _NAMES if name in record.columns]
-    digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
-    kinds = tuple(record.kinds.get(name, "") for name in _NAMES)
-    key = (
-        "bright",
-        digest,
-        kinds,
-        record.file,
-        grid.start,
-        grid.interval,
-        zone_name(grid.zone),
-        latitude,
-        longitude,
-    )
+    key = ("bright", tuple(record.kinds.get(name, "") for name in _NAMES), latitude, longitude)
 
-    def said() -> Cached:
+    def sentences() -> list[str]:
         bright = too_bright(record, latitude, longitude)
-        return Cached(
-            {"said": [_sentence(record, name, rows) for name, rows in bright.items() if rows.any()]}
-        )
+        return [_sentence(record, name, rows) for name, rows in bright.items() if rows.any()]
 
-    return tuple(cached(key, [sys.modules[__name__], completion], said).notes["said"])
+    return said_once(record, columns, key, [sys.modules[__name__], completion], sentences)
 
 
 def with_findings(

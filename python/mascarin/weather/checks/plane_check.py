@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
-from mascarin._io.sealed.cache import Cached, cached
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
 from mascarin.tables.timezones import zone_name
 from mascarin.weather.checks import clock_shift, plane_shift
 from mascarin.weather.checks.clock_shift import shifts_of
+from mascarin.weather.checks.once import said_once
 from mascarin.weather.checks.plane_shift import MeasuredPlane, PlaneShift, shift_by_plane
 from mascarin.weather.records.channels import RADIATION
 from mascarin.weather.records.record import WeatherRecord
@@ -71,30 +70,22 @@ def plane_warnings(
     planes = [plane for plane in planes if _TILTS[0] <= plane.tilt <= _TILTS[1]]
     if not planes or not record.measured("global_horizontal") or not record.check_sun:
         return ()
-    grid = record.grid
-    columns = [record.columns[name] for name in RADIATION if name in record.columns] + [
-        plane.values for plane in planes
-    ]
-    digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
+    columns = [record.columns[name] for name in RADIATION if name in record.columns]
     key = (
         "planes",
-        digest,
         sorted(record.columns),
         record.kinds["global_horizontal"],
         [(plane.name, plane.azimuth, plane.tilt, plane.albedo) for plane in planes],
-        record.file,
-        grid.start,
-        grid.interval,
-        zone_name(grid.zone),
         latitude,
         longitude,
     )
-
-    def passed() -> Cached:
-        return Cached({"said": _said(record, planes, latitude, longitude)})
-
-    modules = [sys.modules[__name__], plane_shift, clock_shift]
-    return tuple(cached(key, modules, passed).notes["said"])
+    return said_once(
+        record,
+        [*columns, *(plane.values for plane in planes)],
+        key,
+        [sys.modules[__name__], plane_shift, clock_shift],
+        lambda: _said(record, planes, latitude, longitude),
+    )
 
 
 def on_grid(values: Array, kind: str, of_global: str) -> Array:

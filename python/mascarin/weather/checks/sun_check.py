@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin._io.sealed.cache import Cached, cached
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array
 from mascarin.tables.quality import Stretch
@@ -17,6 +15,7 @@ from mascarin.tables.timezones import fixed_offset, fixed_zone, standard_offset,
 from mascarin.weather.checks import clock_shift
 from mascarin.weather.checks.brightness import findings
 from mascarin.weather.checks.clock_shift import ClockShift, shifts_of
+from mascarin.weather.checks.once import said_once
 from mascarin.weather.derived import sun as sun_module
 from mascarin.weather.derived.sun import SunPath
 from mascarin.weather.records.channels import RADIATION
@@ -82,26 +81,14 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> tup
     if values is None or grid.count * grid.interval < _SHORTEST or np.ptp(values) == 0.0:
         return ()
     # The sun over a year takes half as long as a run over three months: what has passed once is remembered.
-    digest = hashlib.sha256(b"".join(record.columns[name].tobytes() for name in RADIATION if name in
-                                     record.columns)).hexdigest()  # fmt: skip
-    kind, measured = record.kinds[_name(record)], sorted({*RADIATION} & {*record.columns} - record.assumed)
-    key = (
-        "clock",
-        digest,
-        kind,
-        measured,
-        record.file,
-        grid.start,
-        grid.interval,
-        zone_name(grid.zone),
-        latitude,
-        longitude,
+    measured = sorted({*RADIATION} & {*record.columns} - record.assumed)
+    return said_once(
+        record,
+        [record.columns[name] for name in RADIATION if name in record.columns],
+        ("clock", record.kinds[_name(record)], measured, latitude, longitude),
+        [sys.modules[__name__], clock_shift, sun_module],
+        lambda: _refuse(record, values, latitude, longitude),
     )
-
-    def passed() -> Cached:
-        return Cached({"said": _refuse(record, values, latitude, longitude)})
-
-    return tuple(cached(key, [sys.modules[__name__], clock_shift, sun_module], passed).notes["said"])
 
 
 def sun_warnings(record: WeatherRecord, latitude: float, longitude: float) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from mascarin.tables.arrays import Array
-from mascarin.tables.profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
+from mascarin.tables.profile import PiecewiseProfile, index_nodes, node_times, pieces_for, trapezoid_weights
 from mascarin.weather.derived.sun import SunPath
 from mascarin.weather.records.channels import Basis
 
@@ -38,15 +38,15 @@ class SkyProfiles:
 
     Attributes
     ----------
-    direct_normal, diffuse_horizontal, global_horizontal : Profile
+    direct_normal, diffuse_horizontal, global_horizontal : PiecewiseProfile
         The irradiances over time. [W/m2]
     moved : ndarray, shape (n,)
         Beam on the horizontal that was added to the diffuse part, mean of each interval. [W/m2]
     """
 
-    direct_normal: Profile
-    diffuse_horizontal: Profile
-    global_horizontal: Profile
+    direct_normal: PiecewiseProfile
+    diffuse_horizontal: PiecewiseProfile
+    global_horizontal: PiecewiseProfile
     moved: Array
 
 
@@ -186,7 +186,7 @@ def _diffuse(means: Array, horizontal: Array, weights: Array) -> Array:
 
 
 def _sky(start: float, interval: float, nodes: tuple[Array, Array, Array], moved: Array) -> SkyProfiles:
-    beam, sky, total = (Profile(start, interval, values) for values in nodes)
+    beam, sky, total = (PiecewiseProfile(start, interval, values) for values in nodes)
     return SkyProfiles(beam, sky, total, moved)
 
 

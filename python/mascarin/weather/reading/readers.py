@@ -77,7 +77,7 @@ _STAMPS_NOTE: Final = (
 
 
 @dataclass(frozen=True)
-class Year:
+class WeatherYear:
     """One year of hourly weather as read; values of hour-ending rows, in order.
 
     Attributes
@@ -119,7 +119,7 @@ class Year:
     start: tuple[int, int] = (1, 1)
 
 
-def read_epw(path: Path) -> Year:
+def read_epw(path: Path) -> WeatherYear:
     """Read an EPW file (EnergyPlus Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary").
 
     Raises
@@ -135,7 +135,7 @@ def read_epw(path: Path) -> Year:
     return _unpacked(kept_year, where)
 
 
-def _parsed_epw(path: Path, where: str) -> Year:
+def _parsed_epw(path: Path, where: str) -> WeatherYear:
     raw = content(path)
     digest = hashlib.sha256(raw).hexdigest()
     lines = raw.decode("utf-8-sig", errors="replace").splitlines()
@@ -162,7 +162,7 @@ def _parsed_epw(path: Path, where: str) -> Year:
     )
     numbers = np.arange(len(rows.table), dtype=np.int64) + _HEADER + 1
     site = (latitude, longitude, altitude, name)
-    return Year(
+    return WeatherYear(
         rows.year, rows.mixed, zone, values, site, where, digest, numbers, notes, rows.records, rows.start
     )
 
@@ -180,7 +180,7 @@ def _dew_point_from(humidity: Array, values: dict[str, Array], where: str) -> tu
     )
 
 
-def _packed(read: Year) -> Cached:
+def _packed(read: WeatherYear) -> Cached:
     """A year as the cache keeps it."""
     offset = read.zone.utcoffset(None)
     hours = offset.total_seconds() / 3600.0 if offset is not None else 0.0
@@ -191,7 +191,7 @@ def _packed(read: Year) -> Cached:
     return Cached(notes, read.values)
 
 
-def _unpacked(entry: Cached, where: str) -> Year:
+def _unpacked(entry: Cached, where: str) -> WeatherYear:
     """The year of `_packed`; its rows are lines without a gap."""
     notes, values = entry.notes, entry.columns
     latitude, longitude, altitude, name = notes["place"]
@@ -199,13 +199,13 @@ def _unpacked(entry: Cached, where: str) -> Year:
     site, zone = (latitude, longitude, altitude, name), fixed_zone(notes["hours"])
     said = tuple(notes["notes"])
     month, day = notes["start"]
-    return Year(
+    return WeatherYear(
         notes["year"], notes["mixed"], zone, values, site, where, notes["sha256"], lines, said,
         notes["records"], (month, day),
     )  # fmt: skip
 
 
-def read_tmy3(path: Path) -> Year:
+def read_tmy3(path: Path) -> WeatherYear:
     """Read a TMY3 CSV file with pvlib.
 
     Raises
@@ -247,7 +247,7 @@ def read_tmy3(path: Path) -> Year:
         f"{where}: cloud cover is the opaque sky cover.",
     )
     lines = np.arange(len(frame), dtype=np.int64) + 3
-    return Year(years[0], len(set(years)) > 1, zone, values, site, where, digest, lines, notes)
+    return WeatherYear(years[0], len(set(years)) > 1, zone, values, site, where, digest, lines, notes)
 
 
 def kind_of(channel: str) -> str:

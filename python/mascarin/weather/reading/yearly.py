@@ -14,7 +14,7 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Lines
 from mascarin.tables.grid import Grid
 from mascarin.tables.record import Kind
-from mascarin.weather.reading.readers import Year, kind_of
+from mascarin.weather.reading.readers import WeatherYear, kind_of
 from mascarin.weather.records.channels import RADIATION
 from mascarin.weather.records.record import WeatherRecord
 from mascarin.weather.records.site import Place
@@ -22,12 +22,14 @@ from mascarin.weather.records.site import Place
 _FREE = ("infrared", "pressure", "cloud_cover")
 
 
-def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere: bool) -> WeatherRecord:
+def record_of_year(
+    read: WeatherYear, typical: bool | None, year: int | None, elsewhere: bool
+) -> WeatherRecord:
     """Record of a weather file of a year.
 
     Parameters
     ----------
-    read : Year
+    read : WeatherYear
         As read, hour-ending.
     typical, year, elsewhere
         As in `Climate.from_epw`.
@@ -127,7 +129,7 @@ def _check_length(count: int, year: int, start: tuple[int, int], where: str) -> 
 
 
 def _of_year(
-    read: Year,
+    read: WeatherYear,
     grid: Grid,
     values: Mapping[str, Array],
     lines: Lines,

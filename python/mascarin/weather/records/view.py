@@ -155,7 +155,7 @@ class RecordView(Generic[R]):
 
     def _draw(self, ax: Axes, names: Sequence[str], unit: str) -> None:
         """Draw columns of one unit; a mean holds until the end of its interval."""
-        from mascarin.figures.series import Curve, columns  # matplotlib
+        from mascarin.figures.series import SeriesCurve, columns  # matplotlib
 
         record = self._record
         curves = []
@@ -163,7 +163,7 @@ class RecordView(Generic[R]):
             values = record.columns[name]
             mean = record.kinds[name] == "mean"
             last = values[-1:] if mean else [record.closing.get(name, np.nan)]
-            curves.append(Curve(name, np.append(values, last), mean))
+            curves.append(SeriesCurve(name, np.append(values, last), mean))
         grid = record.grid
         edges = (grid.start + grid.interval * np.arange(grid.count + 1)).astype("datetime64[s]")
         columns(ax, edges, curves, unit, grid.zone, zone_name(grid.zone))

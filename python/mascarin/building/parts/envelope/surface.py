@@ -480,12 +480,12 @@ class Surface(Part):
         return []
 
 
-class Sensor(Part):
+class WallSensor(Part):
     """A temperature sensor inside a wall.
 
     Examples
     --------
-    >>> float(Sensor(surface="south", depth=0.05).depth)
+    >>> float(WallSensor(surface="south", depth=0.05).depth)
     0.05
     """
 

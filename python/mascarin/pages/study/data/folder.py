@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from mascarin._io.tables import csv_refused
 from mascarin.errors import InputError
 from mascarin.figures.text import plain_path
 from mascarin.pages.study.data.series import Array, Column, Series, read_json
+from mascarin.study_document.document import StudyDocument
 
 #: Climate channels with the words and units of a legend.
 _WEATHER: Final = {
@@ -31,7 +32,7 @@ _WEATHER: Final = {
 }
 
 
-def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
+def read_folder(out: Path) -> tuple[StudyDocument, Series]:
     """Read the results of a study.
 
     Parameters
@@ -43,7 +44,7 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
 
     Returns
     -------
-    tuple of dict and Series
+    tuple of StudyDocument and Series
         As :func:`mascarin.pages.study.render` takes them.
 
     Raises
@@ -51,9 +52,10 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
     InputError
         A file is missing or cannot be read.
     """
-    study = read_json(out / "study.json")
+    content = read_json(out / "study.json")
     if (out / "run.json").exists():
-        study |= read_json(out / "run.json")
+        content |= read_json(out / "run.json")
+    study = StudyDocument.read(content, str(out / "study.json"))
     table = out / "tables" / "series.csv"
     return study, read_series(_open(table), str(table), study)
 
@@ -62,7 +64,7 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
 _CLOCK_CHANGE: Final = 7200.0
 
 
-def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Series:
+def read_series(file: Iterable[str], where: str, study: StudyDocument) -> Series:
     """Read the series of a study from the lines of its table.
 
     Parameters
@@ -71,8 +73,8 @@ def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Se
         Lines of a CSV table; see `read_folder` for its columns.
     where : str
         Its name, for errors.
-    study : mapping
-        The content of ``study.json``.
+    study : StudyDocument
+        Names of sensors and models.
 
     Returns
     -------
@@ -131,15 +133,15 @@ def _number(cell: str) -> float:
     return float(cell) if cell else math.nan
 
 
-def _columns(names: Sequence[str], values: Array, study: Mapping[str, Any]) -> dict[str, Column]:
-    sensors, models = study.get("sensor_info", {}), ("measured", "band", "expected", *study.get("models", {}))
+def _columns(names: Sequence[str], values: Array, study: StudyDocument) -> dict[str, Column]:
+    sensors, models = study.sensor_info, ("measured", "band", "expected", *study.models)
     columns = {}
     for name, column in zip(names, values.T, strict=True):
         owner, what = _parts(name, models)
         if owner in sensors:
             info = sensors[owner]
             key = f"{'observed' if what == 'measured' else what}/{owner}"
-            columns[key] = Column(column, str(info.get("label", owner)), str(info.get("unit", "degC")))
+            columns[key] = Column(column, owner if info.label is None else info.label, info.unit)
         elif owner == "weather":
             label, unit = _WEATHER.get(what, (plain_path(what), ""))
             columns[f"weather/{what}"] = Column(column, label, unit)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from mascarin._io import units
 from mascarin.pages.study.data.labels import main_model, unit_of
+from mascarin.study_document.comparison import CriterionEntry
+from mascarin.study_document.document import StudyDocument
 
 
 @dataclass(frozen=True)
@@ -32,62 +32,60 @@ class Coverage:
     asked: set[float]
 
 
-def judged_criteria(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def judged_criteria(study: StudyDocument) -> list[CriterionEntry]:
     """Criteria of the model that is shown; all where it has none.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
-    criteria = list(study.get("criteria", []))
     model = main_model(study)
-    return [c for c in criteria if c.get("model", "fitted") == model] or criteria
+    return [c for c in study.criteria if (c.model or "fitted") == model] or study.criteria
 
 
-def coverage(study: Mapping[str, Any]) -> Coverage | None:
+def coverage(study: StudyDocument) -> Coverage | None:
     """Coverage of the bands in the last period in which values were compared.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
-    bands = study.get("band", {})
-    for period in reversed(list(study.get("periods", {}))):
+    bands = study.band
+    for period in reversed(list(study.periods)):
         shares = {
             sensor: float(share)
             for sensor, entry in bands.items()
-            if (share := entry.get("held", {}).get(period)) is not None
+            if (share := entry.held.get(period)) is not None
         }
         counts = {sensor: _values(study, sensor, period) for sensor in shares}
         total = sum(counts.values())
         if total:
             weighted = sum(share * counts[sensor] for sensor, share in shares.items()) / total
-            asked = {float(bands[sensor].get("confidence", 0.95)) for sensor in shares}
+            asked = {float(bands[sensor].confidence) for sensor in shares}
             return Coverage(period, weighted, shares, asked)
     return None
 
 
-def _values(study: Mapping[str, Any], sensor: str, period: str) -> int:
+def _values(study: StudyDocument, sensor: str, period: str) -> int:
     """Number of compared values."""
-    metrics = study.get("sensors", {}).get(sensor, {}).get(period, {})
-    return int(metrics.get(main_model(study), {}).get("n", 0))
+    return study.metrics(sensor, period, main_model(study)).n
 
 
-def scatter(study: Mapping[str, Any]) -> tuple[str, dict[str, list[float]]] | None:
+def scatter(study: StudyDocument) -> tuple[str, dict[str, list[float]]] | None:
     """Standard deviations of the error of the sensors in the last period that has them, by unit.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
     model = main_model(study)
-    for period in reversed(list(study.get("periods", {}))):
+    for period in reversed(list(study.periods)):
         by_unit: dict[str, list[float]] = {}
-        for sensor, periods in study.get("sensors", {}).items():
-            deviation = periods.get(period, {}).get(model, {}).get("sd")
+        for sensor in study.sensors:
+            deviation = study.metrics(sensor, period, model).sd
             if deviation is not None:
                 by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(deviation))
         if by_unit:

@@ -5,35 +5,35 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from datetime import datetime
-from typing import Any
 
 from mascarin._io.units import difference
 from mascarin.figures import colors
 from mascarin.figures.comparison import Compared
 from mascarin.pages.study.data.labels import label_of, main_model, model_label, unit_of
 from mascarin.pages.study.data.series import Array, Series
+from mascarin.study_document.document import StudyDocument
 
 
-def model_looks(study: Mapping[str, Any]) -> dict[str, str]:
+def model_looks(study: StudyDocument) -> dict[str, str]:
     """Color of each model of a study, by its name for readers."""
-    color_of = colors.models(study.get("models", {}))
+    color_of = colors.models(study.models)
     return {model_label(study, model): color for model, color in color_of.items()}
 
 
-def sensor_looks(study: Mapping[str, Any]) -> dict[str, colors.Look]:
+def sensor_looks(study: StudyDocument) -> dict[str, colors.Look]:
     """How each sensor of a study is drawn."""
-    return {sensor: colors.look(number) for number, sensor in enumerate(study.get("sensor_info", {}))}
+    return {sensor: colors.look(number) for number, sensor in enumerate(study.sensor_info)}
 
 
 def compared_sensors(
-    study: Mapping[str, Any], series: Series, part: slice, most: int
+    study: StudyDocument, series: Series, part: slice, most: int
 ) -> tuple[list[datetime], dict[str, Compared]]:
     """Sensors that were measured and simulated, over a part of the record.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     series : Series
         Curves.
     part : slice
@@ -54,7 +54,7 @@ def compared_sensors(
     times = [series.time(k) for k in range(part.start, stop, stride)]
     main = main_model(study)
     compared = {}
-    for sensor in study.get("sensor_info", {}):
+    for sensor in study.sensor_info:
         observed, simulated = _values(series, "observed", sensor), _values(series, main, sensor)
         if main is None or observed is None or simulated is None:
             continue
@@ -70,12 +70,12 @@ def compared_sensors(
             main,
             half=None if half is None else half[pick],
             center=None if middle is None else (middle - simulated)[pick],
-            uncertainty=float(study["sensor_info"][sensor].get("uncertainty", 0.0)),
+            uncertainty=float(study.sensor_info[sensor].uncertainty),
         )
     return times, compared
 
 
-def by_unit(study: Mapping[str, Any], sensors: Mapping[str, Compared]) -> dict[str, list[str]]:
+def by_unit(study: StudyDocument, sensors: Mapping[str, Compared]) -> dict[str, list[str]]:
     """Names of sensors by the plain unit of their values."""
     groups: dict[str, list[str]] = {}
     for sensor in sensors:
@@ -83,7 +83,7 @@ def by_unit(study: Mapping[str, Any], sensors: Mapping[str, Compared]) -> dict[s
     return groups
 
 
-def error_unit(study: Mapping[str, Any], sensor: str) -> str:
+def error_unit(study: StudyDocument, sensor: str) -> str:
     """Unit of the error of a sensor, with its signs."""
     return difference(unit_of(study, sensor))
 

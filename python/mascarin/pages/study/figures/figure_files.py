@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from mascarin._io.units import bracketed, difference, shown
 from mascarin.figures import colors, text
@@ -15,6 +15,7 @@ from mascarin.figures.files import save, save_both
 from mascarin.pages.study.data.labels import label_of, model_label, period_label, short_periods, unit_of
 from mascarin.pages.study.data.series import Series, moment
 from mascarin.pages.study.figures.comparison_data import by_unit, compared_sensors, model_looks, sensor_looks
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +32,7 @@ Once = Callable[[str, Callable[[], Sequence[Path]]], list[Path]]
 
 def write_figures(
     folder: Path,
-    study: Mapping[str, Any],
+    study: StudyDocument,
     curves: Series,
     once: Once = lambda _, write: list(write()),
 ) -> list[Path]:
@@ -42,8 +43,8 @@ def write_figures(
     folder : Path
         Where to. ``PERIOD-all`` has all sensors, ``PERIOD-SENSOR`` one with the prediction interval, both as
         SVG and PDF, for periods of at most 16 days; ``SENSOR.svg`` has the whole record.
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     curves : Series
         Curves.
     once : callable, optional
@@ -56,7 +57,7 @@ def write_figures(
     """
     written: list[Path] = []
     for period in short_periods(study):
-        start, end = study["periods"][period]["spans"][0]
+        start, end = study.periods[period].spans[0]
         times, sensors = compared_sensors(study, curves, curves.slice_of(start, end), _MAX_SAMPLES)
         if not sensors:
             continue
@@ -80,9 +81,7 @@ def _save(draw: Callable[[], Figure], path: Path) -> list[Path]:
     return [save(draw(), path)] if path.suffix == ".svg" else list(save_both(draw(), path))
 
 
-def _all(
-    study: Mapping[str, Any], times: list[datetime], sensors: Mapping[str, Compared], title: str
-) -> Figure:
+def _all(study: StudyDocument, times: list[datetime], sensors: Mapping[str, Compared], title: str) -> Figure:
     """Values and errors of all sensors, on axes for each unit."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -98,7 +97,7 @@ def _all(
         upper.set_ylabel(bracketed("", shown(unit)))
         lower.set_ylabel(bracketed("error", difference(unit)))
     axes[0].set_title(title, loc="left", fontsize=11)
-    observed = study.get("observed", {}).get("label", "measured")
+    observed = study.observed.label
     main = model_label(study, next(iter(sensors.values())).main)
     handles = [
         Line2D([], [], color=looks[name].color, linestyle=looks[name].dash, label=sensors[name].label)  # type: ignore[arg-type]
@@ -123,7 +122,7 @@ def _all(
 
 
 def _single(
-    study: Mapping[str, Any],
+    study: StudyDocument,
     times: list[datetime],
     sensor: str,
     compared: Compared,
@@ -146,7 +145,7 @@ def _single(
     )
     figure = Figure(figsize=(_WIDTH, 5.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    looks, observed = model_looks(study), study.get("observed", {}).get("label", "measured")
+    looks, observed = model_looks(study), study.observed.label
     series(upper, times, named, looks=looks, label=observed)
     errors(lower, times, named, looks=looks)
     handles, labels = upper.get_legend_handles_labels()
@@ -163,18 +162,19 @@ def _single(
     return figure
 
 
-def _shade(study: Mapping[str, Any], axes: tuple[Axes, ...]) -> None:
+def _shade(study: StudyDocument, axes: tuple[Axes, ...]) -> None:
     """Tint the identification period."""
-    for start, end in study.get("periods", {}).get("identification", {}).get("spans", []):
+    identification = study.periods.get("identification")
+    for start, end in [] if identification is None else identification.spans:
         for ax in axes:
             ax.axvspan(moment(start), moment(end), color=colors.REMAINDER, alpha=0.18, lw=0, zorder=0)  # type: ignore[arg-type]
 
 
-def _days(ax: Axes, study: Mapping[str, Any]) -> None:
+def _days(ax: Axes, study: StudyDocument) -> None:
     from matplotlib import dates
 
     locator = dates.AutoDateLocator()  # type: ignore[no-untyped-call]
     ax.xaxis.set_major_locator(locator)
     ax.xaxis.set_major_formatter(dates.ConciseDateFormatter(locator))  # type: ignore[no-untyped-call]
-    zone = study.get("timezone", "")
+    zone = study.timezone
     ax.set_xlabel(f"local time ({zone})" if zone else "local time")

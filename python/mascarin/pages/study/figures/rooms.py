@@ -18,6 +18,8 @@ from mascarin._io import units
 from mascarin.figures import text
 from mascarin.figures.svg.chart import Array, Svg
 from mascarin.pages.study.data.labels import label_of, main_model, period_label
+from mascarin.study_document.building import BuildingEntry, SurfaceEntry
+from mascarin.study_document.document import StudyDocument
 
 #: Assumed height of a room without vertices. [m]
 _STOREY_HEIGHT: Final = 2.5
@@ -28,10 +30,11 @@ _MAX_PUSHES: Final = 200
 _MAX_ROOMS: Final = 40
 _WIDTH: Final = 560.0
 _MARGIN: Final = 34.0
+_NO_SURFACE: Final = SurfaceEntry()
 
 
 @dataclass(frozen=True)
-class Plan:
+class RoomPlan:
     """Outlines of rooms in a horizontal plane, and walls.
 
     Attributes
@@ -46,42 +49,42 @@ class Plan:
     exact: bool
 
 
-def plan(building: Mapping[str, Any]) -> Plan | None:
+def plan(building: BuildingEntry) -> RoomPlan | None:
     """Outlines of the rooms of a building.
 
     Parameters
     ----------
-    building : mapping
-        As in :class:`~mascarin.pages.study.data.schema.BuildingEntry`.
+    building : BuildingEntry
+        The building.
 
     Returns
     -------
     Plan or None
         None for one room or more than 40, rooms without walls between them, and floors above each other.
     """
-    names = [str(zone.get("name")) for zone in building.get("zones", [])]
+    names = [zone.name for zone in building.zones]
     if not 2 <= len(names) <= _MAX_ROOMS:
         return None
     floors = _floors(building)
     if set(floors) == set(names):
-        return None if _stacked(list(floors.values())) else Plan(floors, exact=True)
+        return None if _stacked(list(floors.values())) else RoomPlan(floors, exact=True)
     walls = _walls(building, names)
     if not _connected(names, walls):
         return None
-    return Plan(_squares(building, names, walls), exact=False)
+    return RoomPlan(_squares(building, names, walls), exact=False)
 
 
-def _floors(building: Mapping[str, Any]) -> dict[str, Array]:
+def _floors(building: BuildingEntry) -> dict[str, Array]:
     """The largest floor of each room."""
     floor_outlines: dict[str, Array] = {}
     largest: dict[str, float] = {}
-    for surface in building.get("surfaces", []):
+    for surface in building.surfaces:
         vertices, zone, area = (
-            surface.get("vertices"),
-            str(surface.get("inside")),
-            float(surface.get("area", 0.0)),
+            surface.vertices,
+            surface.inside,
+            (surface.area or 0.0),
         )
-        if vertices and float(surface.get("tilt", 0.0)) > 150.0 and area > largest.get(zone, 0.0):
+        if vertices and (surface.tilt or 0.0) > 150.0 and area > largest.get(zone, 0.0):
             floor_outlines[zone], largest[zone] = np.array(vertices, dtype=np.float64), area
     return floor_outlines
 
@@ -92,15 +95,15 @@ def _stacked(floors: Sequence[Array]) -> bool:
     return max(heights) - min(heights) > 1.0
 
 
-def _walls(building: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, str, float, float]]:
+def _walls(building: BuildingEntry, names: Sequence[str]) -> list[tuple[str, str, float, float]]:
     """Room, what is behind, azimuth [rad] and area [m2] of the upright walls."""
     walls = []
-    for surface in building.get("surfaces", []):
-        inside, outside = str(surface.get("inside")), str(surface.get("outside"))
-        upright = 45.0 < float(surface.get("tilt", 0.0)) < 135.0
+    for surface in building.surfaces:
+        inside, outside = surface.inside, surface.outside
+        upright = 45.0 < (surface.tilt or 0.0) < 135.0
         if upright and inside in names and outside != inside:
-            azimuth = math.radians(float(surface.get("azimuth", 0.0)))
-            walls.append((inside, outside, azimuth, float(surface.get("area", 0.0))))
+            azimuth = math.radians(float(surface.azimuth or 0.0))
+            walls.append((inside, outside, azimuth, (surface.area or 0.0)))
     return walls
 
 
@@ -118,10 +121,10 @@ def _connected(names: Sequence[str], walls: Sequence[tuple[str, str, float, floa
 
 
 def _squares(
-    building: Mapping[str, Any], names: Sequence[str], walls: Sequence[tuple[str, str, float, float]]
+    building: BuildingEntry, names: Sequence[str], walls: Sequence[tuple[str, str, float, float]]
 ) -> dict[str, Array]:
     """Squares of the floor areas at places that follow from the directions of the walls."""
-    volume = {str(zone.get("name")): float(zone.get("volume") or 0.0) for zone in building["zones"]}
+    volume = {zone.name: float(zone.volume or 0.0) for zone in building.zones}
     half = np.array([0.5 * math.sqrt(max(volume[name], 1.0) / _STOREY_HEIGHT) for name in names])
     index_of = {name: k for k, name in enumerate(names)}
     reach = 0.5 * float(np.sqrt((4.0 * half**2).sum()))
@@ -179,20 +182,20 @@ def _apart(centres: Array, half: Array) -> Array:
     return centres
 
 
-def plan_drawing(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
+def plan_drawing(study: StudyDocument) -> tuple[Markup, RoomPlan, str] | None:
     """The plan with the error of the air temperature of each room; north is up.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
 
     Returns
     -------
     (Markup, Plan, str) or None
         Drawing, outlines, and the name of the period of the errors.
     """
-    building = study.get("building") or {}
+    building = study.building
     room_plan = plan(building)
     if room_plan is None:
         return None
@@ -224,52 +227,48 @@ def plan_drawing(study: Mapping[str, Any]) -> tuple[Markup, Plan, str] | None:
     return svg.markup("Plan of the rooms with the errors of their temperatures"), room_plan, label
 
 
-def _period(study: Mapping[str, Any]) -> str | None:
+def _period(study: StudyDocument) -> str | None:
     """The first period with errors of a room, of those that were not calibrated with."""
     for period in ("corroboration", "blind", "identification"):
-        for per_sensor in study.get("sensors", {}).values():
-            if (per_sensor.get(period) or {}).get("n"):
-                return period
+        if any(period in periods and periods[period].n for periods in study.sensors.values()):
+            return period
     return None
 
 
-def _name(study: Mapping[str, Any], zone: str) -> str:
+def _name(study: StudyDocument, zone: str) -> str:
     """The label of the sensor of the air where there is one, else the name of the zone."""
-    for sensor, info in study.get("sensor_info", {}).items():
-        if info.get("output") == f"{zone}.air_temperature":
+    for sensor, info in study.sensor_info.items():
+        if info.output == f"{zone}.air_temperature":
             return label_of(study, sensor)
     return text.plain_path(zone)
 
 
-def _errors(study: Mapping[str, Any], zone: str, period: str | None) -> list[str]:
+def _errors(study: StudyDocument, zone: str, period: str | None) -> list[str]:
     """Root mean square error of the air, and mean error of the load, of the main model."""
     model, error_texts = main_model(study), []
-    for sensor, info in study.get("sensor_info", {}).items():
-        owner, _, what = str(info.get("output", "")).rpartition(".")
-        values = (study.get("sensors", {}).get(sensor, {}).get(period) or {}).get(model) or {}
-        if owner != zone or not values.get("n"):
+    for sensor, info in study.sensor_info.items():
+        owner, _, what = info.output.rpartition(".")
+        values = study.metrics(sensor, period, model)
+        if owner != zone or not values.n:
             continue
         if what == "air_temperature":
-            error_texts.append(
-                f"{text.fixed(values['rmse'], 2)} {units.difference(str(info.get('unit', 'degC')))}"
-            )
+            error_texts.append(f"{text.fixed(values.rmse, 2)} {units.difference(info.unit)}")
         elif what in ("net_load", "heating_load", "cooling_load"):
-            error_texts.append(
-                f"{values['bias']:+.0f} {units.shown(str(info.get('unit', 'W')))}".replace("-", "−")
-            )
+            unit = info.unit if info.states("unit") else "W"
+            error_texts.append(f"{values.bias:+.0f} {units.shown(unit)}".replace("-", "−"))
     return error_texts
 
 
-def _openings(svg: Svg, building: Mapping[str, Any], room_plan: Plan, on_page: Any) -> None:
+def _openings(svg: Svg, building: BuildingEntry, room_plan: RoomPlan, on_page: Any) -> None:
     """Windows on their sides of the rooms, and doors between rooms."""
-    by_name = {str(surface.get("name")): surface for surface in building.get("surfaces", [])}
-    for window in building.get("windows", []):
-        surface = by_name.get(str(window.get("surface")), {})
-        outline = room_plan.outlines.get(str(surface.get("inside")))
-        if outline is not None and 45.0 < float(surface.get("tilt", 0.0)) < 135.0:
-            ends = on_page(_side(outline[:, :2], math.radians(float(surface.get("azimuth", 0.0)))))
+    by_name = {surface.name: surface for surface in building.surfaces}
+    for window in building.windows:
+        surface = by_name.get(window.surface, _NO_SURFACE)
+        outline = room_plan.outlines.get(surface.inside)
+        if outline is not None and 45.0 < (surface.tilt or 0.0) < 135.0:
+            ends = on_page(_side(outline[:, :2], math.radians(float(surface.azimuth or 0.0))))
             _stroke(svg, ends, "room-window")
-    for door in building.get("doors", []):
+    for door in building.doors:
         pair = [room_plan.outlines[str(name)][:, :2] for name in door if str(name) in room_plan.outlines]
         if len(pair) == 2:
             ends = on_page(_between(*pair))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,11 +11,12 @@ from mascarin._io import units
 from mascarin.figures.svg.carpet import Carpet, carpet, legend, round_limit
 from mascarin.pages.study.data.labels import label_of, main_model, unit_of
 from mascarin.pages.study.data.series import Array, Series
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Error by date and hour"
 
 
-def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, series: Series) -> dict[str, Any] | None:
     """Values of the template."""
     sensors = carpets(study, series)
     if not sensors:
@@ -35,19 +35,19 @@ class SensorCarpet:
     """Model key, model label, picture."""
 
 
-def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
+def carpets(study: StudyDocument, series: Series) -> list[SensorCarpet]:
     """Errors of every sensor over days and hours.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     series : Series
         Curves.
     """
     sensors = []
     model = main_model(study)
-    for sensor in study.get("sensor_info", {}):
+    for sensor in study.sensor_info:
         observed = series.columns.get(f"observed/{sensor}")
         main = series.columns.get(f"{model}/{sensor}")
         if observed is None or main is None or len(series) * series.step < 1.5 * 86400.0:
@@ -57,7 +57,8 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
         for key in dict.fromkeys((model, "nominal")):
             column = series.columns.get(f"{key}/{sensor}")
             if key is not None and column is not None:
-                label = str(study.get("models", {}).get(key, {}).get("label", key))
+                entry = study.models.get(key)
+                label = key if entry is None or entry.label is None else entry.label
                 pictures.append((key, label, _own_carpet(series, column.values - observed.values)))
         unit = units.difference(unit_of(study, sensor))
         sensors.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from mascarin._io import units
@@ -18,54 +17,52 @@ from mascarin.pages.study.data.labels import (
     unit_of,
 )
 from mascarin.pages.study.data.series import Series
+from mascarin.study_document.document import NO_VALUES, StudyDocument
 
 TITLE = "Accuracy"
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    sensors = study.get("sensors", {})
+    sensors = study.sensors
     if not sensors:
         return None
     model = main_model(study)
-    reference = study.get("reference", {})
-    periods = [_period_table(study, period, model, reference) for period in study.get("periods", {})]
+    reference = study.reference
+    periods = [_period_table(study, period, model) for period in study.periods]
     return {
         "model": model_label(study, model),
-        "nominal": model_label(study, "nominal") if "nominal" in study.get("models", {}) else "",
-        "reference": {"label": reference.get("label", ""), "note": reference.get("note", "")},
+        "nominal": model_label(study, "nominal") if "nominal" in study.models else "",
+        "reference": {"label": reference.label or "", "note": reference.note},
         "periods": [p for p in periods if p["rows"]],
         "models": _model_table(study),
     }
 
 
-def _period_table(
-    study: Mapping[str, Any], period: str, model: str | None, reference: Mapping[str, Any]
-) -> dict[str, Any]:
+def _period_table(study: StudyDocument, period: str, model: str | None) -> dict[str, Any]:
     rows = []
     published = False
-    for sensor, periods in study.get("sensors", {}).items():
-        metrics = periods.get(period, {}).get(model)
-        if metrics is None or metrics.get("sd") is None:
+    for sensor in study.sensors:
+        metrics, nominal = study.metrics(sensor, period, model), study.metrics(sensor, period, "nominal")
+        if metrics.sd is None:
             continue
-        paper = reference.get("sensors", {}).get(sensor, {}).get(period, {})
-        published = published or bool(paper)
-        nominal = periods[period].get("nominal", {})
+        paper = study.reference.sensors.get(sensor, {}).get(period, NO_VALUES)
+        published = published or paper is not NO_VALUES
         rows.append(
             {
                 "label": label_of(study, sensor),
                 "unit": units.difference(unit_of(study, sensor)),
-                "bias": text.fixed(metrics.get("bias"), sign=True),
-                "sd": text.fixed(metrics.get("sd")),
-                "sd_nominal": text.fixed(nominal.get("sd")),
-                "sd_paper": text.fixed(paper.get("sd"), 1),
-                "rmse": text.fixed(metrics.get("rmse")),
-                "max": text.fixed(metrics.get("max_error"), sign=True),
-                "max_paper": text.fixed(paper.get("max_error"), 1, sign=True),
-                "max_percent": text.fixed(metrics.get("max_error_percent"), 1),
-                "max_percent_paper": text.fixed(paper.get("max_error_percent"), 1),
-                "mean_percent": text.fixed(metrics.get("mean_error_percent"), 1),
-                "mean_percent_paper": text.fixed(paper.get("mean_error_percent"), 1),
+                "bias": text.fixed(metrics.bias, sign=True),
+                "sd": text.fixed(metrics.sd),
+                "sd_nominal": text.fixed(nominal.sd),
+                "sd_paper": text.fixed(paper.sd, 1),
+                "rmse": text.fixed(metrics.rmse),
+                "max": text.fixed(metrics.max_error, sign=True),
+                "max_paper": text.fixed(paper.max_error, 1, sign=True),
+                "max_percent": text.fixed(metrics.max_error_percent, 1),
+                "max_percent_paper": text.fixed(paper.max_error_percent, 1),
+                "mean_percent": text.fixed(metrics.mean_error_percent, 1),
+                "mean_percent_paper": text.fixed(paper.mean_error_percent, 1),
             }
         )
     distinct_units = list(dict.fromkeys(row["unit"] for row in rows))
@@ -79,20 +76,18 @@ def _period_table(
     }
 
 
-def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
+def _model_table(study: StudyDocument) -> dict[str, Any] | None:
     """Standard deviation of every model on the last period in which more than one has metrics."""
-    sensors = study.get("sensors", {})
-    for period in reversed(list(study.get("periods", {}))):
+    sensors = study.sensors
+    for period in reversed(list(study.periods)):
         models = [
             m
-            for m in study.get("models", {})
-            if any(p.get(period, {}).get(m, {}).get("sd") is not None for p in sensors.values())
+            for m in study.models
+            if any(study.metrics(sensor, period, m).sd is not None for sensor in sensors)
         ]
         if len(models) < 2:
             continue
-        table = {
-            m: [periods.get(period, {}).get(m, {}).get("sd") for periods in sensors.values()] for m in models
-        }
+        table = {m: [study.metrics(sensor, period, m).sd for sensor in sensors] for m in models}
         best = [
             min((v for v in column if v is not None), default=None)
             for column in zip(*table.values(), strict=True)
@@ -100,7 +95,7 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
         rows = [
             {
                 "label": model_label(study, m),
-                "note": study["models"][m].get("note", ""),
+                "note": study.models[m].note,
                 "own": _own_estimates(study, m),
                 "cells": [
                     {"text": text.fixed(v), "best": v is not None and v == b}
@@ -117,13 +112,13 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
     return None
 
 
-def _own_estimates(study: Mapping[str, Any], model: str) -> str:
+def _own_estimates(study: StudyDocument, model: str) -> str:
     """What was identified in a model beside what the fitted one has, in words."""
-    entries = study.get("variant_parameters", {}).get(model, {})
+    entries = study.variant_parameters.get(model, {})
     if is_published(entries):
         return ""  # has a table of its own
     return "; ".join(
-        f"{parameter_label(study, path)} {text.with_unit(entry.get('fitted'), str(entry.get('unit', '')))}"
+        f"{parameter_label(study, path)} {text.with_unit(entry.fitted, entry.unit or '')}"
         for path, entry in entries.items()
-        if path not in study.get("parameters", {})
+        if path not in study.parameters
     )

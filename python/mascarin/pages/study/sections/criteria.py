@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from mascarin._io import units
 from mascarin.figures import text
 from mascarin.pages.study.data.labels import label_of, main_model, model_label, period_label
 from mascarin.pages.study.data.series import Series
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Validation summary"
 
 
-def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] | None:
+def content(study: StudyDocument, _series: Series) -> list[dict[str, Any]] | None:
     """Criteria grouped by model and period."""
     groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
-    for criterion in study.get("criteria", []):
-        key = (str(criterion.get("model", "")), str(criterion.get("period", "")))
-        unit = str(criterion.get("unit", ""))
-        value, limit = criterion.get("value"), criterion.get("limit")
+    for criterion in study.criteria:
+        key = (criterion.model, criterion.period)
+        value, limit = criterion.value, criterion.limit
         value_text, limit_text = text.beside_limit(value, limit)
         groups.setdefault(key, []).append(
             {
-                "name": text.typeset(str(criterion.get("name", ""))),
-                "sensor": label_of(study, str(criterion.get("sensor", "")))
-                if criterion.get("sensor")
-                else "",
+                "name": text.typeset(criterion.name),
+                "sensor": label_of(study, criterion.sensor) if criterion.sensor else "",
                 "value": value_text,
                 "limit": limit_text,
-                "unit": units.difference(unit),
-                "passed": bool(criterion.get("passed")),
+                "unit": units.difference(criterion.unit),
+                "passed": criterion.passed,
                 "fill": _fill(value, limit),
             }
         )

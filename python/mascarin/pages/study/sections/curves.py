@@ -29,6 +29,7 @@ from mascarin.pages.study.figures.comparison_data import (
     model_looks,
     sensor_looks,
 )
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,9 +39,9 @@ TITLE = "Time series"
 _MAX_POINTS: Final = 420
 
 
-def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, curves: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    sensors = [key for key in study.get("sensor_info", {}) if f"observed/{key}" in curves.columns]
+    sensors = [key for key in study.sensor_info if f"observed/{key}" in curves.columns]
     if not sensors:
         return None
     model = main_model(study)
@@ -48,7 +49,7 @@ def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
         "sensors": [{"key": key, "label": label_of(study, key)} for key in sensors],
         "models": [
             {"key": key, "label": model_label(study, key), "main": key == model}
-            for key in study.get("models", {})
+            for key in study.models
             if any(f"{key}/{sensor}" in curves.columns for sensor in sensors)
         ],
         "beside": [
@@ -58,20 +59,20 @@ def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
         ],
         "periods": [
             {"label": period_label(study, period), "start": spans[0][0], "end": spans[-1][1]}
-            for period, entry in study.get("periods", {}).items()
-            if (spans := entry.get("spans"))
+            for period, entry in study.periods.items()
+            if (spans := entry.spans)
         ],
         "printed": _printed(study, curves),
         "model": model_label(study, model),
-        "nominal": model_label(study, "nominal") if "nominal" in study.get("models", {}) else "",
-        "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
+        "nominal": model_label(study, "nominal") if "nominal" in study.models else "",
+        "uncertain": any(info.uncertainty for info in study.sensor_info.values()),
         "foreseen": any(key.startswith("band/") for key in curves.columns),
         "step": text.significant(curves.step / 60.0),
-        "timezone": study.get("timezone", ""),
+        "timezone": study.timezone,
     }
 
 
-def _printed(study: Mapping[str, Any], curves: Series) -> list[dict[str, Any]]:
+def _printed(study: StudyDocument, curves: Series) -> list[dict[str, Any]]:
     """Figures of the short periods: all sensors together, and each by itself."""
     printed_periods = []
     looks = sensor_looks(study)
@@ -79,7 +80,7 @@ def _printed(study: Mapping[str, Any], curves: Series) -> list[dict[str, Any]]:
         times, sensors = _of_period(study, curves, period)
         if not sensors:
             continue
-        start, end = study["periods"][period]["spans"][0]
+        start, end = study.periods[period].spans[0]
         printed_periods.append(
             {
                 "key": period.replace("_", "-"),
@@ -108,13 +109,13 @@ class Panels:
     errors: Markup
 
 
-def headline(study: Mapping[str, Any], curves: Series) -> Panels | None:
+def headline(study: StudyDocument, curves: Series) -> Panels | None:
     """Curves of the first sensor over the last short period, for the head of the page.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     curves : Series
         Curves.
     """
@@ -127,17 +128,17 @@ def headline(study: Mapping[str, Any], curves: Series) -> Panels | None:
     return None
 
 
-def last_period(study: Mapping[str, Any], curves: Series) -> Panels | None:
+def last_period(study: StudyDocument, curves: Series) -> Panels | None:
     """Curves of the first sensor over the first part of the last period, where it is not the headline's.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     curves : Series
         Curves.
     """
-    periods = [key for key, period in study.get("periods", {}).items() if period.get("spans")]
+    periods = [key for key, period in study.periods.items() if period.spans]
     if not periods or periods[-1] in short_periods(study)[-1:]:
         return None
     times, sensors = _of_period(study, curves, periods[-1])
@@ -150,15 +151,13 @@ def last_period(study: Mapping[str, Any], curves: Series) -> Panels | None:
 
 
 def _of_period(
-    study: Mapping[str, Any], curves: Series, period: str
+    study: StudyDocument, curves: Series, period: str
 ) -> tuple[list[datetime], dict[str, Compared]]:
-    start, end = study["periods"][period]["spans"][0]
+    start, end = study.periods[period].spans[0]
     return compared_sensors(study, curves, curves.slice_of(start, end), _MAX_POINTS)
 
 
-def _single(
-    study: Mapping[str, Any], times: list[datetime], sensor: str, compared: Compared, key: str
-) -> Panels:
+def _single(study: StudyDocument, times: list[datetime], sensor: str, compared: Compared, key: str) -> Panels:
     """One sensor with the prediction interval."""
     upper, lower = html_figures.axes(340.0, 170.0), html_figures.axes(340.0, 110.0)
     main = replace(compared, models={compared.main: compared.models[compared.main]})
@@ -175,14 +174,14 @@ def _single(
     )
 
 
-def _named(study: Mapping[str, Any], compared: Compared) -> Compared:
+def _named(study: StudyDocument, compared: Compared) -> Compared:
     """The same with the names of models for readers."""
     models = {model_label(study, model): values for model, values in compared.models.items()}
     return replace(compared, models=models, main=model_label(study, compared.main))
 
 
 def _together(
-    study: Mapping[str, Any],
+    study: StudyDocument,
     times: list[datetime],
     unit: str,
     sensors: Mapping[str, Compared],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
@@ -10,56 +9,58 @@ from mascarin._io import units
 from mascarin.figures import text
 from mascarin.pages.study.data.labels import label_of
 from mascarin.pages.study.data.series import Series, moment
+from mascarin.study_document.analysis import QualityEntry
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Measured data"
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
     periods = []
-    for period in study.get("periods", {}).values():
-        spans = [text.span_of(moment(a), moment(b)) for a, b in period.get("spans", [])]
+    for period in study.periods.values():
+        spans = [text.span_of(moment(a), moment(b)) for a, b in period.spans]
         shown = "; ".join(spans[:4]) + (f"; and {len(spans) - 4} more spans" if len(spans) > 4 else "")
-        days = sum((moment(b) - moment(a)).total_seconds() for a, b in period.get("spans", [])) / 86400.0
+        days = sum((moment(b) - moment(a)).total_seconds() for a, b in period.spans) / 86400.0
         periods.append(
             {
-                "label": period.get("label", ""),
+                "label": period.label or "",
                 "spans": shown,
                 "days": text.significant(days),
-                "note": period.get("note", ""),
+                "note": period.note,
             }
         )
     sensors = []
-    for number, (key, info) in enumerate(study.get("sensor_info", {}).items(), start=1):
-        band = info.get("uncertainty")
-        unit = units.difference(str(info.get("unit", "degC")))
+    for number, (key, info) in enumerate(study.sensor_info.items(), start=1):
+        band = info.uncertainty
+        unit = units.difference(info.unit)
         sensors.append(
             {
                 "number": number,
                 "label": label_of(study, key),
-                "output": info.get("output", ""),
+                "output": info.output,
                 "band": f"±{text.significant(band)}\u00a0{unit}" if band else text.NONE,
             }
         )
-    if not periods and not sensors and "quality" not in study:
+    if not periods and not sensors and not study.states("quality"):
         return None
     return {
         "periods": periods,
         "sensors": sensors,
-        "examined": "quality" in study,
-        "quality": [_quality(entry) for entry in study.get("quality", [])],
+        "examined": study.states("quality"),
+        "quality": [_quality(entry) for entry in study.quality],
     }
 
 
-def _quality(entry: Mapping[str, Any]) -> dict[str, Any]:
+def _quality(entry: QualityEntry) -> dict[str, Any]:
     return {
-        "channel": entry.get("channel", ""),
-        "kind": text.plain_path(str(entry.get("kind", ""))),
-        "start": _time(entry.get("start")),
-        "end": _time(entry.get("end")),
-        "count": f"{int(entry.get('count', 0)):,}".replace(",", "\u202f"),
-        "detail": entry.get("detail", ""),
-        "masked": bool(entry.get("masked")),
+        "channel": entry.channel,
+        "kind": text.plain_path(entry.kind),
+        "start": _time(entry.start),
+        "end": _time(entry.end),
+        "count": f"{entry.count:,}".replace(",", "\u202f"),
+        "detail": entry.detail,
+        "masked": entry.masked,
     }
 
 

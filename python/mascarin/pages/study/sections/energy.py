@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -12,20 +11,22 @@ from mascarin.figures import text
 from mascarin.figures.svg.chart import Svg
 from mascarin.pages.study.data.labels import model_label
 from mascarin.pages.study.data.series import Series
+from mascarin.study_document.comparison import LedgerEntry
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Energy balance"
 _MJ_PER_KWH: Final = 3.6
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    ledger = study.get("ledger")
-    if not ledger:
+    ledger = study.ledger
+    if ledger.closure is None and not ledger.terms:
         return None
     return {
-        "closure": text.significant(ledger.get("closure"), 2),
+        "closure": text.significant(ledger.closure, 2),
         "drawing": ledger_bars(ledger),
-        "model": model_label(study, ledger.get("model")),
+        "model": model_label(study, ledger.model),
     }
 
 
@@ -44,28 +45,27 @@ _WIDE: Final = _Shape(680.0, 26.0, 480.0, 100.0, 0.0)
 _NARROW: Final = _Shape(520.0, 38.0, 260.0, 170.0, 15.0)
 
 
-def ledger_bars(ledger: Mapping[str, Any], *, narrow: bool = False) -> Markup | None:
+def ledger_bars(ledger: LedgerEntry, *, narrow: bool = False) -> Markup | None:
     """Terms of the energy balance as bars about zero.
 
     Parameters
     ----------
-    ledger : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Ledger`.
+    ledger : LedgerEntry
+        The energy balance.
     narrow : bool
         Names above the bars, for half a page.
     """
-    terms = [t for t in ledger.get("terms", []) if t.get("value") is not None]
+    terms = [(term.label, float(term.value)) for term in ledger.terms if term.value is not None]
     if not terms:
         return None
     shape = _NARROW if narrow else _WIDE
-    largest = max(abs(float(t["value"])) for t in terms) or 1.0
+    largest = max(abs(value) for _, value in terms) or 1.0
     height = 8.0 + shape.row * len(terms)
     svg = Svg(shape.width, height)
-    for row, term in enumerate(terms):
-        value = float(term["value"])
+    for row, (label, value) in enumerate(terms):
         y = 4.0 + shape.row * row
         end = shape.middle + shape.half * value / largest
-        svg.label(0.0, y + (11.0 if narrow else 16.0), str(term.get("label", "")), "layer-name")
+        svg.label(0.0, y + (11.0 if narrow else 16.0), label, "layer-name")
         svg.add(
             "rect",
             x=min(shape.middle, end),

@@ -9,39 +9,39 @@ from mascarin._io import units
 from mascarin.figures import text
 from mascarin.pages.study.data.labels import label_of, note_words, parameter_label, period_label, unit_of
 from mascarin.pages.study.data.series import Series
+from mascarin.study_document.comparison import CriterionEntry
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Sources of remaining error"
 #: Notes of this title are shown with the aims.
 MISSED = "Aims that are not met"
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Aims, and the parameters that would lead to them."""
-    aims, shortfall = study.get("aims", []), study.get("shortfall", {})
-    if not aims and not shortfall:
+    aims, shortfall = study.aims, study.shortfall
+    if not aims and not shortfall.model_fields_set:
         return None
-    sensors = list(shortfall.get("sd", {}))
-    changes = shortfall["steps"][-1]["changes"] if shortfall.get("steps") else {}
-    rows = [{"label": "fitted model", "change": "", "cells": _scatter(shortfall.get("sd", {}), sensors)}]
+    sensors = list(shortfall.sd)
+    changes = shortfall.steps[-1].changes if shortfall.steps else {}
+    rows = [{"label": "fitted model", "change": "", "cells": _scatter(shortfall.sd, sensors)}]
     rows += [
         {
-            "label": f"{'with changed' if number == 0 else 'and'} {parameter_label(study, step['path'])}",
-            "change": text.fixed(100.0 * changes[step["path"]], 0, sign=True),
-            "cells": _scatter(step["sd"], sensors),
+            "label": f"{'with changed' if number == 0 else 'and'} {parameter_label(study, step.path)}",
+            "change": text.fixed(100.0 * changes[step.path], 0, sign=True),
+            "cells": _scatter(step.sd, sensors),
         }
-        for number, step in enumerate(shortfall.get("steps", []))
+        for number, step in enumerate(shortfall.steps)
     ]
-    if "all_parameters" in shortfall:
-        label = f"all {shortfall['all_parameters']['parameters']} parameters"
-        rows.append(
-            {"label": label, "change": "", "cells": _scatter(shortfall["all_parameters"]["sd"], sensors)}
-        )
-    wished = _aimed_scatter(aims, str(shortfall.get("period", "")), sensors)
+    if shortfall.all_parameters is not None:
+        label = f"all {shortfall.all_parameters.parameters} parameters"
+        rows.append({"label": label, "change": "", "cells": _scatter(shortfall.all_parameters.sd, sensors)})
+    wished = _aimed_scatter(aims, shortfall.period, sensors)
     distinct_units = {units.difference(unit_of(study, sensor)) for sensor in sensors}
     common = distinct_units.pop() if len(distinct_units) == 1 else ""
     return {
         "aims": _aims(study, aims),
-        "met": sum(1 for aim in aims if aim.get("passed")),
+        "met": sum(1 for aim in aims if aim.passed),
         "judged": len(aims),
         "labels": [
             units.bracketed(label_of(study, s), "" if common else units.difference(unit_of(study, s)))
@@ -49,51 +49,41 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         ],
         "rows": rows if sensors else [],
         "wished": wished,
-        "named": bool(shortfall.get("steps")),
-        "notes": [
-            words
-            for note in study.get("notes", [])
-            if note.get("title") == MISSED
-            for words in note_words(study, note)
-        ],
-        "period": period_label(study, str(shortfall.get("period", ""))).lower(),
+        "named": bool(shortfall.steps),
+        "notes": [words for note in study.notes if note.title == MISSED for words in note_words(study, note)],
+        "period": period_label(study, shortfall.period).lower(),
         "unit": common,
     }
 
 
-def _scatter(sd: Mapping[str, float], sensors: Sequence[str]) -> list[str]:
+def _scatter(sd: Mapping[str, float | None], sensors: Sequence[str]) -> list[str]:
     return [text.fixed(sd.get(sensor), 3) for sensor in sensors]
 
 
-def _aimed_scatter(aims: Sequence[Mapping[str, Any]], period: str, sensors: Sequence[str]) -> list[str]:
+def _aimed_scatter(aims: Sequence[CriterionEntry], period: str, sensors: Sequence[str]) -> list[str]:
     """The standard deviation aimed at, by sensor; nothing where there is no such aim."""
-    wished = {
-        aim.get("sensor"): aim.get("limit")
-        for aim in aims
-        if aim.get("metric") == "sd" and aim.get("period") == period
-    }
+    wished = {aim.sensor: aim.limit for aim in aims if aim.metric == "sd" and aim.period == period}
     return [text.fixed(wished.get(sensor), 3) for sensor in sensors] if wished else []
 
 
-def _aims(study: Mapping[str, Any], aims: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _aims(study: StudyDocument, aims: Sequence[CriterionEntry]) -> dict[str, Any]:
     """Aims with what was reached in each period beside each other."""
-    periods = list(dict.fromkeys(str(aim.get("period", "")) for aim in aims))
+    periods = list(dict.fromkeys(aim.period for aim in aims))
     rows: dict[tuple[str, str, float], dict[str, Any]] = {}
     for aim in aims:
-        key = (str(aim.get("name", "")), str(aim.get("sensor", "")), float(aim.get("limit", 0.0)))
+        key = (aim.name, aim.sensor, float(aim.limit or 0.0))
         row = rows.setdefault(
             key,
             {
                 "label": label_of(study, key[1]) if key[1] else "",
                 "name": text.typeset(key[0]),
-                "limit": f"{text.beside_limit(key[2], key[2])[1]}\u00a0"
-                f"{units.difference(str(aim.get('unit', '')))}",
+                "limit": f"{text.beside_limit(key[2], key[2])[1]}\u00a0{units.difference(aim.unit)}",
                 "found": {},
             },
         )
-        row["found"][str(aim.get("period", ""))] = {
-            "text": text.beside_limit(aim.get("value"), aim.get("limit"))[0],
-            "passed": bool(aim.get("passed")),
+        row["found"][aim.period] = {
+            "text": text.beside_limit(aim.value, aim.limit)[0],
+            "passed": aim.passed,
         }
     return {
         "periods": [period_label(study, period) for period in periods],

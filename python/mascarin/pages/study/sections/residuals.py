@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -14,19 +13,21 @@ from mascarin.figures.svg.axes import Figure, hour_marks
 from mascarin.figures.svg.chart import Axis, Chart
 from mascarin.pages.study.data.labels import label_of, period_label, unit_of
 from mascarin.pages.study.data.series import Series
+from mascarin.study_document.analysis import DailyCycleEntry, ResidualEntry
+from mascarin.study_document.document import StudyDocument
 
 TITLE = "Analysis of the residuals"
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
     sensors = []
     drivers: list[str] = []
-    for sensor, entry in study.get("residuals", {}).items():
+    for sensor, entry in study.residuals.items():
         figures = residual_figures(study, sensor, entry)
         if figures:
-            period = entry.get("period")
-            drivers = drivers or sorted(entry.get("cross_correlation", {}))
+            period = entry.period
+            drivers = drivers or sorted(entry.cross_correlation)
             sensors.append(
                 {
                     "label": label_of(study, sensor),
@@ -41,83 +42,83 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     return {"sensors": sensors, "keys": keys, "rows": _statistics(study)}
 
 
-def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _statistics(study: StudyDocument) -> list[dict[str, Any]]:
     """Numbers of each residual: what its samples are worth, and its daily cycle."""
     rows = []
-    for sensor, entry in study.get("residuals", {}).items():
-        cycle = entry.get("daily_cycle") or {}
+    for sensor, entry in study.residuals.items():
+        cycle = entry.daily_cycle or DailyCycleEntry()
         unit = units.difference(unit_of(study, sensor))
         rows.append(
             {
                 "label": label_of(study, sensor),
-                "samples": text.significant(entry.get("n"), 5),
-                "effective": text.significant(entry.get("effective_n"), 2),
+                "samples": text.significant(entry.n, 5),
+                "effective": text.significant(entry.effective_n, 2),
                 "strongest": _strongest_link(entry),
-                "hours": text.percent(entry.get("hour_share"), 0),
+                "hours": text.percent(entry.hour_share, 0),
                 "amplitudes": [
-                    f"{text.fixed(cycle.get(f'{which}_amplitude'))}\u00a0{unit}"
-                    for which in ("measured", "simulated")
+                    f"{text.fixed(amplitude)}\u00a0{unit}"
+                    for amplitude in (cycle.measured_amplitude, cycle.simulated_amplitude)
                 ],
-                "peaks": [text.clock(cycle.get(f"{which}_peak")) for which in ("measured", "simulated")],
-                "delay": text.fixed(cycle.get("delay_minutes"), 0, sign=True),
+                "peaks": [text.clock(peak) for peak in (cycle.measured_peak, cycle.simulated_peak)],
+                "delay": text.fixed(cycle.delay_minutes, 0, sign=True),
             }
         )
     return rows
 
 
-def _strongest_link(entry: Mapping[str, Any]) -> str:
+def _strongest_link(entry: ResidualEntry) -> str:
     """The climate channel that the residual follows most, and how."""
-    links = {name: value for name, value in entry.get("correlation", {}).items() if value is not None}
+    links = {name: value for name, value in entry.correlation.items() if value is not None}
     if not links:
         return text.NONE
     name = max(links, key=lambda driver: abs(links[driver]))
-    lag = entry.get("correlation_lag", {}).get(name, 0.0)
+    lag = entry.correlation_lag.get(name, 0.0)
     later = f", {lag:.2g}\u00a0h later" if lag else ""
     return f"{name} {text.fixed(links[name], sign=True)}{later}"
 
 
-def residual_figures(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) -> list[Figure]:
+def residual_figures(study: StudyDocument, sensor: str, entry: ResidualEntry) -> list[Figure]:
     """Autocorrelation, cumulative periodogram, hour of day and correlations of one residual.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     sensor : str
         Name of the sensor.
-    entry : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Residuals`.
+    entry : ResidualEntry
+        Its statistics.
     """
     label = label_of(study, sensor)
     figures = []
-    if entry.get("acf"):
+    if entry.acf:
         figures.append(
             Figure("Autocorrelation", _acf(entry).markup(f"Autocorrelation of the residual, {label}"))
         )
-    if entry.get("periodogram_cumulative"):
+    if entry.periodogram_cumulative:
         markup = _periodogram(entry).markup(f"Cumulative periodogram of the residual, {label}")
         figures.append(Figure("Cumulative periodogram", markup))
-    if entry.get("hour_mean"):
+    if entry.hour_mean:
         markup = _by_hour(study, sensor, entry).markup(f"Residual by hour of day, {label}")
         figures.append(Figure("Hour of day", markup))
-    if entry.get("cross_correlation"):
+    if entry.cross_correlation:
         markup = _cross(entry).markup(f"Correlation of the residual with the climate over the lag, {label}")
         figures.append(Figure("Cross-correlation", markup))
     return figures
 
 
-def _cross(entry: Mapping[str, Any]) -> Chart:
+def _cross(entry: ResidualEntry) -> Chart:
     """Correlation with each channel over the time by which the residual comes later."""
-    lags = np.asarray(entry["cross_lags"], dtype=np.float64)
+    lags = np.asarray(entry.cross_lags, dtype=np.float64)
     y = Axis(-1.0, 1.0, (-1.0, -0.5, 0.0, 0.5, 1.0), ("−1", "−0.5", "0", "0.5", "1"))
     high = float(lags.max(initial=1.0))
     marks = [float(m) for m in np.arange(0.0, high + 1e-9, 2.0)]
     chart = _small(Axis(0.0, high, marks, [f"{m:g}" for m in marks]), y, "lag of the residual, h")
-    band = float(entry.get("correlation_band") or 0.0)
+    band = float(entry.correlation_band or 0.0)
     if band > 0.0:
         chart.bar(0.0, high, -band, band, "null-band")
-    for number, name in enumerate(sorted(entry["cross_correlation"])):
-        values = np.array([np.nan if v is None else v for v in entry["cross_correlation"][name]])
+    for number, name in enumerate(sorted(entry.cross_correlation)):
+        values = np.array([np.nan if v is None else v for v in entry.cross_correlation[name]])
         chart.curve(lags, values, f"d{number % 4}")
     return chart
 
@@ -126,9 +127,9 @@ def _small(x: Axis, y: Axis, x_label: str, y_label: str = "") -> Chart:
     return Chart(x, y, width=250.0, height=150.0, margin_left=34.0, x_label=x_label, y_label=y_label)
 
 
-def _acf(entry: Mapping[str, Any]) -> Chart:
-    stride = max(1, len(entry["acf"]) // 400)
-    lags, values = np.asarray(entry["acf_lags"])[::stride], np.asarray(entry["acf"])[::stride]
+def _acf(entry: ResidualEntry) -> Chart:
+    stride = max(1, len(entry.acf) // 400)
+    lags, values = np.asarray(entry.acf_lags)[::stride], np.asarray(entry.acf)[::stride]
     low = -1.0 if float(values.min()) < -0.5 else -0.5
     ticks = [t for t in (-1.0, -0.5, 0.0, 0.5, 1.0) if t >= low]
     y = Axis(low, 1.0, ticks, [text.fixed(t, 1) for t in ticks])
@@ -137,16 +138,16 @@ def _acf(entry: Mapping[str, Any]) -> Chart:
         float(m) for m in np.arange(0.0, high + 1e-9, 24.0 if high >= 48.0 else 12.0 if high >= 24.0 else 6.0)
     ]
     chart = _small(Axis(0.0, high, marks, [f"{m:g}" for m in marks]), y, "lag, h")
-    band = float(entry.get("acf_band", 0.0))
+    band = float(entry.acf_band or 0.0)
     if band > 0.0:
         chart.bar(0.0, high, -band, band, "null-band")
     chart.curve(lags, values, "error")
     return chart
 
 
-def _periodogram(entry: Mapping[str, Any]) -> Chart:
-    frequency = np.asarray(entry["periodogram_frequency"], dtype=np.float64)
-    cumulative = np.asarray(entry["periodogram_cumulative"], dtype=np.float64)
+def _periodogram(entry: ResidualEntry) -> Chart:
+    frequency = np.asarray(entry.periodogram_frequency, dtype=np.float64)
+    cumulative = np.asarray(entry.periodogram_cumulative, dtype=np.float64)
     y = Axis(0.0, 1.0, (0.0, 0.5, 1.0), ("0", "0.5", "1"))
     # Logarithmic: what happens in a day and slower is what matters.
     log_frequency = np.log10(np.maximum(frequency, 1e-3))
@@ -157,7 +158,7 @@ def _periodogram(entry: Mapping[str, Any]) -> Chart:
     # As many points as there are pixels, equally far apart on the logarithmic axis.
     _, samples = np.unique(np.round((log_frequency - low) / max(high - low, 1e-9) * 200.0), return_index=True)
     white = frequency[samples] / float(frequency.max())
-    band = float(entry.get("periodogram_band", 0.0))
+    band = float(entry.periodogram_band or 0.0)
     if band > 0.0:
         chart.band(
             log_frequency[samples], np.maximum(white - band, 0.0), np.minimum(white + band, 1.0), "null-band"
@@ -166,9 +167,9 @@ def _periodogram(entry: Mapping[str, Any]) -> Chart:
     return chart
 
 
-def _by_hour(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) -> Chart:
-    mean = np.asarray(entry["hour_mean"], dtype=np.float64)
-    sd = np.asarray(entry.get("hour_sd", np.zeros(len(mean))), dtype=np.float64)
+def _by_hour(study: StudyDocument, sensor: str, entry: ResidualEntry) -> Chart:
+    mean = np.asarray(entry.hour_mean, dtype=np.float64)
+    sd = np.asarray(entry.hour_sd or np.zeros(len(mean)), dtype=np.float64)
     hours = np.arange(len(mean), dtype=np.float64) + 0.5
     unit = units.difference(unit_of(study, sensor))
     y = Axis.over(mean - sd, mean + sd, count=4, around=0.0)

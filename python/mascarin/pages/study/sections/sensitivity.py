@@ -16,6 +16,14 @@ from mascarin.figures.svg.chart import Axis, Chart
 from mascarin.pages.study.data.labels import label_of, layout, parameter_label, unit_of
 from mascarin.pages.study.data.series import Array, Series
 from mascarin.pages.study.figures import html_figures
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import (
+    DaySharesEntry,
+    ParameterEntry,
+    PeakEntry,
+    ShareEntry,
+    SpectrumEntry,
+)
 
 TITLE = "Sensitivity analysis"
 _MAX_LISTED = 14
@@ -23,11 +31,13 @@ _MAX_LISTED = 14
 _MAX_NAMED = 8
 #: Lowest part of the variance that a spectrum shows.
 _MIN_POWER = 1e-4
+#: A parameter that was not calibrated.
+_DECLARED = ParameterEntry()
 
 
-def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    shares = study.get("sensitivity", {})
+    shares = study.sensitivity
     if not shares:
         return None
     paths = _strongest(shares)
@@ -36,140 +46,138 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         {
             "label": parameter_label(study, path),
             "path": path,
-            "identified": "fitted" in study.get("parameters", {}).get(path, {}),
+            "identified": study.parameters.get(path, _DECLARED).fitted is not None,
             "cells": [_share(shares[output].get(path), study, output) for output in outputs],
         }
         for path in paths
     ]
     return {
         "index": _index(study),
-        "design": study.get("sensitivity_design", []),
+        "design": study.sensitivity_design,
         "outputs": [label_of(study, output) for output in outputs],
         "rows": rows,
         "examined": len({path for entries in shares.values() for path in entries}),
-        "spectra": [_spectrum(study, key, entry) for key, entry in study.get("spectra", {}).items()],
-        "days": [day_shares(study, key, entry) for key, entry in study.get("day_shares", {}).items()],
+        "spectra": [_spectrum(study, key, entry) for key, entry in study.spectra.items()],
+        "days": [day_shares(study, key, entry) for key, entry in study.day_shares.items()],
         "day_keys": _day_keys(study),
         "rest": colors.REMAINDER,
         "influential": _influential(study, shares),
-        "reference": study.get("reference", {}).get("label", ""),
+        "reference": study.reference.label or "",
         "layout": layout(study, "influential"),
     }
 
 
-def _index(study: Mapping[str, Any]) -> str:
+def _index(study: StudyDocument) -> str:
     """Name of the index in the table."""
-    method = dict(row[:2] for row in study.get("sensitivity_design", [])).get("method", "")
+    method = dict(row[:2] for row in study.sensitivity_design).get("method", "")
     return "Relative squared elementary effect" if method == "morris" else "First-order index S1"
 
 
 def _influential(
-    study: Mapping[str, Any], shares: Mapping[str, Mapping[str, Any]]
+    study: StudyDocument, shares: Mapping[str, Mapping[str, ShareEntry]]
 ) -> list[dict[str, str | int]]:
     """The parameters that a publication names, and what became of them here."""
     largest: dict[str, tuple[float, str]] = {}
     for output, entries in shares.items():
         for path, entry in entries.items():
-            largest[path] = max(largest.get(path, (-1.0, "")), (float(entry.get("share", 0.0)), output))
+            largest[path] = max(largest.get(path, (-1.0, "")), (float(entry.share or 0.0), output))
     ranked = sorted(largest, key=lambda path: -largest[path][0])
-    lines = study.get("frequencies", {})
+    lines = study.frequencies
     return [
         {
-            "symbol": str(entry.get("symbol", "")),
-            "published": str(entry.get("frequency") or text.NONE),
-            "label": parameter_label(study, entry["parameter"]),
-            "path": entry["parameter"],
-            "frequency": str(lines.get(entry["parameter"], text.NONE)),
-            "share": text.percent(largest[entry["parameter"]][0]),
-            "sensor": label_of(study, largest[entry["parameter"]][1]),
-            "rank": ranked.index(entry["parameter"]) + 1,
+            "symbol": entry.symbol,
+            "published": str(entry.frequency or text.NONE),
+            "label": parameter_label(study, entry.parameter),
+            "path": entry.parameter,
+            "frequency": str(lines.get(entry.parameter, text.NONE)),
+            "share": text.percent(largest[entry.parameter][0]),
+            "sensor": label_of(study, largest[entry.parameter][1]),
+            "rank": ranked.index(entry.parameter) + 1,
         }
-        for entry in study.get("reference", {}).get("influential", [])
-        if entry.get("parameter") in largest
+        for entry in study.reference.influential
+        if entry.parameter in largest
     ]
 
 
-def _strongest(shares: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def _strongest(shares: Mapping[str, Mapping[str, ShareEntry]]) -> list[str]:
     largest: dict[str, float] = {}
     for entries in shares.values():
         for path, entry in entries.items():
-            largest[path] = max(largest.get(path, 0.0), float(entry.get("share", 0.0)))
+            largest[path] = max(largest.get(path, 0.0), float(entry.share or 0.0))
     return sorted(largest, key=lambda path: -largest[path])[:_MAX_LISTED]
 
 
-def _share(entry: Mapping[str, Any] | None, study: Mapping[str, Any], output: str) -> dict[str, Any]:
+def _share(entry: ShareEntry | None, study: StudyDocument, output: str) -> dict[str, Any]:
     if entry is None:
         return {"text": text.NONE, "depth": 0, "title": ""}
-    share = float(entry.get("share", 0.0))
+    share = float(entry.share or 0.0)
     unit = units.difference(unit_of(study, output))
     words = []
-    if "low" in entry and "high" in entry:
-        words.append(f"{text.percent(entry['low'])} to {text.percent(entry['high'])}")
-    if "effect" in entry:
-        words.append(f"effect {text.fixed(entry['effect'], sign=True)}\u00a0{unit}")
+    if entry.states("low") and entry.states("high"):
+        words.append(f"{text.percent(entry.low)} to {text.percent(entry.high)}")
+    if entry.states("effect"):
+        words.append(f"effect {text.fixed(entry.effect, sign=True)}\u00a0{unit}")
     shown = f"{100 * share:.0f}" if share >= 0.095 else f"{100 * share:.1f}"
     depth = 0 if share < 0.005 else min(6, 1 + int(share**0.5 * 7.0))
     return {"text": shown, "depth": depth, "title": "; ".join(words)}
 
 
-def _spectrum(study: Mapping[str, Any], key: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    peaks = sorted(list(entry.get("peaks", []))[:7], key=lambda p: -float(p["power"]))
+def _spectrum(study: StudyDocument, key: str, entry: SpectrumEntry) -> dict[str, Any]:
+    peaks = sorted(list(entry.peaks)[:7], key=lambda p: -p.power)
     return {
         "figure": draw_spectrum(study, key, entry),
         "peaks": [
             {
                 "number": number,
-                "frequency": text.significant(float(peak["frequency"]), 4),
-                "label": parameter_label(study, str(peak.get("path", ""))),
-                "share": text.percent(float(peak["power"])),
-                "harmonic": int(peak.get("harmonic", 1)),
+                "frequency": text.significant(float(peak.frequency), 4),
+                "label": parameter_label(study, peak.path),
+                "share": text.percent(float(peak.power)),
+                "harmonic": int(peak.harmonic),
             }
             for number, peak in enumerate(peaks, start=1)
         ],
     }
 
 
-def _looks(study: Mapping[str, Any]) -> dict[str, colors.Look]:
+def _looks(study: StudyDocument) -> dict[str, colors.Look]:
     """How each parameter is drawn that a figure over the day names."""
     shares = {
-        output: {
-            path: math.nan if e.get("share") is None else float(e["share"]) for path, e in entries.items()
-        }
-        for output, entries in study.get("sensitivity", {}).items()
+        output: {path: math.nan if e.share is None else float(e.share) for path, e in entries.items()}
+        for output, entries in study.sensitivity.items()
     }
     looks = colors.parameters(shares, _MAX_NAMED)
-    named = [p for entry in study.get("day_shares", {}).values() for p in entry.get("paths", [])[:_MAX_NAMED]]
+    named = [p for entry in study.day_shares.values() for p in entry.paths[:_MAX_NAMED]]
     for path in dict.fromkeys(named):
         looks.setdefault(path, colors.look(len(looks)))
     return looks
 
 
-def _day_keys(study: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+def _day_keys(study: StudyDocument) -> list[list[dict[str, Any]]]:
     looks = _looks(study)
     return [
         [
             {"color": looks[path].color, "round": looks[path].round, "label": parameter_label(study, path)}
-            for path in entry.get("paths", [])[:_MAX_NAMED]
+            for path in entry.paths[:_MAX_NAMED]
         ]
-        for entry in study.get("day_shares", {}).values()
+        for entry in study.day_shares.values()
     ]
 
 
-def draw_spectrum(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) -> Figure:
+def draw_spectrum(study: StudyDocument, sensor: str, entry: SpectrumEntry) -> Figure:
     """Spectrum of an output over the runs of the design, with the peaks named.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     sensor : str
         Name of the output.
-    entry : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Spectrum`.
+    entry : SpectrumEntry
+        The spectrum.
     """
-    frequency = np.asarray(entry.get("frequencies", []), dtype=np.float64)
-    power = np.asarray(entry.get("power", []), dtype=np.float64)
-    threshold = float(entry.get("threshold", 0.0))
+    frequency = np.asarray(entry.frequencies, dtype=np.float64)
+    power = np.asarray(entry.power, dtype=np.float64)
+    threshold = float(entry.threshold)
     floor = _MIN_POWER
     marks = [m for m in (1e-4, 1e-3, 1e-2, 1e-1, 1.0) if m >= floor]
     y = Axis(math.log10(floor), 0.25, [math.log10(m) for m in marks], [f"{100 * m:g}" for m in marks])
@@ -179,7 +187,7 @@ def draw_spectrum(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any
     _stems(chart, frequency, power, threshold)
     if threshold > floor:
         chart.level(math.log10(threshold), "threshold")
-    _name_peaks(chart, list(entry.get("peaks", []))[:7])
+    _name_peaks(chart, list(entry.peaks)[:7])
     label = label_of(study, sensor)
     return Figure(label, chart.markup(f"Spectrum of {label}", "spectrum"))
 
@@ -207,34 +215,34 @@ def _within(axis: Axis, high: float) -> tuple[list[float], list[str]]:
     return [t for t, _ in ticks], [n for _, n in ticks]
 
 
-def _name_peaks(chart: Chart, peaks: Sequence[Mapping[str, Any]]) -> None:
+def _name_peaks(chart: Chart, peaks: Sequence[PeakEntry]) -> None:
     """Number the peaks; the key below names them, highest first."""
     taken: list[tuple[float, float]] = []
-    for number, peak in enumerate(sorted(peaks, key=lambda p: -float(p["power"])), start=1):
-        x = chart.px(float(peak["frequency"]))
-        y = chart.py(math.log10(max(float(peak["power"]), _MIN_POWER))) - 4.0
+    for number, peak in enumerate(sorted(peaks, key=lambda p: -p.power), start=1):
+        x = chart.px(float(peak.frequency))
+        y = chart.py(math.log10(max(float(peak.power), _MIN_POWER))) - 4.0
         while any(abs(x - a) < 8.0 and abs(y - b) < 9.0 for a, b in taken) and y > 14.0:
             y -= 9.0
         taken.append((x, y))
         chart.svg.label(x, y, str(number), "peak", "middle")
 
 
-def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) -> Figure:
+def day_shares(study: StudyDocument, sensor: str, entry: DaySharesEntry) -> Figure:
     """First-order indices of the most influential parameters over the day, stacked.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     sensor : str
         Name of the output.
-    entry : mapping
-        As in :class:`~mascarin.pages.study.data.schema.DayShares`.
+    entry : DaySharesEntry
+        Indices over the day.
     """
-    hours = np.asarray(entry.get("hours", []), dtype=np.float64)
-    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:_MAX_NAMED]
+    hours = np.asarray(entry.hours, dtype=np.float64)
+    index = np.asarray(entry.share, dtype=np.float64).reshape(-1, len(hours))[:_MAX_NAMED]
     looks = _looks(study)
-    named = [("", looks[path]) for path in entry.get("paths", [])[: len(index)]]
+    named = [("", looks[path]) for path in entry.paths[: len(index)]]
     ax = html_figures.axes(340.0, 190.0, bottom=32.0)
     indices_over_time(ax, hours, index, named, remainder="")
     time_axis(ax, hours=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, Final
 
 from markupsafe import Markup
@@ -20,6 +19,9 @@ from mascarin.pages.study.data.main_results import coverage, judged_criteria, sc
 from mascarin.pages.study.data.series import Series
 from mascarin.pages.study.sections import curves
 from mascarin.pages.study.sections.energy import ledger_bars
+from mascarin.study_document.comparison import CriterionEntry
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import ParameterEntry
 
 TITLE = "Summary"
 #: Parameters that are listed here; the appendix has all.
@@ -34,7 +36,7 @@ _BAR: Final = 90.0
 _BARS: Final = 8
 
 
-def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+def content(study: StudyDocument, series: Series) -> dict[str, Any] | None:
     """Values of the template; None where the study has neither criteria nor parameters."""
     matrix, listed = criteria_matrix(study), _parameters(study)
     if matrix is None and not listed:
@@ -47,17 +49,17 @@ def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
         "parameter_count": len(_calibrated(study)),
         "blind": curves.last_period(study, series),
         "sensitivity": _sensitivity(study),
-        "energy": ledger_bars(study["ledger"], narrow=True) if study.get("ledger") else None,
+        "energy": ledger_bars(study.ledger, narrow=True),
     }
 
 
-def verdict(study: Mapping[str, Any]) -> list[str]:
+def verdict(study: StudyDocument) -> list[str]:
     """What was reached, in two sentences.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
 
     Returns
     -------
@@ -67,11 +69,11 @@ def verdict(study: Mapping[str, Any]) -> list[str]:
     return [sentence for sentence in (_criteria_words(study), _trust_words(study)) if sentence]
 
 
-def _criteria_words(study: Mapping[str, Any]) -> str:
+def _criteria_words(study: StudyDocument) -> str:
     judged = judged_criteria(study)
     if not judged:
         return ""
-    met = sum(1 for criterion in judged if criterion.get("passed"))
+    met = sum(1 for criterion in judged if criterion.passed)
     total = len(judged)
     share = f"meets {'all ' if met == total else f'{met} of '}{total} criteria"
     if met == 0:
@@ -80,7 +82,7 @@ def _criteria_words(study: Mapping[str, Any]) -> str:
     return f"{subject} {share}{_scatter_words(study)}."
 
 
-def _scatter_words(study: Mapping[str, Any]) -> str:
+def _scatter_words(study: StudyDocument) -> str:
     """The standard deviation of the error in the last judged period."""
     scattered = scatter(study)
     if scattered is None:
@@ -94,9 +96,9 @@ def _scatter_words(study: Mapping[str, Any]) -> str:
     )
 
 
-def _trust_words(study: Mapping[str, Any]) -> str:
+def _trust_words(study: StudyDocument) -> str:
     """How far bands and intervals can be trusted."""
-    contradictions = len(study.get("contradictions", []))
+    contradictions = len(study.contradictions)
     covered = coverage(study)
     parts = []
     if covered is not None:
@@ -108,7 +110,7 @@ def _trust_words(study: Mapping[str, Any]) -> str:
     if contradictions:
         times = "once" if contradictions == 1 else f"{contradictions} times"
         parts.append(f"it contradicts its data or what is known {times} (head of this page)")
-    elif study.get("parameters"):
+    elif study.parameters:
         parts.append("no contradiction with the data of its identification was seen")
     if not parts:
         return ""
@@ -116,31 +118,27 @@ def _trust_words(study: Mapping[str, Any]) -> str:
     return f"{sentence[0].upper()}{sentence[1:]}."
 
 
-def next_steps(study: Mapping[str, Any]) -> list[str]:
+def next_steps(study: StudyDocument) -> list[str]:
     """What to do next, the most important first.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
     steps = [*_causes(study), *_bounds(study), *_largest_miss(study), *_weak_parameter(study)]
     return steps[:_STEPS]
 
 
-def _causes(study: Mapping[str, Any]) -> list[str]:
+def _causes(study: StudyDocument) -> list[str]:
     """The first causes of the diagnosis; what was left out of the data for its defects is none any more."""
-    causes = [c for c in study.get("diagnosis", {}).get("causes", []) if c.get("group") != "data"]
-    return [" ".join(note_words(study, {"text": cause.get("text", "")})) for cause in causes[:2]]
+    causes = [c for c in study.diagnosis.causes if c.group != "data"]
+    return [" ".join(note_words(study, cause)) for cause in causes[:2]]
 
 
-def _bounds(study: Mapping[str, Any]) -> list[str]:
+def _bounds(study: StudyDocument) -> list[str]:
     """Parameters whose estimate is the end of their range."""
-    names = [
-        parameter_label(study, path)
-        for path, entry in study.get("parameters", {}).items()
-        if entry.get("at_bound")
-    ]
+    names = [parameter_label(study, path) for path, entry in study.parameters.items() if entry.at_bound]
     if not names:
         return []
     further = f" and {len(names) - 1} more" if len(names) > 1 else ""
@@ -151,57 +149,57 @@ def _bounds(study: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _largest_miss(study: Mapping[str, Any]) -> list[str]:
+def _largest_miss(study: StudyDocument) -> list[str]:
     """The criterion that is missed by most."""
-    missed = [c for c in judged_criteria(study) if not c.get("passed") and c.get("value") is not None]
+    missed = [c for c in judged_criteria(study) if not c.passed and c.value is not None]
     if not missed:
         return []
 
-    def ratio(criterion: Mapping[str, Any]) -> float:
-        limit = abs(float(criterion.get("limit") or 0.0))
-        return abs(float(criterion["value"])) / limit if limit else 0.0
+    def ratio(criterion: CriterionEntry) -> float:
+        limit = abs(criterion.limit or 0.0)
+        return abs(criterion.value or 0.0) / limit if limit else 0.0
 
     worst = max(missed, key=ratio)
-    value, limit = text.beside_limit(worst["value"], worst.get("limit"))
-    unit = units.difference(str(worst.get("unit", "")))
-    sensor = f"{label_of(study, str(worst['sensor']))}, " if worst.get("sensor") else ""
-    period = period_label(study, str(worst.get("period", ""))).lower()
+    value, limit = text.beside_limit(worst.value, worst.limit)
+    unit = units.difference(worst.unit)
+    sensor = f"{label_of(study, worst.sensor)}, " if worst.sensor else ""
+    period = period_label(study, worst.period).lower()
     return [
-        f"Look first at {sensor}{period}: {worst.get('name', '')} is missed by most ({value} {unit}, limit "
+        f"Look first at {sensor}{period}: {worst.name} is missed by most ({value} {unit}, limit "
         f"{limit} {unit})."
     ]
 
 
-def _weak_parameter(study: Mapping[str, Any]) -> list[str]:
+def _weak_parameter(study: StudyDocument) -> list[str]:
     """The parameter whose change would reduce the remaining error most."""
-    steps = study.get("shortfall", {}).get("steps", [])
+    steps = study.shortfall.steps
     if not steps:
         return []
-    name = parameter_label(study, str(steps[0].get("path", "")))
+    name = parameter_label(study, steps[0].path)
     return [f"Determine {name} by a measurement of its own: it would reduce the remaining error most."]
 
 
-def criteria_matrix(study: Mapping[str, Any]) -> dict[str, Any] | None:
+def criteria_matrix(study: StudyDocument) -> dict[str, Any] | None:
     """Criteria and periods as rows, sensors as columns.
 
     Parameters
     ----------
-    study : mapping
-        As in :class:`~mascarin.pages.study.data.schema.Study`.
+    study : StudyDocument
+        The results.
     """
     judged = judged_criteria(study)
     if not judged:
         return None
-    sensors = list(dict.fromkeys(str(c.get("sensor", "")) for c in judged))
+    sensors = list(dict.fromkeys(c.sensor for c in judged))
     rows: dict[tuple[str, str], dict[str, Any]] = {}
     for criterion in judged:
-        key = (str(criterion.get("name", "")), str(criterion.get("period", "")))
+        key = (criterion.name, criterion.period)
         row = rows.setdefault(key, {"name": text.typeset(key[0]), "period": key[1], "cells": {}})
-        value, _ = text.beside_limit(criterion.get("value"), criterion.get("limit"))
-        unit = units.difference(str(criterion.get("unit", "")))
-        row["cells"][str(criterion.get("sensor", ""))] = {
+        value, _ = text.beside_limit(criterion.value, criterion.limit)
+        unit = units.difference(criterion.unit)
+        row["cells"][criterion.sensor] = {
             "text": f"{value} {unit}".strip(),
-            "passed": bool(criterion.get("passed")),
+            "passed": criterion.passed,
         }
     return {
         "sensors": [label_of(study, sensor) if sensor else "all" for sensor in sensors],
@@ -213,26 +211,26 @@ def criteria_matrix(study: Mapping[str, Any]) -> dict[str, Any] | None:
             }
             for row in rows.values()
         ],
-        "met": sum(1 for c in judged if c.get("passed")),
+        "met": sum(1 for c in judged if c.passed),
         "total": len(judged),
     }
 
 
-def _calibrated(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    return {path: entry for path, entry in study.get("parameters", {}).items() if "fitted" in entry}
+def _calibrated(study: StudyDocument) -> dict[str, ParameterEntry]:
+    return {path: entry for path, entry in study.parameters.items() if entry.fitted is not None}
 
 
-def _largest_shares(study: Mapping[str, Any]) -> dict[str, tuple[float, str]]:
+def _largest_shares(study: StudyDocument) -> dict[str, tuple[float, str]]:
     """Largest index of each parameter, and the sensor that has it."""
     largest: dict[str, tuple[float, str]] = {}
-    for sensor, entries in study.get("sensitivity", {}).items():
+    for sensor, entries in study.sensitivity.items():
         for path, entry in entries.items():
-            share = float(entry.get("share") or 0.0)
+            share = float(entry.share or 0.0)
             largest[path] = max(largest.get(path, (-1.0, "")), (share, str(sensor)))
     return largest
 
 
-def _parameters(study: Mapping[str, Any]) -> list[dict[str, str]]:
+def _parameters(study: StudyDocument) -> list[dict[str, str]]:
     """The calibrated parameters that matter most, with their intervals."""
     shares = _largest_shares(study)
     entries = _calibrated(study)
@@ -240,21 +238,21 @@ def _parameters(study: Mapping[str, Any]) -> list[dict[str, str]]:
     rows = []
     for path in ordered:
         entry = entries[path]
-        fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
+        fitted, interval = text.with_interval(entry.fitted, entry.low, entry.high)
         rows.append(
             {
                 "label": parameter_label(study, path),
                 "path": path,
-                "unit": units.shown(str(entry.get("unit", ""))),
-                "nominal": text.significant(entry.get("nominal")),
+                "unit": units.shown(entry.unit or ""),
+                "nominal": text.significant(entry.nominal),
                 "fitted": fitted,
-                "interval": "not stated" if entry.get("stated") is False else interval,
+                "interval": "not stated" if not entry.stated else interval,
             }
         )
     return rows
 
 
-def _sensitivity(study: Mapping[str, Any]) -> Markup | None:
+def _sensitivity(study: StudyDocument) -> Markup | None:
     """Bars of the largest indices."""
     shares = _largest_shares(study)
     if not shares:

@@ -2,59 +2,70 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
+
+from mascarin.study_document.building import (
+    AssumptionEntry,
+    BuildingEntry,
+    ConstructionEntry,
+    LayerEntry,
+    ProbeEntry,
+    SurfaceEntry,
+    WindowEntry,
+    ZoneEntry,
+)
 
 if TYPE_CHECKING:
     from mascarin.building import Building
 
+#: Properties of a material that are shown.
+_PROPERTIES: Final = (
+    "conductivity",
+    "density",
+    "specific_heat",
+    "resistance",
+    "latent_heat",
+    "melting_temperature",
+)
 
-def building_entry(building: Building) -> dict[str, Any]:
+
+def building_entry(building: Building) -> BuildingEntry:
     """Site, zones, constructions, surfaces and modeling choices."""
     site = building.site
-    return {
-        "name": building.name,
-        "site": [
+    return BuildingEntry(
+        name=building.name,
+        site=[
             ["latitude", f"{float(site.latitude):g} deg"],
             ["longitude", f"{float(site.longitude):g} deg"],
             ["altitude", f"{float(site.altitude):g} m"],
             ["time zone", str(site.timezone)],
         ],
-        "zones": [
-            {"name": name, "volume": float(zone.volume or 0.0)} for name, zone in building.zones.items()
+        zones=[
+            ZoneEntry(name=name, volume=float(zone.volume or 0.0)) for name, zone in building.zones.items()
         ],
-        "constructions": [
-            {"name": name, "layers": [_layer(building, layer) for layer in construction.layers]}
+        constructions=[
+            ConstructionEntry(name=name, layers=[_layer(building, layer) for layer in construction.layers])
             for name, construction in building.constructions.items()
         ],
-        "surfaces": [_surface(name, surface) for name, surface in building.surfaces.items()],
-        "windows": [{"name": name, "surface": window.surface} for name, window in building.windows.items()],
-        "doors": [list(path.between) for path in building.air_paths.values() if path.door is not None],
-        "probes": [
-            {"name": name, "surface": sensor.surface, "depth": float(sensor.depth)}
+        surfaces=[_surface(name, surface) for name, surface in building.surfaces.items()],
+        windows=[WindowEntry(name=name, surface=window.surface) for name, window in building.windows.items()],
+        doors=[list(path.between) for path in building.air_paths.values() if path.door is not None],
+        probes=[
+            ProbeEntry(name=name, surface=sensor.surface, depth=float(sensor.depth))
             for name, sensor in building.sensors.items()
         ],
-        "choices": [["sky", site.sky.kind], ["diffuse radiation", site.diffuse]]
+        choices=[["sky", site.sky.kind], ["diffuse radiation", site.diffuse]]
         + [[f"long-wave exchange in {name}", zone.longwave.kind] for name, zone in building.zones.items()],
-    }
+    )
 
 
-def _layer(building: Building, layer: Any) -> dict[str, Any]:
+def _layer(building: Building, layer: Any) -> LayerEntry:
     material = building.materials[layer.material]
-    entry: dict[str, Any] = {"name": layer.name, "material": layer.material, "kind": material.kind}
+    stated = {key: getattr(material, key, None) for key in _PROPERTIES}
+    properties = {key: _one_or_two(value) for key, value in stated.items() if value is not None}
     if layer.thickness is not None:
-        entry["thickness"] = float(layer.thickness)
-    for key in (
-        "conductivity",
-        "density",
-        "specific_heat",
-        "resistance",
-        "latent_heat",
-        "melting_temperature",
-    ):
-        value = getattr(material, key, None)
-        if value is not None:
-            entry[key] = _one_or_two(value)
-    return entry
+        properties["thickness"] = float(layer.thickness)
+    return LayerEntry(name=layer.name, material=layer.material, kind=material.kind, **properties)
 
 
 def _one_or_two(value: Any) -> float | list[float]:
@@ -63,22 +74,21 @@ def _one_or_two(value: Any) -> float | list[float]:
     return float(value)
 
 
-def _surface(name: str, surface: Any) -> dict[str, Any]:
-    entry: dict[str, Any] = {
-        "name": name,
-        "construction": surface.construction,
-        "area": float(surface.area),
-        "tilt": float(surface.tilt),
-        "azimuth": float(surface.azimuth),
-        "outside": _facing(surface.outside),
-        "inside": _facing(surface.inside),
-    }
+def _surface(name: str, surface: Any) -> SurfaceEntry:
+    films = {"film_outside": surface.outside.convection, "film_inside": surface.inside.convection}
+    stated: dict[str, Any] = {key: film.kind for key, film in films.items() if film is not None}
     if surface.vertices is not None:
-        entry["vertices"] = [[float(x) for x in vertex] for vertex in surface.vertices]
-    for key, side in (("film_outside", surface.outside), ("film_inside", surface.inside)):
-        if side.convection is not None:
-            entry[key] = side.convection.kind
-    return entry
+        stated["vertices"] = [[float(x) for x in vertex] for vertex in surface.vertices]
+    return SurfaceEntry(
+        name=name,
+        construction=surface.construction,
+        area=float(surface.area),
+        tilt=float(surface.tilt),
+        azimuth=float(surface.azimuth),
+        outside=_facing(surface.outside),
+        inside=_facing(surface.inside),
+        **stated,
+    )
 
 
 def _facing(side: Any) -> str:
@@ -90,18 +100,18 @@ def _facing(side: Any) -> str:
     return "ground" if side.ground is not None else str(side.faces)
 
 
-def assumptions(building: Building) -> list[dict[str, Any]]:
+def assumptions(building: Building) -> list[AssumptionEntry]:
     """Assumed values with their ranges and sources."""
     return [
-        {
-            "path": p.path,
-            "value": p.value,
-            "unit": p.unit,
-            "low": p.low,
-            "high": p.high,
-            "source": p.source or "",
-            "assumed": True,
-        }
+        AssumptionEntry(
+            path=p.path,
+            value=p.value,
+            unit=p.unit,
+            low=p.low,
+            high=p.high,
+            source=p.source or "",
+            assumed=True,
+        )
         for p in building.parameters()
         if p.assumed
     ]

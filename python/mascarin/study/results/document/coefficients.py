@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import CoefficientsEntry
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -24,7 +26,7 @@ _LAW: Final = re.compile(r"surfaces\.(?P<surface>[^.]+)\.(?P<side>[^.]+)\.convec
 _PERIOD: Final = "identification"
 
 
-def coefficients(study: StudyContext, models: Mapping[str, ModelRun], paths: Iterable[str]) -> dict[str, Any]:
+def coefficients(study: StudyContext, models: Mapping[str, ModelRun], paths: Iterable[str]) -> StudyDocument:
     """Effective mean coefficient of each convection law that has one of some parameters.
 
     It is the constant that exchanges as much heat: the mean of the heat flux without its sign, over the mean
@@ -42,18 +44,18 @@ def coefficients(study: StudyContext, models: Mapping[str, ModelRun], paths: Ite
 
     Returns
     -------
-    dict
-        ``coefficients``: ``period``, ``unit`` and ``models``, model -> path of the law -> coefficient;
-        nothing where no parameter belongs to a convection law.
+    StudyDocument
+        ``coefficients``; nothing where no parameter belongs to a convection law.
     """
     # The form of the model that is used may have parameters that the building as described does not have.
     buildings = [*(run.simulation.building for run in models.values()), study.building]
     laws = {law[0]: _members(buildings, path) for path in paths if (law := _LAW.match(path))}
     if not laws:
-        return {}
-    content = {"period": _PERIOD, "unit": "W/(m2 K)"}
+        return StudyDocument()
     means = {name: _means(study, run, laws) for name, run in models.items()}
-    return {"coefficients": {**content, "models": means}} if any(means.values()) else {}
+    if not any(means.values()):
+        return StudyDocument()
+    return StudyDocument(coefficients=CoefficientsEntry(period=_PERIOD, unit="W/(m2 K)", models=means))
 
 
 def _members(buildings: Iterable[Building], path: str) -> list[str]:

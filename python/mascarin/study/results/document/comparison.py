@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from mascarin.study.steps.findings import scores_of
+from mascarin.study.steps.findings import metric_values, scores_of
+from mascarin.study_document.comparison import (
+    CriterionEntry,
+    LedgerEntry,
+    LedgerTerm,
+    ModelEntry,
+    PeriodScores,
+)
+from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
@@ -31,7 +39,7 @@ FLOW_LABELS: Final = {
 }
 
 
-def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdict]]) -> dict[str, Any]:
+def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdict]]) -> StudyDocument:
     """Metrics, criteria, warnings of the runs, and the energy balance of the fitted model if there is one.
 
     Parameters
@@ -42,15 +50,17 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
         Criteria by model.
     """
     main = "fitted" if "fitted" in models else "nominal"
-    return {
-        "models": {name: {"label": run.label, "note": run.note} for name, run in models.items()},
-        "sensors": _scores(models, main),
-        "criteria": _criteria(verdicts),
-        "start": models[main].results.provenance.start,
-        "ledger": _ledger(models[main]),
-        "warnings": run_warnings(models),
-        "sound": all(run.results.sound for run in models.values()),
-    }
+    return StudyDocument(
+        models={name: ModelEntry(label=run.label, note=run.note) for name, run in models.items()},
+        sensors=_scores(models, main),
+        criteria=[
+            criterion_entry(verdict, model) for model, judged in verdicts.items() for verdict in judged
+        ],
+        start=models[main].results.provenance.start,
+        ledger=_ledger(models[main]),
+        warnings=[*run_warnings(models)],
+        sound=all(run.results.sound for run in models.values()),
+    )
 
 
 def run_warnings(models: Mapping[str, ModelRun]) -> list[RunWarning]:
@@ -62,29 +72,27 @@ def run_warnings(models: Mapping[str, ModelRun]) -> list[RunWarning]:
     return [line.after(", ".join(names)) for line, names in models_by_line.items()]
 
 
-def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:
+def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, PeriodScores]]:
     return {
         sensor: {
-            period: {**by_model[main].to_dict(), **{m: metrics.to_dict() for m, metrics in by_model.items()}}
+            period: PeriodScores(
+                **by_model[main].to_dict(), **{m: metric_values(values) for m, values in by_model.items()}
+            )
             for period, by_model in periods.items()
         }
         for sensor, periods in scores_of(models).items()
     }
 
 
-def _criteria(judged: Mapping[str, list[Verdict]]) -> list[dict[str, Any]]:
-    return [
-        {**verdict.to_dict(), "model": model} for model, verdicts in judged.items() for verdict in verdicts
-    ]
+def criterion_entry(verdict: Verdict, model: str) -> CriterionEntry:
+    """A criterion of a model, and whether it is met."""
+    return CriterionEntry.model_validate({**verdict.to_dict(), "model": model})
 
 
-def _ledger(run: ModelRun) -> dict[str, Any]:
+def _ledger(run: ModelRun) -> LedgerEntry:
     energy = run.results.energy
     terms = [
-        {"label": FLOW_LABELS[flow], "value": joule / 1e6} for flow, joule in energy.into.items() if joule
+        LedgerTerm(label=FLOW_LABELS[flow], value=joule / 1e6) for flow, joule in energy.into.items() if joule
     ]
-    return {
-        **energy.to_dict(),
-        "model": run.label,
-        "terms": [*terms, {"label": "increase of the stored heat", "value": -energy.stored / 1e6}],
-    }
+    stored = LedgerTerm(label="increase of the stored heat", value=-energy.stored / 1e6)
+    return LedgerEntry.model_validate({**energy.to_dict(), "model": run.label, "terms": [*terms, stored]})

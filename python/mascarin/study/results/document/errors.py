@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,6 +9,9 @@ import numpy as np
 from mascarin._io.units import difference
 from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
 from mascarin.study.steps.error_model import stated_sizes, statement
+from mascarin.study_document.analysis import TableEntry
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import FormEntry, ModelErrorEntry, SensorErrorEntry
 
 if TYPE_CHECKING:
     from mascarin.study.context.context import StudyContext
@@ -21,18 +23,18 @@ _NAMED: Final = 0.05
 _REACHED: Final = 0.98
 
 
-def error_entries(study: StudyContext, combination: Combination | None) -> dict[str, Any]:
+def error_entries(study: StudyContext, combination: Combination | None) -> StudyDocument:
     """Weights of the forms, estimated errors of the sensors, and sizes of the errors of the model."""
     if combination is None:
-        return {}
-    return {
-        "alternatives": _forms(combination),
-        "sensor_errors": _of_sensors(study, combination),
-        "model_errors": _of_model(study, combination),
-    }
+        return StudyDocument()
+    return StudyDocument(
+        alternatives=_forms(combination),
+        sensor_errors=_of_sensors(study, combination),
+        model_errors=_of_model(study, combination),
+    )
 
 
-def error_tables(study: StudyContext, combination: Combination | None) -> list[dict[str, Any]]:
+def error_tables(study: StudyContext, combination: Combination | None) -> list[TableEntry]:
     """The same as tables of the report."""
     if combination is None:
         return []
@@ -46,11 +48,11 @@ def error_words(study: StudyContext, combination: Combination | None) -> list[st
         return []
     words = [] if len(combination.forms) == 1 else [_words_of_forms(combination)]
     for name, entry in _of_model(study, combination).items():
-        full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
+        full = [part for part in _PARTS if getattr(entry, part) >= _REACHED * entry.limit]
         unit = difference(_unit(study, name))
         words += [
             f"{_label(study, name)}: the error of the model ({_PARTS[part]}) reaches the limit of "
-            f"{entry['limit']:.2g} {unit}; the model misses more than an error of the model may absorb."
+            f"{entry.limit:.2g} {unit}; the model misses more than an error of the model may absorb."
             for part in full
         ]
     return words
@@ -84,20 +86,20 @@ def _words_of_forms(combination: Combination) -> str:
     return " ".join(said)
 
 
-def _forms(combination: Combination) -> list[dict[str, Any]]:
+def _forms(combination: Combination) -> list[FormEntry]:
     return [
-        {
-            "label": form.label,
-            "choice": dict(form.choice),
-            "free_numbers": form.complexity[0],
-            "weight": float(f"{weight:.6g}"),
-            "left_out": [float(f"{value:.6g}") for value in form.joint.by_day],
-        }
+        FormEntry(
+            label=form.label,
+            choice=dict(form.choice),
+            free_numbers=form.complexity[0],
+            weight=float(f"{weight:.6g}"),
+            left_out=[float(f"{value:.6g}") for value in form.joint.by_day],
+        )
         for form, weight in zip(combination.forms, combination.weights, strict=True)
     ]
 
 
-def _of_sensors(study: StudyContext, combination: Combination) -> dict[str, dict[str, float]]:
+def _of_sensors(study: StudyContext, combination: Combination) -> dict[str, SensorErrorEntry]:
     """Estimate and standard uncertainty of each error, with that stated."""
     joint, count = combination.forms[0].joint, combination.forms[0].fit.x.size
     stated = stated_sizes(study)
@@ -106,11 +108,11 @@ def _of_sensors(study: StudyContext, combination: Combination) -> dict[str, dict
     for k, name in enumerate(joint.names):
         if name in stated:
             size = stated[name]
-            entries[name] = {
-                "estimate": float(f"{size * joint.mean[count + k]:.6g}"),
-                "standard_uncertainty": float(f"{size * sd[count + k]:.6g}"),
-                "stated": size,
-            }
+            entries[name] = SensorErrorEntry(
+                estimate=float(f"{size * joint.mean[count + k]:.6g}"),
+                standard_uncertainty=float(f"{size * sd[count + k]:.6g}"),
+                stated=size,
+            )
     return entries
 
 
@@ -122,7 +124,7 @@ _PARTS: Final = {
 }
 
 
-def _of_model(study: StudyContext, combination: Combination) -> dict[str, dict[str, float]]:
+def _of_model(study: StudyContext, combination: Combination) -> dict[str, ModelErrorEntry]:
     best = combination.forms[0]
     sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
     columns = {
@@ -134,16 +136,16 @@ def _of_model(study: StudyContext, combination: Combination) -> dict[str, dict[s
     }
     names = [sensor.name for sensor in best.fit.problem.sensors]
     return {
-        name: {what: float(f"{values[s]:.6g}") for what, values in columns.items()}
+        name: ModelErrorEntry(**{what: float(f"{values[s]:.6g}") for what, values in columns.items()})
         for s, name in enumerate(names)
     }
 
 
-def _table_of_forms(combination: Combination) -> dict[str, Any]:
+def _table_of_forms(combination: Combination) -> TableEntry:
     best = float(combination.forms[0].joint.by_day.sum())
-    return {
-        "title": "Forms of the model",
-        "caption": (
+    return TableEntry(
+        title="Forms of the model",
+        caption=(
             "Each form is calibrated; each day of the identification is predicted from the other days. The "
             "density is the logarithm of the probability density of the days left out, relative to the first "
             "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those "
@@ -153,8 +155,8 @@ def _table_of_forms(combination: Combination) -> dict[str, Any]:
             f"within {LARGEST_LOSS:g} of the highest, or is a simpler one that predicts each day as well "
             f"(within {SMALL_ON_A_DAY:g})."
         ),
-        "columns": ["form", "free numbers", "weight [%]", "density of the days left out"],
-        "rows": [
+        columns=["form", "free numbers", "weight [%]", "density of the days left out"],
+        rows=[
             [
                 form.label,
                 form.complexity[0],
@@ -163,34 +165,32 @@ def _table_of_forms(combination: Combination) -> dict[str, Any]:
             ]
             for form, weight in zip(combination.forms, combination.weights, strict=True)
         ],
-        "section": "parameters",
-    }
+        section="parameters",
+    )
 
 
-def _table_of_sensors(study: StudyContext, combination: Combination) -> dict[str, Any]:
-    return {
-        "title": "Errors of the sensors",
-        "caption": (
+def _table_of_sensors(study: StudyContext, combination: Combination) -> TableEntry:
+    return TableEntry(
+        title="Errors of the sensors",
+        caption=(
             "Estimated together with the parameters: what the readings of a sensor have in common beside the "
             "model, with its standard uncertainty, beside the standard uncertainty that the study states. "
             "A gain is a ratio."
         ),
-        "columns": ["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
-        "rows": [
-            _row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, combination).items()
-        ],
-        "uncertainty": {"estimate": "standard uncertainty"},
-        "section": "parameters",
-    }
+        columns=["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
+        rows=[_row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, combination).items()],
+        uncertainty={"estimate": "standard uncertainty"},
+        section="parameters",
+    )
 
 
-def _row_of_sensor(study: StudyContext, name: str, entry: Mapping[str, float]) -> list[Any]:
+def _row_of_sensor(study: StudyContext, name: str, entry: SensorErrorEntry) -> list[Any]:
     """Name and unit for readers, estimate and uncertainties."""
     sensor, _, what = name.rpartition(" ")
     is_sensor = sensor in study.plan.sensors
     unit = {"gain": "-", "clock": "s"}.get(what) or (_unit(study, sensor) if is_sensor else "degC")
     label = f"{_label(study, sensor)}: {what}" if is_sensor else name
-    return [label, difference(unit), entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
+    return [label, difference(unit), entry.estimate, entry.standard_uncertainty, entry.stated]
 
 
 def _label(study: StudyContext, name: str) -> str:
@@ -201,24 +201,24 @@ def _unit(study: StudyContext, name: str) -> str:
     return study.building.output(study.plan.sensors[name].output).unit
 
 
-def _table_of_model(study: StudyContext, combination: Combination) -> dict[str, Any]:
-    return {
-        "title": "Errors of the model",
-        "caption": (
+def _table_of_model(study: StudyContext, combination: Combination) -> TableEntry:
+    return TableEntry(
+        title="Errors of the model",
+        caption=(
             "Standard deviation of what no values of the parameters explain, estimated by marginal "
             "likelihood in the identification period, with a correlation time of "
             f"{combination.forms[0].joint.error_covariances.correlation_hours:g} h within a day. The limit "
             "is what each part may absorb at most."
         ),
-        "columns": ["sensor", "unit", *_PARTS.values(), "limit"],
-        "rows": [
+        columns=["sensor", "unit", *_PARTS.values(), "limit"],
+        rows=[
             [
                 _label(study, name),
                 difference(_unit(study, name)),
-                *(entry[part] for part in _PARTS),
-                entry["limit"],
+                *(getattr(entry, part) for part in _PARTS),
+                entry.limit,
             ]
             for name, entry in _of_model(study, combination).items()
         ],
-        "section": "comparison",
-    }
+        section="comparison",
+    )

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.study.results.document.numbers import plain
-from mascarin.study.steps.prediction_intervals import interval_entry
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import CorrelationEntry, ParameterEntry, ProfileEntry
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
     from mascarin.study.context.context import StudyContext
     from mascarin.study.file.description import IdentificationPlan
-    from mascarin.study.steps.findings import PredictionIntervals
 
 
 _COSTS: Final = {
@@ -24,44 +24,39 @@ _COSTS: Final = {
 }
 
 
-def estimates(study: StudyContext, fit: Calibration, *, stated: bool) -> dict[str, Any]:
+def estimates(study: StudyContext, fit: Calibration, *, stated: bool) -> StudyDocument:
     """Parameters with their uncertainty, and facts about the calibration.
 
     Where intervals are not stated, each parameter has its whole range in place of one.
     """
     entries = parameters(study, fit, study.inputs.calibration_plan)
     if not stated:
-        entries = {path: {**entry, "stated": False} for path, entry in entries.items()}
-    return {
-        "parameters": entries,
-        "correlation": {"paths": list(fit.problem.paths), "matrix": plain(fit.correlation)},
-        "identification": _identification(fit),
-    }
+        entries = {path: entry.model_copy(update={"stated": False}) for path, entry in entries.items()}
+    return StudyDocument(
+        parameters=entries,
+        correlation=CorrelationEntry(paths=list(fit.problem.paths), matrix=plain(fit.correlation)),
+        identification=_identification(fit),
+    )
 
 
-def profile_entries(profiles: Sequence[Profile]) -> dict[str, Any]:
-    """Profile likelihoods: path -> values, rise, limit, low, high; nothing where there are none."""
+def profile_entries(profiles: Sequence[Profile]) -> StudyDocument:
+    """Profile likelihoods by path; nothing where there are none."""
     entries = {
-        profile.path: {
-            "unit": profile.unit,
-            "values": plain(profile.values),
-            "rise": plain(profile.rise),
-            "limit": profile.limit,
-            "low": profile.low,
-            "high": profile.high,
-            "bounded": [not profile.open_low, not profile.open_high],
-        }
+        profile.path: ProfileEntry(
+            unit=profile.unit,
+            values=plain(profile.values),
+            rise=plain(profile.rise),
+            limit=profile.limit,
+            low=profile.low,
+            high=profile.high,
+            bounded=[not profile.open_low, not profile.open_high],
+        )
         for profile in profiles
     }
-    return {"profiles": entries} if entries else {}
+    return StudyDocument(profiles=entries) if entries else StudyDocument()
 
 
-def prediction_entries(study: StudyContext, intervals: PredictionIntervals) -> dict[str, Any]:
-    """The prediction intervals in numbers."""
-    return {"band": interval_entry(study, intervals)}
-
-
-def parameters(study: StudyContext, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
+def parameters(study: StudyContext, fit: Calibration, plan: IdentificationPlan) -> dict[str, ParameterEntry]:
     """Estimates by path, with interval, range and source."""
     building_paths = {parameter.path for parameter in study.building.parameters()}
     free_parameters = {
@@ -82,8 +77,9 @@ def parameters(study: StudyContext, fit: Calibration, plan: IdentificationPlan) 
             more |= {"at_bound": True, "reason": reason}
         if free is not None and free.reference is not None:
             more |= {"reference_nominal": free.reference[0], "reference_fitted": free.reference[1]}
-        source = sources.get(path)
-        entries[path] = {**entry, **more, **({"source": source} if source else {})}
+        if sources.get(path):
+            more["source"] = sources[path]
+        entries[path] = ParameterEntry(**entry, **more)
     return entries
 
 

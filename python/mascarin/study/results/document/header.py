@@ -5,22 +5,25 @@ from __future__ import annotations
 import platform
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin import __version__
 from mascarin.examples import STUDIES
+from mascarin.measurements.observation import PERIODS
 from mascarin.study.file.description import StudyFile
 from mascarin.study.results.document.building import assumptions, building_entry
-from mascarin.validation.observation import PERIODS
+from mascarin.study_document.analysis import QualityEntry
+from mascarin.study_document.comparison import PeriodEntry, ReferenceEntry, SensorEntry
+from mascarin.study_document.document import InputEntry, ObservedEntry, SourceEntry, StudyDocument
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
     from mascarin.study.context.context import StudyContext
-    from mascarin.study.file.description import StudyPlan
+    from mascarin.study.file.description import Publication, StudyPlan
 
 
 _WORDS: Final = {
@@ -30,7 +33,7 @@ _WORDS: Final = {
 }
 
 
-def header(study: StudyContext, command: str) -> dict[str, Any]:
+def header(study: StudyContext, command: str) -> StudyDocument:
     """Inputs, periods, sensors and building; part of every result.
 
     Parameters
@@ -41,24 +44,30 @@ def header(study: StudyContext, command: str) -> dict[str, Any]:
         Name of the command.
     """
     file = study.plan
-    return {
-        "mascarin_version": __version__,
-        "title": file.name,
-        "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
-        "observed": {"label": file.observed, "note": file.observed_note},
-        "seed": _seed(file),
-        "timezone": study.climate.timezone,
-        "command": _command(study, command),
-        "inputs": _inputs(study),
-        "versions": _versions(),
-        "sources": [{"text": text} for text in study.building.sources()],
-        "sensor_info": _sensor_info(study),
-        "periods": _periods(study),
-        **({} if file.reference is None else {"reference": file.reference.model_dump()}),
-        "building": building_entry(study.building),
-        "assumptions": assumptions(study.building),
-        "quality": _quality(study),
-    }
+    reference = {} if file.reference is None else {"reference": _reference(file.reference)}
+    return StudyDocument(
+        mascarin_version=__version__,
+        title=file.name,
+        intro=[part.strip() for part in file.about.split("\n\n") if part.strip()],
+        observed=ObservedEntry(label=file.observed, note=file.observed_note),
+        seed=_seed(file),
+        timezone=study.climate.timezone,
+        command=_command(study, command),
+        inputs=_inputs(study),
+        versions=_versions(),
+        sources=[SourceEntry(text=text) for text in study.building.sources()],
+        sensor_info=_sensor_info(study),
+        periods=_periods(study),
+        building=building_entry(study.building),
+        assumptions=assumptions(study.building),
+        quality=_quality(study),
+        **reference,
+    )
+
+
+def _reference(reference: Publication) -> ReferenceEntry:
+    """The publication, as the study states it."""
+    return ReferenceEntry.model_validate(reference.model_dump())
 
 
 def _command(study: StudyContext, command: str) -> list[str]:
@@ -78,7 +87,7 @@ def _seed(file: StudyPlan) -> int | None:
     return next((plan.seed for plan in (file.identification, file.sensitivity) if plan is not None), None)
 
 
-def _inputs(study: StudyContext) -> list[dict[str, str]]:
+def _inputs(study: StudyContext) -> list[InputEntry]:
     path, plan, hashes = study.inputs.path, study.plan, study.inputs.hashes
     named = [
         ("study", "" if path is None else path.name, hashes["study"]),
@@ -92,7 +101,7 @@ def _inputs(study: StudyContext) -> list[dict[str, str]]:
     ]
     said = {"climate": study.climate.provenance, "measurements": study.measurements.provenance}
     return [
-        {"name": f"{role}: {name}" if name else role, "sha256": digest, "note": " ".join(said.get(role, ()))}
+        InputEntry(name=f"{role}: {name}" if name else role, sha256=digest, note=" ".join(said.get(role, ())))
         for role, name, digest in named
     ]
 
@@ -106,25 +115,25 @@ def _versions() -> dict[str, str]:
     }
 
 
-def _sensor_info(study: StudyContext) -> dict[str, dict[str, Any]]:
+def _sensor_info(study: StudyContext) -> dict[str, SensorEntry]:
     return {
-        name: {
-            "label": sensor.label or name.replace("_", " "),
-            "output": sensor.output,
-            "unit": study.building.output(sensor.output).unit,
-            "uncertainty": sensor.uncertainty,
-        }
+        name: SensorEntry(
+            label=sensor.label or name.replace("_", " "),
+            output=sensor.output,
+            unit=study.building.output(sensor.output).unit,
+            uncertainty=sensor.expanded,
+        )
         for name, sensor in study.plan.sensors.items()
     }
 
 
-def _periods(study: StudyContext) -> dict[str, dict[str, Any]]:
+def _periods(study: StudyContext) -> dict[str, PeriodEntry]:
     return {
-        name: {
-            "label": _WORDS[name][0],
-            "note": _WORDS[name][1],
-            "spans": _spans(study.observation.times, study.during[name], study.observation.interval),
-        }
+        name: PeriodEntry(
+            label=_WORDS[name][0],
+            note=_WORDS[name][1],
+            spans=_spans(study.observation.times, study.during[name], study.observation.interval),
+        )
         for name in PERIODS
     }
 
@@ -142,16 +151,16 @@ def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float)
     ]
 
 
-def _quality(study: StudyContext) -> list[dict[str, Any]]:
+def _quality(study: StudyContext) -> list[QualityEntry]:
     return [
-        {
-            "channel": stretch.channel,
-            "kind": stretch.kind,
-            "start": stretch.start.tz_localize(None).isoformat(),
-            "end": stretch.end.tz_localize(None).isoformat(),
-            "count": stretch.count,
-            "detail": stretch.detail,
-            "masked": study.inputs.leaves_out(stretch),
-        }
+        QualityEntry(
+            channel=stretch.channel,
+            kind=stretch.kind,
+            start=stretch.start.tz_localize(None).isoformat(),
+            end=stretch.end.tz_localize(None).isoformat(),
+            count=stretch.count,
+            detail=stretch.detail,
+            masked=study.inputs.leaves_out(stretch),
+        )
         for stretch in study.quality
     ]

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.sensitivity.spectral import SpectralSensitivity
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import DaySharesEntry, PeakEntry, SpectrumEntry
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 _SHOWN: Final = 8
 
 
-def importance(study: StudyContext, analysis: Sensitivity) -> dict[str, Any]:
+def importance(study: StudyContext, analysis: Sensitivity) -> StudyDocument:
     """Sensitivity indices; for the spectral method also the spectra and the indices over the day."""
     rows = [
         ["method", analysis.method],
@@ -28,17 +30,25 @@ def importance(study: StudyContext, analysis: Sensitivity) -> dict[str, Any]:
         ["runs", str(analysis.runs)],
         ["seed", str(analysis.seed)],
     ]
-    content: dict[str, Any] = {"sensitivity": analysis.to_dict()}
+    spectral: dict[str, Any] = {}
     if isinstance(analysis, SpectralSensitivity):
         hours = _hours(study, analysis.index_t.shape[1])
         rows += [
             ["replicates", str(analysis.design.replicates)],
             ["harmonics counted", str(analysis.design.order)],
         ]
-        content["frequencies"] = _frequencies(analysis)
-        content["spectra"] = {output: _spectrum(analysis, output) for output in analysis.outputs}
-        content["day_shares"] = {output: _day_shares(analysis, output, hours) for output in analysis.outputs}
-    return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in analysis.warnings)]}
+        spectral = {
+            "frequencies": _frequencies(analysis),
+            "spectra": {output: _spectrum(analysis, output) for output in analysis.outputs},
+            "day_shares": {output: _day_shares(analysis, output, hours) for output in analysis.outputs},
+        }
+    return StudyDocument.model_validate(
+        {
+            "sensitivity": analysis.to_dict(),
+            **spectral,
+            "sensitivity_design": [*rows, *(["warning", text] for text in analysis.warnings)],
+        }
+    )
 
 
 def _frequencies(analysis: SpectralSensitivity) -> dict[str, int]:
@@ -67,21 +77,21 @@ def _hours(study: StudyContext, count: int) -> npt.NDArray[np.float64]:
     return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
 
 
-def _spectrum(analysis: SpectralSensitivity, output: str) -> dict[str, Any]:
+def _spectrum(analysis: SpectralSensitivity, output: str) -> SpectrumEntry:
     spectrum = analysis.spectrum(output)
-    return {
-        "frequencies": list(range(1, len(spectrum.power) + 1)),
-        "power": [float(p) for p in spectrum.power],
-        "threshold": float(spectrum.threshold),
-        "peaks": [
-            {"frequency": peak.line, "power": peak.power, "path": peak.label or "unnamed", "harmonic": 1}
+    return SpectrumEntry(
+        frequencies=list(range(1, len(spectrum.power) + 1)),
+        power=[float(p) for p in spectrum.power],
+        threshold=float(spectrum.threshold),
+        peaks=[
+            PeakEntry(frequency=peak.line, power=peak.power, path=peak.label or "unnamed", harmonic=1)
             # The strongest first, because a report may show only some of them.
             for peak in sorted(spectrum.peaks, key=lambda peak: -peak.power)
         ],
-    }
+    )
 
 
-def _day_shares(analysis: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
+def _day_shares(analysis: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> DaySharesEntry:
     """First-order indices of the most influential parameters by hour of the day, summed over the days."""
     s = analysis.output_index(output)
     names = analysis.ranking(output, _SHOWN)
@@ -93,4 +103,4 @@ def _day_shares(analysis: SpectralSensitivity, output: str, hours: npt.NDArray[n
         [float(p[hours == hour].sum() / max(variance[hours == hour].sum(), 1e-300)) for hour in unique]
         for p in power
     ]
-    return {"hours": unique.tolist(), "paths": names, "share": share}
+    return DaySharesEntry(hours=unique.tolist(), paths=names, share=share)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from mascarin.diagnosis.error_sources import explain_missed_aims
 from mascarin.diagnosis.hypotheses import WORDS
 from mascarin.study.results.document.coefficients import coefficients
-from mascarin.study.results.document.comparison import comparison
+from mascarin.study.results.document.comparison import comparison, criterion_entry
 from mascarin.study.results.document.errors import error_entries, error_tables
 from mascarin.study.results.document.estimates import (
     estimates,
     parameters,
-    prediction_entries,
     profile_entries,
 )
 from mascarin.study.results.document.header import header
@@ -22,12 +21,25 @@ from mascarin.study.results.document.phase_change import phase_change
 from mascarin.study.results.document.sensitivity import importance
 from mascarin.study.steps.days import day_words, days_table
 from mascarin.study.steps.derived_quantities import conductance_table, derived_table
-from mascarin.study.steps.prediction_intervals import interval_table
+from mascarin.study.steps.prediction_intervals import interval_entries, interval_table
 from mascarin.study.transfer.comparison import TITLE as TRANSFER
 from mascarin.study.transfer.comparison import transfer_notes, transfer_table
+from mascarin.study_document.analysis import (
+    ContradictionEntry,
+    DaysEntry,
+    DiagnosisEntry,
+    ErrorSourcesEntry,
+    NoteEntry,
+    ResidualEntry,
+    TableEntry,
+)
+from mascarin.study_document.document import StudyDocument
+from mascarin.study_document.estimates import ReferenceValue
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.calibration.errors.posterior_checks import Contradiction
+    from mascarin.diagnosis.error_sources import ErrorSources
     from mascarin.diagnosis.hypotheses import Diagnosis
     from mascarin.study.steps.findings import Findings
 
@@ -38,7 +50,7 @@ ESTIMATES = "Calibrated parameters"
 CAUSES = "Causes of the remaining error"
 
 
-def document(findings: Findings) -> dict[str, Any]:
+def document(findings: Findings) -> StudyDocument:
     """Everything but the series.
 
     Parameters
@@ -48,70 +60,84 @@ def document(findings: Findings) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model;
+    StudyDocument
+        In ``sensors`` the metrics at the level of a period are those of the fitted model;
         those of every model stand beside them under its name.
     """
     study, fit = findings.context, findings.calibration
     reference = study.plan.reference
     published = [] if reference is None else [entry.parameter for entry in reference.parameters]
-    content = {
-        "contradictions": [statement.to_dict() for statement in findings.contradictions],
-        **header(study, "study"),
-        **comparison(findings.models, findings.criteria),
-        **estimates(study, fit, stated=findings.prediction_intervals.stated),
-        **coefficients(
-            study,
-            {"nominal": findings.nominal, "fitted": findings.fitted},
-            (*fit.problem.paths, *published),
-        ),
-        "reference_values": _values(study.building, published),
-        **profile_entries(findings.profiles),
-        **prediction_entries(study, findings.prediction_intervals),
-        **error_entries(study, findings.combination),
-        "tables": [
-            interval_table(study, findings.prediction_intervals),
-            *error_tables(study, findings.combination),
-            *([transfer_table(study, findings.transfer)] if findings.transfer else []),
-            *([derived_table(findings.derived)] if findings.derived else []),
-            *(table for table in [conductance_table(fit)] if table is not None),
-        ],
-        "transfer": findings.transfer,
-        "derived": [quantity.to_dict() for quantity in findings.derived],
-        "residuals": {
-            name: {**description.to_dict(), "period": "blind"}
+    steps = StudyDocument(
+        contradictions=contradictions(findings.contradictions),
+        reference_values=_values(study.building, published),
+        band=interval_entries(study, findings.prediction_intervals),
+        tables=_tables(findings),
+        transfer=findings.transfer,
+        derived=[quantity.entry for quantity in findings.derived],
+        residuals={
+            name: ResidualEntry.model_validate({**description.to_dict(), "period": "blind"})
             for name, description in findings.residuals.items()
         },
-        "notes": _notes(findings),
-        "aims": [{**verdict.to_dict(), "model": "fitted"} for verdict in findings.aims],
-        "diagnosis": findings.diagnosis.to_dict(),
-        "days": findings.days.to_dict(),
-        "phase_change": phase_change(study, findings.fitted),
-        "variant_parameters": {
+        notes=_notes(findings),
+        aims=[criterion_entry(verdict, "fitted") for verdict in findings.aims],
+        diagnosis=_diagnosis(findings.diagnosis),
+        days=DaysEntry.model_validate({**findings.days.to_dict(), "table": days_table(findings.days)}),
+        phase_change=phase_change(study, findings.fitted),
+        variant_parameters={
             name: parameters(
                 study, run.fit, study.variants.plan_of(name if name in study.plan.variants else None)
             )
             for name, run in findings.variants.items()
             if run.fit is not None
         },
-    }
-    content["days"]["table"] = days_table(findings.days)
-    if findings.diagnosis.causes:
-        content["diagnosis"]["table"] = causes_table(findings.diagnosis)
-    if findings.error_sources is not None:
-        content["shortfall"] = {**findings.error_sources.to_dict(), "period": "blind"}
-    if findings.sensitivity is not None:
-        content |= importance(study, findings.sensitivity)
-    return content
+    )
+    models = {"nominal": findings.nominal, "fitted": findings.fitted}
+    return StudyDocument.joined(
+        header(study, "study"),
+        comparison(findings.models, findings.criteria),
+        estimates(study, fit, stated=findings.prediction_intervals.stated),
+        coefficients(study, models, (*fit.problem.paths, *published)),
+        profile_entries(findings.profiles),
+        error_entries(study, findings.combination),
+        steps,
+        StudyDocument() if findings.error_sources is None else _shortfall(findings.error_sources),
+        StudyDocument() if findings.sensitivity is None else importance(study, findings.sensitivity),
+    )
 
 
-def _values(building: Building, paths: Sequence[str]) -> dict[str, dict[str, Any]]:
+def contradictions(statements: Iterable[Contradiction]) -> list[ContradictionEntry]:
+    """By what the model contradicts its data or what is known."""
+    return [ContradictionEntry(**statement.to_dict()) for statement in statements]
+
+
+def _tables(findings: Findings) -> list[TableEntry]:
+    study = findings.context
+    tables = [
+        interval_table(study, findings.prediction_intervals),
+        *error_tables(study, findings.combination),
+        transfer_table(study, findings.transfer) if findings.transfer else None,
+        derived_table(findings.derived) if findings.derived else None,
+        conductance_table(findings.calibration),
+    ]
+    return [table for table in tables if table is not None]
+
+
+def _diagnosis(diagnosis: Diagnosis) -> DiagnosisEntry:
+    table = {"table": causes_table(diagnosis)} if diagnosis.causes else {}
+    return DiagnosisEntry.model_validate({**diagnosis.to_dict(), **table})
+
+
+def _shortfall(sources: ErrorSources) -> StudyDocument:
+    return StudyDocument(shortfall=ErrorSourcesEntry.model_validate({**sources.to_dict(), "period": "blind"}))
+
+
+def _values(building: Building, paths: Sequence[str]) -> dict[str, ReferenceValue]:
     """Values as described of parameters that a publication identified."""
     parameters = {path: building.parameter(path) for path in paths}
-    return {path: {"value": p.value, "unit": p.unit} for path, p in parameters.items()}
+    return {path: ReferenceValue(value=p.value, unit=p.unit) for path, p in parameters.items()}
 
 
-def causes_table(diagnosis: Diagnosis) -> dict[str, Any]:
+def causes_table(diagnosis: Diagnosis) -> TableEntry:
     """Causes with their evidence, as a table of the report."""
     rows = [
         [
@@ -127,16 +153,16 @@ def causes_table(diagnosis: Diagnosis) -> dict[str, Any]:
         ]
         for number, cause in enumerate(diagnosis.causes, start=1)
     ]
-    return {
-        "title": CAUSES,
-        "caption": (
+    return TableEntry(
+        title=CAUSES,
+        caption=(
             "Faults of sensors and of measured inputs, values outside of their ranges, laws and missing heat "
             "flows compete on equal terms, given the errors of the model. p: part of simulated records "
             "without any cause in which some candidate explains as much. Certainty: probability that it is "
             "this one, if it is one of the candidates. Where it is not told, the remarks list what else it "
             "may be."
         ),
-        "columns": [
+        columns=[
             "no.",
             "kind",
             "where",
@@ -147,14 +173,14 @@ def causes_table(diagnosis: Diagnosis) -> dict[str, Any]:
             "certainty [%]",
             "p",
         ],
-        "rows": rows,
-        "uncertainty": {"estimate": "standard error"},
-        "significant": ["p"],
-        "section": "error_sources",
-    }
+        rows=rows,
+        uncertainty={"estimate": "standard error"},
+        significant=["p"],
+        section="error_sources",
+    )
 
 
-def _notes(findings: Findings) -> list[dict[str, str]]:
+def _notes(findings: Findings) -> list[NoteEntry]:
     """Notes with the titles under which the report shows them."""
     sources = findings.error_sources
     missed = (
@@ -171,4 +197,4 @@ def _notes(findings: Findings) -> list[dict[str, str]]:
         ("Aims that are not met", missed),
         (TRANSFER, transfer_notes(findings.transfer)),
     )
-    return [{"title": title, "text": text} for title, texts in titled for text in texts]
+    return [NoteEntry(title=title, text=text) for title, texts in titled for text in texts]

@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Air of 15 degC at sea level, that of the site. [kg/m3]
 _DENSITY: Final = 101325.0 / (287.042 * 288.15)
@@ -95,13 +95,13 @@ def flows(
     }
     weather = {"air_temperature": np.full(30, outdoors), "wind_speed": np.full(30, wind)}
     outputs = [f"{name}.{way}" for name in links for way in ("inflow", "outflow")]
-    climate = Place(45.0, 0.0, "UTC").climate(weather)
+    climate = CasePlace(45.0, 0.0, "UTC").climate(weather)
     _, table = simulated(data.building(tree), climate, outputs, "15min", "repeat")
     last = table.iloc[-1]
     return {name: _DENSITY * float(max(last[f"{name}.inflow"], last[f"{name}.outflow"])) for name in links}
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """The IEA cases, then the links of four zones."""
     yield from _iea(data)
     yield from _four_zones(data)
@@ -122,7 +122,7 @@ _CASES: Final[dict[str, tuple[tuple[float, ...], float, float]]] = {
 }
 
 
-def _iea(data: CaseData) -> Iterator[Line]:
+def _iea(data: CaseData) -> Iterator[VerdictLine]:
     rows = csv.reader(io.StringIO(data.text("Sheet1.csv")))
     numbers: dict[str, tuple[float, float]] = {}
     for row in rows:
@@ -135,7 +135,7 @@ def _iea(data: CaseData) -> Iterator[Line]:
             flows(data, dict(zip(names, zones, strict=True)), _row_of_zones(names), outdoors, wind).values()
         )
         limits = around(reference, _TOLERANCE * reference)
-        yield Line(case, "mass flow", "kg/s", flow, reference, limits, {"EnergyPlus": program})
+        yield VerdictLine(case, "mass flow", "kg/s", flow, reference, limits, {"EnergyPlus": program})
 
 
 def _row_of_zones(names: str) -> dict[str, Link]:
@@ -161,7 +161,7 @@ _LINKS: Final[Sequence[tuple[tuple[str, ...], float, float, float, float]]] = (
 _STATED_DENSITY: Final = 1.204
 
 
-def _four_zones(data: CaseData) -> Iterator[Line]:
+def _four_zones(data: CaseData) -> Iterator[VerdictLine]:
     table = csv.DictReader(io.StringIO(data.text("../nist_airflow/table_3.csv")))
     programs = {row["Name"]: {p: abs(float(row[f"FlowRate_{p}"])) for p in _PROGRAMS} for row in table}
     wind = 10.0
@@ -176,7 +176,7 @@ def _four_zones(data: CaseData) -> Iterator[Line]:
         peers = programs[f"Link_{number}"]
         # The numbers are printed with four digits.
         limits = 0.999 * min(peers.values()), 1.001 * max(peers.values())
-        yield Line(f"link {number}", "mass flow", "kg/s", flow, peers["AIRNET"], limits, peers)
+        yield VerdictLine(f"link {number}", "mass flow", "kg/s", flow, peers["AIRNET"], limits, peers)
 
 
 def _is_flow(cell: str) -> bool:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -21,7 +21,7 @@ _STEP: Final = "10min"
 
 
 @dataclass(frozen=True)
-class Slab:
+class BlandSlab:
     """A slab, its film outside, its start, the step of the air, and the temperature inside at each hour."""
 
     thickness: float
@@ -34,7 +34,7 @@ class Slab:
     inside: npt.NDArray[np.float64]
 
     @classmethod
-    def of_text(cls, text: str) -> Slab:
+    def of_text(cls, text: str) -> BlandSlab:
         """Read what a file says."""
         before, _, after = text.partition("IOSTEP Output Data")
         _, _, inputs = before.partition("Input Data")
@@ -82,19 +82,19 @@ class Slab:
         }
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """The largest deviation of each slab."""
     paths = sorted(data.folder.glob("Test_*_Analytical.csv.gz"), key=lambda path: _number(path.name))
     for path in paths:
-        slab = Slab.of_text(data.text(path.name.removesuffix(".gz")))
+        slab = BlandSlab.of_text(data.text(path.name.removesuffix(".gz")))
         outdoor = np.full(len(slab.inside) + 2, slab.initial + slab.jump)
-        climate = Place().climate({"air_temperature": outdoor})
+        climate = CasePlace().climate({"air_temperature": outdoor})
         building = data.building(slab.tree())
         hours, table = simulated(building, climate, ["slab.inside_temperature"], _STEP, slab.initial)
         hour = np.arange(1, len(slab.inside) + 1)
         values = np.interp(hour, hours, table["slab.inside_temperature"].to_numpy())
         worst = int(np.abs(values - slab.inside).argmax())
-        yield Line(
+        yield VerdictLine(
             "-".join(map(str, _number(path.name))),
             f"inside surface, worst of {len(hour)} h",
             "degC",

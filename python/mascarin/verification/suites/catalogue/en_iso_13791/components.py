@@ -10,8 +10,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around, largest
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
+from mascarin.verification.suites.verdict import VerdictLine, around, largest
 
 #: [K], and of the sunlit part of a window [-].
 TOLERANCE: Final = 0.5
@@ -74,7 +74,7 @@ _SHADES: Final[dict[str, tuple[Corners, Sequence[Corners]]]] = {
 }
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Conduction, long-wave exchange, shades."""
     table = list(csv.DictReader(io.StringIO(data.text("reference.csv"))))
     for case, layers in _WALLS.items():
@@ -83,7 +83,7 @@ def lines(data: CaseData) -> Iterator[Line]:
         (row,) = (row for row in table if row["case"] == case.replace("-", ""))
         reference, program = float(row["reference"]), float(row["energyplus_8"])
         limits = around(reference, TOLERANCE)
-        yield Line(
+        yield VerdictLine(
             case, "room air", "degC", _radiant(data, case), reference, limits, {"EnergyPlus 8": program}
         )
     for case in _SHADES:
@@ -108,7 +108,7 @@ def _description(site: Tree, surfaces: Tree, layers: Sequence[tuple[str, float]]
 
 def _conduction(
     data: CaseData, case: str, layers: Sequence[tuple[str, float]], rows: list[dict[str, str]]
-) -> Iterator[Line]:
+) -> Iterator[VerdictLine]:
     wall = {
         "construction": "wall",
         "area": 10,
@@ -120,7 +120,7 @@ def _conduction(
     site = {"latitude": 52.0, "longitude": -0.5, "timezone": "UTC"}
     # Hourly values: the air rises over the first hour.
     columns = {"air_temperature": np.full(124, 20.0), "step": np.r_[20.0, np.full(123, 30.0)]}
-    climate = Place(52.0, -0.5, "UTC").climate(columns, extra=["step"])
+    climate = CasePlace(52.0, -0.5, "UTC").climate(columns, extra=["step"])
     building = data.building(_description(site, {"wall": wall}, layers))
     hours, run = simulated(building, climate, [_AIR], "5min", 20.0)
     for row in rows:
@@ -128,7 +128,7 @@ def _conduction(
         value = float(np.interp(after, hours, run[_AIR].to_numpy()))
         reference, program = float(row["reference"]), float(row["energyplus_8"])
         limits = around(reference, TOLERANCE)
-        yield Line(
+        yield VerdictLine(
             case, f"room air, {row['at']}", "degC", value, reference, limits, {"EnergyPlus 8": program}
         )
 
@@ -171,12 +171,12 @@ def _radiant(data: CaseData, case: str) -> float:
         "warm": np.full(count, 30.0 + _HEAT * (_OUTER + 1.0 / _OUTSIDE_FILM)),
         "room": np.full(count, 20.0),
     }
-    climate = Place(52.0, -0.5, "UTC").climate(columns, extra=["warm", "room"])
+    climate = CasePlace(52.0, -0.5, "UTC").climate(columns, extra=["warm", "room"])
     _, run = simulated(data.building(tree), climate, [_AIR], "15min", "repeat")
     return float(run[_AIR].iloc[-1])
 
 
-def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> Line:
+def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> VerdictLine:
     window, planes = _SHADES[case]
     count = 9 * 60
     dark = np.zeros(count)
@@ -187,7 +187,9 @@ def _shade(data: CaseData, case: str, rows: list[dict[str, str]]) -> Line:
         "global_horizontal": dark,
     }
     # All cases end at noon or later in the day.
-    climate = Place(52.0, -0.5, "UTC", "2001-06-15 06:00", "1min").climate(columns, instant=list(columns)[1:])
+    climate = CasePlace(52.0, -0.5, "UTC", "2001-06-15 06:00", "1min").climate(
+        columns, instant=list(columns)[1:]
+    )
     irradiance = []
     for shades in (planes, ()):
         face = [list(map(float, corner)) for corner in window]

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
 from mascarin.verification.suites.catalogue.en_iso_13791.components import TOLERANCE
 from mascarin.verification.suites.catalogue.en_iso_13791.days import DAYS, Day
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -237,7 +237,7 @@ class Case:
         return operative
 
 
-def lines(data: CaseData, sunshine: Sunshine = SUNSHINE) -> Iterator[Line]:
+def lines(data: CaseData, sunshine: Sunshine = SUNSHINE) -> Iterator[VerdictLine]:
     """Highest, mean and lowest operative temperature of each case.
 
     Parameters
@@ -260,7 +260,7 @@ def lines(data: CaseData, sunshine: Sunshine = SUNSHINE) -> Iterator[Line]:
             ):
                 limits = around(reference, TOLERANCE)
                 peers = {"EnergyPlus 8": program}
-                yield Line(case.name, quantity, "degC", float(value), reference, limits, peers)
+                yield VerdictLine(case.name, quantity, "degC", float(value), reference, limits, peers)
 
 
 def _indoors(film: float) -> Tree:
@@ -297,6 +297,6 @@ def _climate(day: Day) -> Climate:
         "level": repeated(level),
     }
     radiation = ("diffuse_horizontal", "direct_normal", "global_horizontal")
-    return Place(day.latitude, 0.0, "UTC", "2001-06-15").climate(
+    return CasePlace(day.latitude, 0.0, "UTC", "2001-06-15").climate(
         columns, extra=["west", "level"], instant=radiation
     )

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from mascarin.verification.suites.case_data import CaseData, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Guard zone of cell A and of cell B, film inside [W/(m2 K)], tilt [deg]. In B east and west change places.
 _PATHS: Final = {
@@ -130,7 +130,7 @@ class Case:
         }
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Energy of the heater in the steady hours of each case."""
     facts = json.loads(data.text("facts.json"))
     for row in csv.DictReader(io.StringIO(data.text("steady_state_heater.csv"))):
@@ -150,7 +150,7 @@ def lines(data: CaseData) -> Iterator[Line]:
             )
         limits = around(reference, tolerance * reference)
         note = f"{100.0 * (heat / reference - 1.0):+.2f} %, {against}"
-        yield Line(case.name, "heater, steady hours", "W", heat, reference, limits, peers, note)
+        yield VerdictLine(case.name, "heater, steady hours", "W", heat, reference, limits, peers, note)
 
 
 def _records(data: CaseData, case: Case) -> pd.DataFrame:

@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Slab [m2], wall [m], air of the room and outdoors [degC].
 _AREA, _WALL, _INSIDE, _OUTDOORS = 144.0, 0.24, 30.0, 10.0
@@ -82,7 +82,7 @@ _CASES: Final = {
 }
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Heat of the floor beside the formula of the standard, and beside numerical models."""
     formula = _table(data, "Whole_Bldg_Program_XComp", {"VA114": 4, "SUNREL-GC": 3, "EnergyPlus": 8})
     numerical = _table(data, "Numerical_Model_XComp", dict(zip(_NUMERICAL, (2, 3, 4), strict=True)))
@@ -91,11 +91,13 @@ def lines(data: CaseData) -> Iterator[Line]:
         value = _heat(data, case)
         reference = formula[name]["VA114"]
         limits = around(reference, _OF_FORMULA * reference)
-        yield Line(name, "floor, by ISO 13370", unit, value, reference, limits)
+        yield VerdictLine(name, "floor, by ISO 13370", unit, value, reference, limits)
         verified = list(numerical[name].values())
         peers = numerical[name] | formula[name]
         limits = min(verified), max(verified)
-        yield Line(name, "floor, numerical models", unit, value, float(np.mean(verified)), limits, peers)
+        yield VerdictLine(
+            name, "floor, numerical models", unit, value, float(np.mean(verified)), limits, peers
+        )
 
 
 def _heat(data: CaseData, case: Case) -> float:
@@ -116,7 +118,7 @@ def _heat(data: CaseData, case: Case) -> float:
         inside_resistance=1.0 / case.inside,
         outside_resistance=resistance,
     )
-    climate = Place(25.8, -80.3, "Etc/GMT+5").climate({"air_temperature": np.full(_HOURS, _OUTDOORS)})
+    climate = CasePlace(25.8, -80.3, "Etc/GMT+5").climate({"air_temperature": np.full(_HOURS, _OUTDOORS)})
     _, table = simulated(data.building(building.to_dict()), climate, ["room.net_load"], "1h", "repeat")
     heat = float(table["room.net_load"].iloc[-1])
     return 8.76 * heat if case.yearly else heat

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Films on both sides of common walls and inside, and outdoors. [W/(m2 K)]
 _FILM, _OUTSIDE = 8.29, 30.48722
@@ -30,15 +30,15 @@ _ANSWERS: Final = {
 _OF_VALUE: Final = 0.002
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Air of two zones and the load of the third."""
-    climate = Place(25.8, -80.27, "Etc/GMT+5").climate({"air_temperature": np.full(40, _OUTDOORS)})
+    climate = CasePlace(25.8, -80.27, "Etc/GMT+5").climate({"air_temperature": np.full(40, _OUTDOORS)})
     _, table = simulated(data.building(_tree()), climate, list(_ANSWERS), "15min", "repeat")
     for output, (quantity, unit, reference, (low, high)) in _ANSWERS.items():
         value = float(table[output].iloc[-1])
         limits = around(reference, _OF_VALUE * reference)
         note = f"nine programs: {low:g} to {high:g} {unit}"
-        yield Line("MZ320", quantity, unit, value, reference, limits, note=note)
+        yield VerdictLine("MZ320", quantity, unit, value, reference, limits, note=note)
 
 
 def _tree() -> Tree:

@@ -16,7 +16,7 @@ from mascarin.verification.suites.catalogue.rp1052.room import (
     site,
     steady_air,
 )
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Film inside by the ratio of length to width [W/(m2 K)]: that of test 1.
 _FILMS: Final = {1: 2.88, 2: 2.84, 5: 2.81, 10: 2.80, 20: 2.79}
@@ -30,7 +30,7 @@ _SURFACE, _OF_LOAD = 0.05, 0.005
 _WALLS: Final = ("south", "north", "west", "east", "roof", "floor")
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Three sets of emissivities for five lengths."""
     for test, emissivities in _EMISSIVITIES.items():
         table = numbers(data, f"Test_IntRad-Test_{test}-cond_1000__Data", range(1, 14), 3)
@@ -55,7 +55,7 @@ def lines(data: CaseData) -> Iterator[Line]:
                 limits = around(float(reference), float(tolerance))
                 peers = {"EnergyPlus": float(program)}
                 unit = "W" if load else "degC"
-                yield Line(case, quantity, unit, value, float(reference), limits, peers)
+                yield VerdictLine(case, quantity, unit, value, float(reference), limits, peers)
 
 
 def _tree(ratio: int, emissivities: tuple[float, float, float]) -> Tree:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -102,7 +102,7 @@ def room(
 
 def weather(columns: Mapping[str, Array], *, extra: Sequence[str] = (), step: str = "1h") -> Climate:
     """Make weather of arrays; it begins on 21 August."""
-    return Place(LATITUDE, LONGITUDE, "Etc/GMT+5", "2001-08-21", step).climate(columns, extra=extra)
+    return CasePlace(LATITUDE, LONGITUDE, "Etc/GMT+5", "2001-08-21", step).climate(columns, extra=extra)
 
 
 def steady_air(temperature: float, hours: int = 60) -> Climate:

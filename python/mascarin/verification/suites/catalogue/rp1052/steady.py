@@ -16,7 +16,7 @@ from mascarin.verification.suites.catalogue.rp1052.room import (
     rows,
     steady_air,
 )
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Of loads, of the air of a fan, and of that of a stack. [-]
 _OF_LOAD, _OF_AIR, _OF_STACK = 0.001, 0.005, 0.02
@@ -28,7 +28,7 @@ _DENSITY: Final = 1.2432
 _HEAT: Final = 1006.0 + 1860.0 * 0.0046
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Walls, then the sky, then air."""
     yield from _walls(data)
     yield from _sky(data)
@@ -36,7 +36,7 @@ def lines(data: CaseData) -> Iterator[Line]:
     yield from _stack(data)
 
 
-def _walls(data: CaseData) -> Iterator[Line]:
+def _walls(data: CaseData) -> Iterator[VerdictLine]:
     thick = ((0.1, 1.0, 1.0, 100.0),)
     three = ((0.1, 0.1, 1.0, 100.0), (0.05, 0.05, 1.0, 100.0), (0.05, 0.25, 1.0, 100.0))
     for case, layers, film in (("SSConv", thick, 3.079), ("SSCond", three, 2.18)):
@@ -45,15 +45,19 @@ def _walls(data: CaseData) -> Iterator[Line]:
         last = _last(data, tree, 40.0)
         load, program = table["Zone Load"]
         value = -last["room.net_load"]
-        yield Line(case, "load", "W", value, load, around(load, _OF_LOAD * load), {"EnergyPlus": program})
+        yield VerdictLine(
+            case, "load", "W", value, load, around(load, _OF_LOAD * load), {"EnergyPlus": program}
+        )
         for side in ("inside", "outside"):
             reference, program = table[f"{side.capitalize()} Surface Temperature"]
             value = last[f"wall.{side}_temperature"]
             limits = around(reference, _SURFACE)
-            yield Line(case, f"{side} surface", "degC", value, reference, limits, {"EnergyPlus": program})
+            yield VerdictLine(
+                case, f"{side} surface", "degC", value, reference, limits, {"EnergyPlus": program}
+            )
 
 
-def _sky(data: CaseData) -> Iterator[Line]:
+def _sky(data: CaseData) -> Iterator[VerdictLine]:
     table = _table(data, "Test_ExtLWRad__Test_ExtLWRad")
     # The sky is at 7.552 degC.
     sky = {"sky": {"kind": "offset", "depression": 20.0 - 7.552}}
@@ -61,26 +65,28 @@ def _sky(data: CaseData) -> Iterator[Line]:
     tree = room(((0.1, 1.0, 1.0, 100.0),), roof, indoors(4.04), zone={"held": 20.0}, keys_of_site=sky, tilt=0)
     last = _last(data, tree, 20.0)
     load, program = table["Zone Load"]
-    yield Line(
+    yield VerdictLine(
         "ExtLWRad", "load", "W", last["room.net_load"], load, around(load, 0.5), {"EnergyPlus": program}
     )
     for side in ("inside", "outside"):
         reference, program = table[f"{side.capitalize()} Surface Temperature"]
         value = last[f"wall.{side}_temperature"]
         limits = around(reference, _UNDER_SKY)
-        yield Line("ExtLWRad", f"{side} surface", "degC", value, reference, limits, {"EnergyPlus": program})
+        yield VerdictLine(
+            "ExtLWRad", f"{side} surface", "degC", value, reference, limits, {"EnergyPlus": program}
+        )
 
 
-def _infiltration(data: CaseData) -> Iterator[Line]:
+def _infiltration(data: CaseData) -> Iterator[VerdictLine]:
     load, program = _table(data, "Tests_Infil-1__Infil-1")["Zone Load"]
     zone = {"held": 20.0, "ventilation": {"fan": {"flow": 0.5}}}
     tree = room(((0.1, 1.15, 1.0, 100.0),), CLOSED, indoors(3.0), zone=zone, keys_of_site=_air())
     value = _last(data, tree, 10.0)["room.net_load"]
     limits = around(load, _OF_AIR * load)
-    yield Line("Infil-1", "load", "W", value, load, limits, {"EnergyPlus": program})
+    yield VerdictLine("Infil-1", "load", "W", value, load, limits, {"EnergyPlus": program})
 
 
-def _stack(data: CaseData) -> Iterator[Line]:
+def _stack(data: CaseData) -> Iterator[VerdictLine]:
     table = _table(data, "Tests_Infil-2__Infil-1")
     # Cracks at 0.25 and 9.75 m pass 0.0929 kg/s at 1 Pa; an opening has its flow at 4 Pa.
     exponent, coefficient = 0.65, 0.0929
@@ -102,10 +108,10 @@ def _stack(data: CaseData) -> Iterator[Line]:
     flow, program = table["Mass Flow Rate of Air"]
     limits = around(flow, _OF_STACK * flow)
     value = _DENSITY * last["low.inflow"]
-    yield Line("Infil-2", "mass flow", "kg/s", value, flow, limits, {"EnergyPlus": program})
+    yield VerdictLine("Infil-2", "mass flow", "kg/s", value, flow, limits, {"EnergyPlus": program})
     load, program = table["Zone Load"]
     limits = around(load, _OF_STACK * load)
-    yield Line("Infil-2", "load", "W", last["room.net_load"], load, limits, {"EnergyPlus": program})
+    yield VerdictLine("Infil-2", "load", "W", last["room.net_load"], load, limits, {"EnergyPlus": program})
 
 
 def _air() -> Tree:

@@ -19,7 +19,7 @@ from mascarin.verification.suites.catalogue.rp1052.room import (
     rows,
     weather,
 )
-from mascarin.verification.suites.verdict import Line, largest
+from mascarin.verification.suites.verdict import VerdictLine, largest
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -66,7 +66,7 @@ _REVEAL: Final[Sequence[Corners]] = (
 )
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Walls, glass, shadows."""
     climate = _clear_day(data)
     for side in _WALLS:
@@ -123,7 +123,7 @@ def _clear_day(data: CaseData) -> Climate:
     )
 
 
-def _wall(data: CaseData, climate: Climate, side: str) -> Iterator[Line]:
+def _wall(data: CaseData, climate: Climate, side: str) -> Iterator[VerdictLine]:
     azimuth, file = _WALLS[side]
     tree = room(_CONCRETE, outdoors(10.22, 0.4), indoors(), zone={"held": 20.0}, azimuth=azimuth)
     outputs = ["wall.incident_solar", "room.net_load"]
@@ -136,7 +136,7 @@ def _wall(data: CaseData, climate: Climate, side: str) -> Iterator[Line]:
     yield _of_day(case, "load", "W", load, _series(data, file, 0, 8), _OF_LOAD)
 
 
-def _glass(data: CaseData, climate: Climate) -> Iterator[Line]:
+def _glass(data: CaseData, climate: Climate) -> Iterator[VerdictLine]:
     file = "Test_SolRadGlazing__ASHRAE-SolRadGlazing"
     area = 9.0
     inside = indoors() | {"absorptance": 1.0}
@@ -186,7 +186,9 @@ def _sunlit(behind: Array, free: Array) -> Array:
     return np.where(sunny, behind / np.where(sunny, free, 1.0), np.nan)
 
 
-def _area(case: str, area: float, sunlit: Array, reference: tuple[Array, Array], tolerance: float) -> Line:
+def _area(
+    case: str, area: float, sunlit: Array, reference: tuple[Array, Array], tolerance: float
+) -> VerdictLine:
     hour, expected = reference
     values = area * np.interp(hour, _MIDDLE[: len(sunlit)], sunlit)
     compared = np.isfinite(values) & np.isfinite(expected) & ((expected > 0.0) | (values > 0.0))
@@ -201,7 +203,7 @@ def _of_day(
     values: tuple[Array, Any],
     reference: tuple[Array, Array],
     tolerance: float,
-) -> Line:
+) -> VerdictLine:
     """A series of the day beside that of the toolkit, with a tolerance that is a part of its peak."""
     hour, expected = reference
     series = hour, np.interp(hour, *values), expected

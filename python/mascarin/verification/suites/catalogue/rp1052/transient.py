@@ -20,7 +20,7 @@ from mascarin.verification.suites.catalogue.rp1052.room import (
     steady_air,
     weather,
 )
-from mascarin.verification.suites.verdict import Line, largest
+from mascarin.verification.suites.verdict import VerdictLine, largest
 
 _WOOD: Final = ((0.1, 0.14, 500.0, 2500.0),)
 _WOOL: Final = ((0.1, 0.03, 30.0, 1300.0),)
@@ -48,7 +48,7 @@ _JUMPS: Final = (
 )
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Steps, the sinusoid, gains."""
     for jump in _JUMPS:
         yield from _jump(data, jump)
@@ -57,7 +57,7 @@ def lines(data: CaseData) -> Iterator[Line]:
         yield from _gain(data, name, radiant)
 
 
-def _jump(data: CaseData, jump: Jump) -> Iterator[Line]:
+def _jump(data: CaseData, jump: Jump) -> Iterator[VerdictLine]:
     # Air outside, surfaces inside and outside, load.
     table = numbers(data, jump.file, (2, 3, 4, 7), 2)
     first = int(np.flatnonzero(np.diff(table[:, 0]))[0])
@@ -88,7 +88,7 @@ def _jump(data: CaseData, jump: Jump) -> Iterator[Line]:
         yield largest(jump.case, f"load, worst of {count - 1} h", "W", series, _LOAD)
 
 
-def _sinusoid(data: CaseData) -> Line:
+def _sinusoid(data: CaseData) -> VerdictLine:
     load = numbers(data, "Test_TC3-TS6__ASHRAE_Results", (1, 2, 3), 3)[:, 2]
     count = len(load)
     hour = np.arange(12 * count + 12) / 12.0
@@ -101,7 +101,7 @@ def _sinusoid(data: CaseData) -> Line:
     return largest("TC3 sinusoid", f"load, worst of {len(times)} h", "W", series, _SINUSOID)
 
 
-def _gain(data: CaseData, name: str, radiant: float) -> Iterator[Line]:
+def _gain(data: CaseData, name: str, radiant: float) -> Iterator[VerdictLine]:
     # The gain ends after a week.
     file = f"Test_IntHeatGain-2XWall-TS6-OpenZone__ASHRAE_{name}"
     _, surface, load = numbers(data, file, (0, 2, 4), 1)[:168].T

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree, simulated
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree, simulated
 from mascarin.verification.suites.catalogue.simquality.rooms import (
     INSULATED,
     SURFACES,
@@ -28,7 +28,7 @@ from mascarin.verification.suites.catalogue.simquality.rooms import (
     with_sun,
 )
 from mascarin.verification.suites.catalogue.simquality.score import Reference
-from mascarin.verification.suites.verdict import Line
+from mascarin.verification.suites.verdict import VerdictLine
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -77,20 +77,20 @@ class Judge:
                 peers.setdefault(row["Variable"], {})[row["ToolID"]] = score
         return cls(function, Reference.read(data, _FOLDERS[function]), peers)
 
-    def line(self, case: str, variable: str, hours: Array, values: Array) -> Line:
+    def line(self, case: str, variable: str, hours: Array, values: Array) -> VerdictLine:
         """Score of a series."""
         score = self.reference.score(variable, hours, values)
         peers = self.peers.get(variable, {})
-        return Line(f"{self.function}.{case}", f"score of {variable}", "-", score, 100.0, _GOOD, peers)
+        return VerdictLine(f"{self.function}.{case}", f"score of {variable}", "-", score, 100.0, _GOOD, peers)
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """All test functions."""
     for function, run in _RUNS.items():
         yield from run(data, Judge.of(data, function))
 
 
-def _conduction(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _conduction(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     walls: dict[int, Layers] = {
         1: _UNINSULATED,
         2: (("insulation", 0.1),),
@@ -104,7 +104,7 @@ def _conduction(data: CaseData, judge: Judge) -> Iterator[Line]:
         yield judge.line(str(number), f"Variante {number}", hours, table[_AIR].to_numpy())
 
 
-def _storage(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _storage(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     runs: dict[int, tuple[Tree, str, int, float]] = {
         1: (_half_closed(), "SIMQ_TF04_Sprung", 1500, 20.0),
         2: (_stone_under_roof(), "SIMQ_TF04_Periodisch", 1500, 20.0),
@@ -168,7 +168,7 @@ def _two_rooms() -> Tree:
     }
 
 
-def _ventilation(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _ventilation(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     outdoor = epw(data, "SIMQ_TF04_Potsdam")[:, 0]
     outdoor[:468] = 5.0  # the hours before the air of Potsdam begins
     night: Tree = {
@@ -211,7 +211,7 @@ def _days(*changes: tuple[int, float]) -> Tree:
     return {"all": [{"at": f"{hour:02d}:00", "value": value} for hour, value in changes]}
 
 
-def _absorbed_sun(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _absorbed_sun(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     words = {
         "Dach": "roof", "Boden": "floor", "Nordwand": "north", "Ostwand": "east", "Südwand": "south",
         "Westwand": "west",
@@ -235,7 +235,7 @@ def _absorbed_sun(data: CaseData, judge: Judge) -> Iterator[Line]:
             yield line(f"Variante {number} Oberflächen-Temp. {word}", hours, surface)
 
 
-def _windows(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _windows(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     angles = {
         1: ([0, 90], [0.0, 0.0]),
         2: ([0, 90], [0.6, 0.6]),
@@ -278,7 +278,7 @@ def _with_window(angles: list[int], transmittance: list[float]) -> Tree:
     return room(INSULATED, zone=zone, glazings=glazings, windows={"window": window})
 
 
-def _gains(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _gains(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     constant, off = _days((0, 1.0)), _days((0, 0.0))
     powers = [0] * 6 + [25, 58, 83, 83, 83, 67, 67, 83, 83, 83, 58, 25] + [0] * 6
     daily = _days(*((hour, power / 83) for hour, power in enumerate(powers)))
@@ -326,12 +326,12 @@ _SHADED: Final[dict[int, tuple[Any, tuple[Any, ...]]]] = {
 }
 
 
-def _shading(data: CaseData, judge: Judge) -> Iterator[Line]:
+def _shading(data: CaseData, judge: Judge) -> Iterator[VerdictLine]:
     first, days = 3552 - 24, 3  # [h], around the day of the reference
     count = days * 24 * 6
     radiation = {"direct_normal": 1000.0, "diffuse_horizontal": 0.0, "global_horizontal": 0.0}
     start = np.datetime64("2001-01-01T00") + np.timedelta64(first, "h")
-    site_of_case = Place(50.0, 14.27, start=str(start), step="10min")
+    site_of_case = CasePlace(50.0, 14.27, start=str(start), step="10min")
     columns = {name: np.full(count, value) for name, value in {"air_temperature": 20.0, **radiation}.items()}
     climate = site_of_case.climate(columns, instant=tuple(radiation))
     output = "wall.incident_solar"
@@ -387,7 +387,7 @@ def _hourly_between(hours: Array, values: Array) -> tuple[Array, Array]:
     return _hourly_of_steps(hours, middle)
 
 
-_RUNS: Final[dict[str, Callable[[CaseData, Judge], Iterator[Line]]]] = {
+_RUNS: Final[dict[str, Callable[[CaseData, Judge], Iterator[VerdictLine]]]] = {
     "TF03": _conduction,
     "TF04": _storage,
     "TF05": _ventilation,

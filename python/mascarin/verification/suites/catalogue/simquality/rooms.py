@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.verification.suites.case_data import CaseData, Place, Tree
+from mascarin.verification.suites.case_data import CaseData, CasePlace, Tree
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -137,13 +137,13 @@ def epw(data: CaseData, name: str) -> Array:
 def air_alone(temperatures: Array, hours: int) -> Climate:
     """Weather with nothing but the temperature of the air; a row is the value at the end of its hour."""
     rows = temperatures[: hours + 3]
-    return Place().climate({"air_temperature": np.r_[rows[0], rows]})
+    return CasePlace().climate({"air_temperature": np.r_[rows[0], rows]})
 
 
 def with_sun(table: Array, hours: int = 8760) -> Climate:
     """Weather with sun; radiation is a mean over the hour of its row."""
     air, total, direct, diffuse = table[:hours].T
-    return Place().climate(
+    return CasePlace().climate(
         {
             "air_temperature": air,
             "direct_normal": direct,

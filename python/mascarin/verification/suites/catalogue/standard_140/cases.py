@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mascarin.verification.suites.case_data import CaseData
-from mascarin.verification.suites.verdict import Line
+from mascarin.verification.suites.verdict import VerdictLine
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Every number of every case."""
     from mascarin.verification.bestest.catalogue import CASES
     from mascarin.verification.bestest.quantities import quantities
@@ -20,7 +20,7 @@ def lines(data: CaseData) -> Iterator[Line]:
         for row in quantities(years, case):
             if row.range is not None:
                 limits = row.range.low, row.range.high
-                yield Line(
+                yield VerdictLine(
                     row.case,
                     row.quantity,
                     row.unit,

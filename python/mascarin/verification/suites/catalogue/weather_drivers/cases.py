@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from mascarin.verification.suites.case_data import CaseData, Tree, simulated
-from mascarin.verification.suites.verdict import Line, around
+from mascarin.verification.suites.verdict import VerdictLine, around
 
 #: Tilt and azimuth. [deg]
 _PLANES: Final = {
@@ -64,7 +64,7 @@ def tree(case: str) -> Tree:
     }
 
 
-def lines(data: CaseData) -> Iterator[Line]:
+def lines(data: CaseData) -> Iterator[VerdictLine]:
     """Irradiance of the year by climate and plane."""
     from mascarin.weather import Climate
 
@@ -89,7 +89,7 @@ def lines(data: CaseData) -> Iterator[Line]:
             else:
                 reference = float(np.median(list(peers.values())))
                 limits = min(peers.values()), max(peers.values())
-            yield Line(case, plane, "kWh/m2", value, reference, limits, {} if horizontal else peers)
+            yield VerdictLine(case, plane, "kWh/m2", value, reference, limits, {} if horizontal else peers)
 
 
 def _key(plane: str) -> str:

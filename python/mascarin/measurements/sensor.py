@@ -1,20 +1,23 @@
-"""A sensor of a study file."""
+"""A sensor: columns of a measured table, the output that they are compared with, and their uncertainty."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Final, Literal, Self
+from collections.abc import Sequence
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import AliasChoices, Field, model_validator
 
 from mascarin.building.base.part import Part, fault, insist
-from mascarin.calibration.errors.sensor_errors import SensorError
-from mascarin.calibration.errors.stated_errors import shared_errors
-from mascarin.study.file.field_types import Duration, Hours, Spans, Stretch
-from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
+from mascarin.measurements.time_fields import Duration, Hours, Spans, Stretch
+from mascarin.measurements.uncertainty import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 
 #: First part of the name of an output that a sensor combines from others.
 DERIVED: Final = "sensor_"
+_ONE_OUTPUT: Final = (
+    "one of output, sum and mean",
+    "Name one output of the model, or the outputs whose sum or mean is measured.",
+)
 
 
 class SensorPeriods(Part):
@@ -35,12 +38,22 @@ class SensorPeriods(Part):
 
 
 class Sensor(Part):
-    """A measured series and the model output that it is compared with."""
+    """A measured series and the model output that it is compared with.
+
+    Examples
+    --------
+    >>> Sensor("T_room", expanded_uncertainty=0.3).columns
+    ('T_room',)
+    >>> Sensor(["T_1", "T_2"], standard_uncertainty=0.1).uncertainty("degC").absolute
+    0.1
+    """
 
     column: str | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
         description="Column, or several columns, of which the mean is used; with `sum`, their sum"
     )
-    output: str = Field("", description="Output of the model; none with `sum` or `mean`")
+    output: str = Field(
+        "", description="Output of the model; none with `sum` or `mean`. In `calibrate` by default the key"
+    )
     sum: tuple[str, ...] | None = Field(
         None,
         min_length=2,
@@ -67,7 +80,14 @@ class Sensor(Part):
         0.0,
         ge=0,
         lt=1,
+        validation_alias=AliasChoices("relative", "relative_expanded_uncertainty"),
         description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
+    )
+    relative_standard_uncertainty: float = Field(
+        0.0,
+        ge=0,
+        lt=1,
+        description="The same as standard uncertainty, in place of relative [-]",
     )
     offset: float | None = Field(
         None,
@@ -109,24 +129,34 @@ class Sensor(Part):
         None, description="Its own periods, where they differ from those of the study"
     )
 
+    # The column may be the first argument: mypy reads the other keys from here as well.
+    def __init__(self, column: str | Sequence[str] | None = None, /, **fields: Any) -> None:
+        super().__init__(**fields if column is None else {"column": column, **fields})
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
     @model_validator(mode="after")
     def _one_quantity(self) -> Self:
         stated = [key for key in ("output", "sum", "mean") if getattr(self, key)]
         combined = self.combined
         if combined is not None and stated[0] == "output" and self.output.startswith(DERIVED):
             return self  # what a study has made of it
-        if len(stated) != 1:
-            insist(
-                fault(
-                    (),
-                    " and ".join(stated) or "no output",
-                    "one of output, sum and mean",
-                    "Name one output of the model, or the outputs whose sum or mean is measured.",
-                )
-            )
+        if len(stated) > 1:
+            insist(fault((), " and ".join(stated), *_ONE_OUTPUT))
         if combined is not None and len(set(combined[1])) < len(combined[1]):
             twice = next(name for name in combined[1] if combined[1].count(name) > 1)
             insist(fault((combined[0],), f"'{twice}' twice", "each output once", f"Name '{twice}' once."))
+        return self
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        for standard, expanded in (
+            ("standard_uncertainty", "expanded_uncertainty"),
+            ("relative_standard_uncertainty", "relative"),
+        ):
+            if getattr(self, standard) and getattr(self, expanded):
+                values = f"{getattr(self, standard):g} beside {expanded} {getattr(self, expanded):g}"
+                insist(fault((standard,), values, "one of them", "Leave one out."))
         return self
 
     @property
@@ -146,25 +176,33 @@ class Sensor(Part):
         """The columns it is made of."""
         return (self.column,) if isinstance(self.column, str) else self.column
 
-    def stated_uncertainty(self, unit: str, name: str) -> SensorUncertainty:
+    def uncertainty(self, unit: str, where: str = "") -> SensorUncertainty:
         """Standard uncertainty of the measured values.
+
+        Parameters
+        ----------
+        unit : str
+            Unit of the output.
+        where : str
+            Name of the sensor in errors.
 
         Raises
         ------
         InputError
-            Standard and expanded uncertainty together, or none although the unit is not degC.
+            None is stated although the unit is not degC.
         """
         return SensorUncertainty.stated(
             unit,
             standard=self._standard,
             expanded=self.expanded_uncertainty,
+            relative_standard=self.relative_standard_uncertainty or None,
             relative_expanded=self.relative or None,
-            where=f"sensors.{name}",
+            where=where or f"sensor of column {', '.join(self.columns)}",
         )
 
     @property
-    def uncertainty(self) -> float:
-        """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
+    def expanded(self) -> float:
+        """Expanded uncertainty (95 %) as stated, without the relative part. [unit of the output]"""
         if self.expanded_uncertainty is not None:
             return self.expanded_uncertainty
         if self._standard is not None:
@@ -176,15 +214,17 @@ class Sensor(Part):
         """Standard uncertainty of a reading: as stated, else from its parts. [unit of the output]"""
         if self.standard_uncertainty is not None or self.expanded_uncertainty is not None:
             return self.standard_uncertainty
-        parts = math.hypot(self.offset or 0.0, self.common, self.repeatability or 0.0)
-        return parts or None
+        return math.hypot(self.offset or 0.0, self.common, self.repeatability or 0.0) or None
 
     @property
     def states_errors(self) -> bool:
-        """Whether the study says which errors the readings share."""
+        """Whether it says which errors the readings share."""
         shared = (self.offset, self.common, self.gain, self.clock, self.depth)
         return any(part is not None and part != 0.0 for part in shared)
 
-    def shared_errors(self, stated: SensorUncertainty, random: float) -> SensorError:
-        """Errors that all readings share; see `mascarin.calibration.errors.stated_errors`."""
-        return shared_errors(self, stated, random)
+
+def with_output(sensor: Sensor) -> Sensor:
+    """Refuse a sensor that does not say what it is compared with, as those of a study do."""
+    if not (sensor.output or sensor.combined):
+        insist(fault((), "no output", *_ONE_OUTPUT))
+    return sensor

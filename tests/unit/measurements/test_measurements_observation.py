@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.validation.observation import Observation, require_comparable
+from mascarin.measurements.observation import Observation, require_comparable
 
 
 def observation(start: str, count: int, step: str, *kinds: str) -> Observation:

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mascarin.calibration.errors.stated_errors import only_scatter, shared_errors
-from mascarin.study.file.sensor import Sensor as StudySensor
-from mascarin.validation import Sensor
-from mascarin.validation.scatter import resolution, scatter
+from mascarin.measurements import Sensor
+from mascarin.measurements.scatter import resolution, scatter
 
 HOURS = np.arange(0.0, 120.0, 0.25)
 COURSE = 20.0 + 5.0 * np.sin(HOURS * np.pi / 12.0) + 0.5 * np.sin(HOURS * np.pi / 3.0)
@@ -53,13 +52,10 @@ def test_a_short_record_and_gaps_say_nothing_wrong() -> None:
     assert scatter(holes) == pytest.approx(0.05, rel=0.3)
 
 
-@pytest.mark.parametrize("kind", [Sensor, StudySensor])
-def test_a_stated_uncertainty_is_an_offset_less_the_scatter_unless_said_otherwise(kind: type) -> None:
+def test_a_stated_uncertainty_is_an_offset_less_the_scatter_unless_said_otherwise() -> None:
     def error(random: float, **stated: float) -> float:
-        output = {"output": "room.air_temperature"} if kind is StudySensor else {}
-        sensor = kind(column="T", expanded_uncertainty=0.98, **output, **stated)
-        where = ("degC", "room")
-        u = sensor.stated_uncertainty(*where) if kind is StudySensor else sensor.uncertainty(*where)
+        sensor = Sensor(column="T", expanded_uncertainty=0.98, **stated)
+        u = sensor.uncertainty("degC", "room")
         assert u.absolute == pytest.approx(0.5)
         return shared_errors(sensor, u, random).offset
 

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.measurements.sensor import Sensor
     from mascarin.simulation.simulation import Simulation
-    from mascarin.validation.sensors import SensorLike
     from mascarin.weather import Measurements
 
     Array = npt.NDArray[np.float64]
@@ -111,7 +111,7 @@ class Observation:
 
 
 def observe(
-    simulation: Simulation, measurements: Measurements, sensors: Mapping[str, SensorLike], start: pd.Timestamp
+    simulation: Simulation, measurements: Measurements, sensors: Mapping[str, Sensor], start: pd.Timestamp
 ) -> Observation:
     r"""Collect the measured series that a simulation is compared with.
 
@@ -121,7 +121,7 @@ def observe(
         Gives time step and end.
     measurements : Measurements
         The table; values that are masked in it are left out.
-    sensors : mapping of str to SensorLike
+    sensors : mapping of str to Sensor
         Sensors by name.
     start : pandas.Timestamp
         First instant.
@@ -141,7 +141,7 @@ def observe(
     >>> import numpy as np
     >>> import pandas as pd
     >>> import mascarin as mc
-    >>> from mascarin.validation import Sensor
+    >>> from mascarin.measurements import Sensor
     >>> from mascarin.verification.analytical import setup
     >>> simulation = setup.simulation(
     ...     setup.building(
@@ -157,7 +157,8 @@ def observe(
     ... )
     >>> table = pd.DataFrame({"q": np.zeros(24)}, index=simulation.index[:24])
     >>> logger = mc.Measurements.from_table(table, timezone="UTC")
-    >>> observe(simulation, logger, {"flux": Sensor("q", 1.0)}, simulation.start).measured.shape
+    >>> sensors = {"flux": Sensor("q", expanded_uncertainty=1.0)}
+    >>> observe(simulation, logger, sensors, simulation.start).measured.shape
     (24, 1)
     """
     import pandas as pd
@@ -169,9 +170,7 @@ def observe(
     return Observation(times, interval, np.stack(columns, axis=-1), kinds, tuple(sensors))
 
 
-def _measured(
-    measurements: Measurements, sensor: SensorLike, times: pd.DatetimeIndex, interval: float
-) -> Array:
+def _measured(measurements: Measurements, sensor: Sensor, times: pd.DatetimeIndex, interval: float) -> Array:
     """Sum of the columns of a sensor, or their mean over those that have a value."""
     parts = np.stack([measurements.at(column, times, interval) for column in sensor.columns])
     if sensor.adds:

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.study.file.description import Sensor as StudySensor
-from mascarin.validation import Sensor, SensorUncertainty
+from mascarin.measurements import Sensor, SensorUncertainty
 
 
 def test_standard_and_expanded_uncertainty_differ_by_the_coverage_factor() -> None:
@@ -37,9 +36,12 @@ def test_other_units_need_an_uncertainty() -> None:
 @pytest.mark.parametrize(
     ("given", "text"),
     [
-        ({"standard_uncertainty": 0.1, "expanded_uncertainty": 0.2}, "expected one of them; leave one out"),
-        ({"expanded_uncertainty": -0.2}, "found expanded_uncertainty -0.2, expected a positive number"),
-        ({"relative_standard_uncertainty": float("nan")}, "found relative_standard_uncertainty nan"),
+        (
+            {"standard_uncertainty": 0.1, "expanded_uncertainty": 0.2},
+            "found: 0.1 beside expanded_uncertainty 0.2",
+        ),
+        ({"expanded_uncertainty": -0.2}, r"expanded_uncertainty\n +found: -0\.2\n +expected: greater than 0"),
+        ({"relative_standard_uncertainty": float("nan")}, r"relative_standard_uncertainty\n +found: nan"),
     ],
 )
 def test_contradictory_uncertainties_are_refused(given: dict[str, Any], text: str) -> None:
@@ -53,7 +55,7 @@ def test_contradictory_uncertainties_are_refused(given: dict[str, Any], text: st
 def test_the_older_key_of_a_study_is_the_expanded_uncertainty() -> None:
     given = {"column": "T", "output": "room.air_temperature"}
     older, newer, standard = (
-        StudySensor.model_validate(given | {key: value})
+        Sensor.model_validate(given | {key: value})
         for key, value in (
             ("uncertainty", 0.3),
             ("expanded_uncertainty", 0.3),
@@ -62,14 +64,29 @@ def test_the_older_key_of_a_study_is_the_expanded_uncertainty() -> None:
     )
     assert older == newer
     for sensor in (older, standard):
-        assert sensor.uncertainty == pytest.approx(0.3, rel=1e-15)
-        assert sensor.stated_uncertainty("degC", "room").absolute == pytest.approx(0.3 / 1.96, rel=1e-15)
-    assert StudySensor.model_validate(given).uncertainty == 0.5
+        assert sensor.expanded == pytest.approx(0.3, rel=1e-15)
+        assert sensor.uncertainty("degC", "room").absolute == pytest.approx(0.3 / 1.96, rel=1e-15)
+    assert Sensor.model_validate(given).expanded == 0.5
     with pytest.raises(InputError, match=r"sensors.flux: found no uncertainty"):
-        StudySensor.model_validate(given).stated_uncertainty("W/m2", "flux")
+        Sensor.model_validate(given).uncertainty("W/m2", "sensors.flux")
 
 
 def test_both_keys_of_a_study_are_refused() -> None:
-    given = {"column": "T", "output": "room.air_temperature", "uncertainty": 0.3, "standard_uncertainty": 0.1}
-    with pytest.raises(InputError, match="expected one of them; leave one out"):
-        StudySensor.model_validate(given).stated_uncertainty("degC", "room")
+    given: dict[str, Any] = {"column": "T", "uncertainty": 0.3, "standard_uncertainty": 0.1}
+    with pytest.raises(InputError, match=r"0\.1 beside expanded_uncertainty 0\.3"):
+        Sensor(**given)
+
+
+def test_the_study_and_python_have_the_same_sensor() -> None:
+    """One class: what a study file says of a sensor is what `calibrate` is given."""
+    from mascarin.study import Sensor as OfStudies
+
+    assert OfStudies is Sensor
+    assert Sensor("T", expanded_uncertainty=0.3) == Sensor.model_validate(
+        {"column": "T", "expanded_uncertainty": 0.3}
+    )
+
+
+@pytest.mark.parametrize("name", ["relative", "relative_expanded_uncertainty"])
+def test_the_relative_part_has_two_names(name: str) -> None:
+    assert Sensor("q", **{name: 0.05}).uncertainty("W/m2").relative == pytest.approx(0.05 / 1.96, rel=1e-15)

@@ -1,0 +1,41 @@
+"""What a check of a record says, kept in the cache of the user: a check may take as long as a run."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable, Sequence
+from types import ModuleType
+
+from mascarin._io.sealed.cache import Cached, cached
+from mascarin.tables.arrays import Array
+from mascarin.tables.timezones import zone_name
+from mascarin.weather.records.record import WeatherRecord
+
+
+def said_once(
+    record: WeatherRecord,
+    columns: Iterable[Array],
+    key: Sequence[object],
+    code: Sequence[ModuleType],
+    check: Callable[[], Sequence[str]],
+) -> tuple[str, ...]:
+    """Sentences of a check of a record, or what was kept of it.
+
+    Parameters
+    ----------
+    record : WeatherRecord
+        Its file and its times are a part of the key.
+    columns : iterable of ndarray
+        The numbers that the check reads.
+    key : sequence of object
+        Name of the check, and all else that it depends on.
+    code : sequence of module
+        The modules that make it.
+    check : callable
+        Makes the sentences; what it raises is passed on, and nothing is kept.
+    """
+    grid = record.grid
+    digest = hashlib.sha256(b"".join(column.tobytes() for column in columns)).hexdigest()
+    of_record = (record.file, grid.start, grid.interval, zone_name(grid.zone))
+    entry = cached((digest, *key, *of_record), code, lambda: Cached({"said": [*check()]}))
+    return tuple(entry.notes["said"])
