@@ -11,7 +11,7 @@ import numpy as np
 from mascarin.building.checks.formula_sides import formula_sides
 from mascarin.building.parameters.text_laws import text_laws
 from mascarin.errors import InputError
-from mascarin.simulation.checks.warning_kinds import Kind, RunWarning
+from mascarin.simulation.checks.warning_kinds import RunWarning, WarningKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -133,7 +133,7 @@ def member_range_warnings(beyond: Array, first: int = 0) -> list[RunWarning]:
         f"end of up to {steps} {'step' if steps == 1 else 'steps'} (member {first + worst}). The formula is "
         "used as it is there: run this member alone, which names the law and the values"
     )
-    return [RunWarning(text, Kind.VALIDITY)]
+    return [RunWarning(text, WarningKind.VALIDITY)]
 
 
 def _extent(value: tuple[str, str, float, float]) -> str:
