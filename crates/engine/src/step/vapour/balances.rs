@@ -19,43 +19,38 @@ use super::plants::{Limits, Mode};
 use super::saturation::Saturation;
 use super::surfaces::{Tangent, Uptake};
 
-/// Solutions of a stage at most: plants and saturation begin or end in some zones from one to the next, and lines are drawn anew.
-const MAX_SOLUTIONS: usize = 30;
-/// Sweeps over the zones where modes cycle, before the next solutions, and how often this is repeated at most.
-const SWEEPS: usize = 40;
-const MAX_ROUNDS: usize = 30;
 /// How far the line of a vapour pressure may be from it at the solution [Pa].
 const PRESSURE: ByPrecision = ByPrecision { double: 1e-6, single: 0.1 };
 
 /// A stage of a step, as it is solved.
 #[derive(Debug, Clone, Copy)]
-struct Place {
-    stage: usize,
+pub(super) struct Place {
+    pub(super) stage: usize,
     /// It starts from `start + ratio (first - start)`: the start of the step and the end of its first stage.
-    ratio: f64,
+    pub(super) ratio: f64,
     /// Effective length [s].
-    length: f64,
+    pub(super) length: f64,
 }
 
 /// Solves the vapour balances.
 #[derive(Debug, Clone)]
 pub(crate) struct VapourBalances<'a, S: Real> {
-    plan: &'a HumidityPlan,
+    pub(super) plan: &'a HumidityPlan,
     /// Of each stage of the step.
-    flows: Vec<StageFlows<S>>,
+    pub(super) flows: Vec<StageFlows<S>>,
     saturation: Saturation<S>,
-    system: CoupledSystem<'a, S>,
+    pub(super) system: CoupledSystem<'a, S>,
     /// At the end of the first stage, and of the last one; as in [`State::vapour`].
     first: Vec<S>,
-    reached: Vec<S>,
+    pub(super) reached: Vec<S>,
     /// At the end of the last stage, where it leaves the bounds of the step.
     beyond: Vec<S>,
     bounds: Bounds<S>,
     /// Whether surfaces of a zone take up vapour.
     sorbing: Vec<bool>,
     /// Of the balance of each zone: what multiplies its own humidity ratio [kg/s], and what does not depend on any [kg/s].
-    diagonal: Vec<S>,
-    right: Vec<S>,
+    pub(super) diagonal: Vec<S>,
+    pub(super) right: Vec<S>,
     /// Tangent of the vapour pressure of each zone by its humidity ratio: at zero, and the slope [Pa].
     pressures: Vec<(S, S)>,
     /// Of the sorption of each surface.
@@ -63,11 +58,11 @@ pub(crate) struct VapourBalances<'a, S: Real> {
     uptakes: Vec<Uptake<S>>,
     /// In the first stage, and in the last one.
     first_limits: Vec<Limits<S>>,
-    limits: Vec<Limits<S>>,
-    modes: Vec<Mode<S>>,
+    pub(super) limits: Vec<Limits<S>>,
+    pub(super) modes: Vec<Mode<S>>,
     /// Taken away by plants and saturation in the first stage, and in the last one [kg/s].
     first_removed: Vec<S>,
-    removed: Vec<S>,
+    pub(super) removed: Vec<S>,
     /// The same of [`Self::beyond`].
     beyond_removed: Vec<S>,
     /// Vapour that drying has taken and humidifying has added since the step began [kg], and the time since then [s].
@@ -235,7 +230,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
 
     /// What a stage starts from: `start + ratio (first - start)`.
     #[inline(always)]
-    fn held(&self, start: &[S], k: usize, ratio: f64) -> S {
+    pub(super) fn held(&self, start: &[S], k: usize, ratio: f64) -> S {
         if ratio == 0.0 { start[k] } else { start[k] + (self.first[k] - start[k]).scale(ratio) }
     }
 
@@ -270,7 +265,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
 
     /// Draws the tangents anew at the solution where they are far from their curves there; true where they were.
     #[inline(always)]
-    fn follow_curves(&mut self, humidity: &HumidityCoefficients<S>, stage: usize) -> S::Mask {
+    pub(super) fn follow_curves(&mut self, humidity: &HumidityCoefficients<S>, stage: usize) -> S::Mask {
         let mut any = S::Mask::splat(false);
         let near = S::constant(PRESSURE.of::<S>());
         let zones = humidity.zones.len();
@@ -291,7 +286,7 @@ impl<'a, S: Real> VapourBalances<'a, S> {
 
     /// The balances of all zones, layers behind surfaces eliminated.
     #[inline(always)]
-    fn assemble(
+    pub(super) fn assemble(
         &mut self,
         humidity: &HumidityCoefficients<S>,
         start: &[S],
@@ -346,143 +341,9 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         }
     }
 
-    /// Humidity ratios, and what plants and saturation take away: an active-set method (Hintermueller, Ito & Kunisch 2002,
-    /// doi:10.1137/S1052623401383558), which ends after a few solutions.
-    #[inline(always)]
-    fn solve(&mut self, humidity: &HumidityCoefficients<S>, start: &[S], place: Place) {
-        self.modes.fill(Mode::idle());
-        self.assemble(humidity, start, place);
-        let open = self.follow_modes(humidity, start, place);
-        if open.any() {
-            self.leave_cycle(humidity, start, place, open);
-        }
-    }
-
-    /// Solutions until no zone changes its mode; where some still do.
-    #[inline(always)]
-    fn follow_modes(&mut self, humidity: &HumidityCoefficients<S>, start: &[S], place: Place) -> S::Mask {
-        let mut changed = S::Mask::splat(false);
-        for _ in 0..MAX_SOLUTIONS {
-            self.solve_in_modes(place.stage);
-            changed = S::Mask::splat(false);
-            for (z, (limits, zone)) in self.limits.iter().zip(&humidity.zones).enumerate() {
-                let plants = zone.has_plants();
-                let next = limits.mode(plants, self.reached[z], self.removed[z], self.diagonal[z]);
-                changed = changed | next.differs(&self.modes[z]);
-                self.modes[z] = next;
-            }
-            if !humidity.surfaces.is_empty() {
-                self.finish_stage(humidity, start, place);
-                let far = self.follow_curves(humidity, place.stage);
-                if far.any() {
-                    self.assemble(humidity, start, place);
-                }
-                changed = changed | far;
-            }
-            if !changed.any() {
-                break;
-            }
-        }
-        changed
-    }
-
-    /// Modes of the lanes in which those of several zones change each other for ever, then solutions from there.
-    ///
-    /// What is taken away bends both ways, so the active-set method may cycle. Zone after zone, each with the solution of its own balance
-    /// beside those of the others (nonlinear Gauss-Seidel), the ratios converge from any start: the matrix is an M-matrix, and what is
-    /// taken away never falls with the ratio (Ortega & Rheinboldt 1970, doi:10.1137/1.9780898719468, 13.1).
-    #[cold]
-    #[inline(never)]
-    fn leave_cycle(
-        &mut self,
-        humidity: &HumidityCoefficients<S>,
-        start: &[S],
-        place: Place,
-        mut open: S::Mask,
-    ) {
-        let mut ratios: Vec<S> =
-            (0..humidity.zones.len()).map(|z| self.held(start, z, place.ratio)).collect();
-        for _ in 0..MAX_ROUNDS {
-            for _ in 0..SWEEPS {
-                self.solve_zone_by_zone(humidity, place.stage, &mut ratios, open);
-            }
-            open = self.follow_modes(humidity, start, place);
-            if !open.any() {
-                return;
-            }
-        }
-    }
-
-    /// The balance of each zone beside the ratios of the others, in the open lanes: its ratio and its mode.
-    fn solve_zone_by_zone(
-        &mut self,
-        humidity: &HumidityCoefficients<S>,
-        stage: usize,
-        ratios: &mut [S],
-        open: S::Mask,
-    ) {
-        let Self { plan, flows, diagonal, right, modes, limits, .. } = self;
-        for (z, (limits, zone)) in limits.iter().zip(&humidity.zones).enumerate() {
-            let mut brought = right[z];
-            for (&[from, to], &carried) in plan.carries.iter().zip(&flows[stage].carried) {
-                if to == z && from != z {
-                    brought += carried * ratios[from];
-                }
-            }
-            let mode = limits.mode(zone.has_plants(), S::zero(), brought, diagonal[z]);
-            let free = (brought - mode.value) / diagonal[z];
-            ratios[z] = S::select(open, S::select(mode.held, mode.value, free), ratios[z]);
-            let before = modes[z];
-            modes[z] = Mode {
-                held: (open & mode.held) | (!open & before.held),
-                value: S::select(open, mode.value, before.value),
-            };
-        }
-    }
-
-    /// The linear system with each zone held at a humidity ratio, or with a fixed amount taken away.
-    #[inline(always)]
-    fn solve_in_modes(&mut self, stage: usize) {
-        let Self { plan, flows, system, diagonal, right, modes, removed, reached, .. } = self;
-        if plan.carries.is_empty() {
-            // Zones that exchange no air, such as a single one: with the bits of the system below.
-            for (z, mode) in modes.iter().enumerate() {
-                let free = S::one() / diagonal[z] * (right[z] - mode.value);
-                reached[z] = S::select(mode.held, mode.value, free);
-                removed[z] = S::select(mode.held, right[z] - diagonal[z] * reached[z], mode.value);
-            }
-            return;
-        }
-        system.clear_matrix();
-        for (z, mode) in modes.iter().enumerate() {
-            let row = plan.rows[z];
-            system.add_diagonal(row, S::select(mode.held, S::one(), diagonal[z]));
-            system.right[row] = S::select(mode.held, mode.value, right[z] - mode.value);
-        }
-        let carried = &flows[stage].carried;
-        for ((&[_, to], &place), &carried) in plan.carries.iter().zip(&plan.places).zip(carried) {
-            if let Some(place) = place {
-                system.add_at(place, -S::select(modes[to].held, S::zero(), carried));
-            }
-        }
-        system.solve_rest();
-        for (z, mode) in modes.iter().enumerate() {
-            reached[z] = system.right[plan.rows[z]];
-            removed[z] = right[z] - diagonal[z] * reached[z];
-            // What a held zone is given more than it needs is taken away.
-            removed[z] = S::select(mode.held, removed[z], mode.value);
-        }
-        for (&[from, to], &carried) in plan.carries.iter().zip(carried) {
-            if from != to {
-                let brought = S::select(modes[to].held, carried * reached[from], S::zero());
-                removed[to] += brought;
-            }
-        }
-    }
-
     /// Moisture contents at the end of a stage.
     #[inline(always)]
-    fn finish_stage(
+    pub(super) fn finish_stage(
         &mut self,
         humidity: &HumidityCoefficients<S>,
         start: &[S],

@@ -16,6 +16,7 @@
 //! Each stage alone is a step of backward Euler: its humidity is a mean of what it starts from and of what drives it. The second stage of SDIRK2
 //! starts from an extrapolation, and may end beyond both; `bounds` keeps it between them.
 
+mod active_set;
 pub(crate) mod balances;
 mod bounds;
 mod counting;
