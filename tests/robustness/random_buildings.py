@@ -83,6 +83,7 @@ class _Maker:
             del tree["windows"], tree["glazings"]
         random_laws.add(Draw(f"laws {seed}"), tree)
         random_air.controlled_flows(tree)
+        random_air.operative_set_points(tree)
         return tree
 
     def _site(self) -> Json:

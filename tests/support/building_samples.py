@@ -512,7 +512,7 @@ def house() -> Building:
         plain["zones"][zone][key] = (given if isinstance(given, dict) and "value" not in given else {}) | part
     for zone in ("room", "attic"):
         plain["zones"][zone] |= {"makeup_air": "outdoors"}
-    plain["zones"]["room"] |= {"solar_to_air": 0.1}
+    plain["zones"]["room"] |= {"solar_to_air": 0.1, "setpoint_radiant_share": 0.3}
     for plant in ("heating", "cooling"):
         plain["zones"]["room"][plant] |= {"radiative": 0.2}
     for window, blind in BLINDS.items():

@@ -54,6 +54,7 @@ def faults(building: Description) -> Faults:
     yield from _one_namespace(building)
     yield from _layers_have_what_they_need(building)
     yield from _radiation_has_surfaces(building)
+    yield from _shares_of_set_points_act(building)
     yield from _zones_have_not_too_many_surfaces(building)
     yield from _emissivities_where_exchange_is(building)
     yield from _convection_suits_its_side(building)
@@ -146,6 +147,29 @@ def _radiation_has_surfaces(building: Description) -> Faults:
                     "0: nothing is there that radiation could reach",
                     f"Write 'radiative: 0', or add a side with 'zone: {name}'.",
                 )
+
+
+def _shares_of_set_points_act(building: Description) -> Faults:
+    """A share of the mean radiant temperature needs set points, and surfaces that radiate."""
+    for name, zone in building.zones.items():
+        share = zone.setpoint_radiant_share
+        if share is None:
+            continue
+        location = ("zones", name, "setpoint_radiant_share")
+        if not zone.loads:
+            yield fault(
+                location,
+                f"{share:g} in a zone without heating and cooling",
+                "a set point that it acts on",
+                "Add 'heating: {setpoint: 20}', or remove it.",
+            )
+        elif not building.connections.sides(name):
+            yield fault(
+                location,
+                f"{share:g} in a zone that no surface faces",
+                "none: a zone without surfaces has no mean radiant temperature",
+                f"Remove it, or add a side with 'zone: {name}'.",
+            )
 
 
 def _zones_have_not_too_many_surfaces(building: Description) -> Faults:

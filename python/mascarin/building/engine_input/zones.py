@@ -55,6 +55,9 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         "capacity_factor": ids("capacity_factor"),
         "infiltration": _infiltration(building, positions, zone.infiltration, deeper(ids, "infiltration")),
         "solar_to_air": None if zone.solar_to_air is None else ids("solar_to_air"),
+        "setpoint_radiant_share": None
+        if zone.setpoint_radiant_share is None
+        else ids("setpoint_radiant_share"),
         "longwave": fields_of(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
         "sun": _sun(building, name, zone, ids),

@@ -28,7 +28,7 @@ outputs! {
         Row::state(Of::Zone, "ZONE.air_temperature", "degC", "Air temperature").usual(),
         |at| at.state.air[zone];
 
-    /// Mean of the surface temperatures of the zone, weighted by area; without view factors to a point and without emissivities.
+    /// Mean of the surface temperatures of the zone, weighted by area, and what the radiation of ideal loads adds; without view factors to a point and without emissivities.
     MeanRadiantTemperature { zone } =
         Row::state(Of::Zone, "ZONE.mean_radiant_temperature", "degC", "Mean radiant temperature"),
         |at| mean_radiant(&at, zone);

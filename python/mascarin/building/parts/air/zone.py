@@ -161,7 +161,9 @@ class MixingAir(Driven):
 
 
 class IdealLoads(Part):
-    """Ideal heating or cooling: it holds the air temperature, without losses and without delay.
+    """Ideal heating or cooling: it holds the air, or an operative temperature, without losses and delay.
+
+    The share of the mean radiant temperature is the zone's ``setpoint_radiant_share``.
 
     Examples
     --------
@@ -350,6 +352,7 @@ class Zone(Part):
     )
     heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
     cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
+    setpoint_radiant_share: q.SetPointRadiantShare | None = None
     thermal_bridges: dict[Name, ThermalBridge] = Field(
         default_factory=dict, description="Thermal bridges of the zone, by name"
     )
