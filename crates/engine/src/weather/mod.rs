@@ -7,6 +7,7 @@ pub(crate) mod instant;
 pub(crate) mod mechanical_air;
 pub(crate) mod solar_means;
 pub(crate) mod sun;
+pub(crate) mod sun_position;
 pub(crate) mod surface;
 mod surroundings;
 pub(crate) mod vents;
