@@ -326,6 +326,10 @@ OPTIONAL = {
         "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
         "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},
     },
+    "zones.room.sun": {
+        "kind": "shares", "shares": {"west": 0.7}, "masses": {"mass": {"outside": 0.2, "inside": 0.1}},
+        "diffuse": {"shares": {"west": 0.4}, "masses": {"mass": {"outside": 0.3, "inside": 0.3}}},
+    },
 }  # fmt: skip
 
 

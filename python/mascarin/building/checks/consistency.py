@@ -388,12 +388,30 @@ def _shades_can_act(building: Description) -> Faults:
 
 
 def _fractions_sum_to_one(location: Location, sun: GivenSun | SunShares, names: list[str]) -> Faults:
+    sides = Counter(names)
+    masses = [name for name, count in sides.items() if count == 2]
     for name in sun.shares:
-        if name not in names:
+        if name in masses:
+            yield fault(
+                (*location, "shares", name),
+                f"'{name}', which has both sides in this zone",
+                "the fraction of each side",
+                f"Write 'masses: {{{name}: {{outside: 0.1, inside: 0.1}}}}' beside 'shares:'.",
+            )
+        elif name not in names:
             yield fault(
                 (*location, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
             )
-    total = float(sum(sun.shares.values()) + sun.lost)
+    for name in sun.masses:
+        if name not in masses:
+            yield fault(
+                (*location, "masses", name),
+                f"'{name}'",
+                "a surface with both sides in this zone",
+                "Write the fraction of another one under 'shares:'." if name in names else "Remove it.",
+            )
+    of_masses = sum(float(mass.outside) + float(mass.inside) for mass in sun.masses.values())
+    total = float(sum(sun.shares.values()) + sun.lost) + of_masses
     if abs(total - 1.0) > FRACTION_TOLERANCE:
         yield fault(
             location,

@@ -194,6 +194,19 @@ class EvenSun(Part):
     kind: Literal["area"] = "area"
 
 
+class MassShares(Part):
+    """Fractions of the solar radiation that the two sides of a surface within the zone absorb.
+
+    Examples
+    --------
+    >>> float(MassShares(outside=0.1, inside=0.2).inside)
+    0.2
+    """
+
+    outside: q.SunShare = Number(0.0, source=Remark("not given: this side gets none"))
+    inside: q.SunShare = Number(0.0, source=Remark("not given: this side gets none"))
+
+
 class SunShares(Part):
     """Fractions of the diffuse part of the solar radiation, scaled to a sum of one.
 
@@ -205,6 +218,10 @@ class SunShares(Part):
 
     shares: dict[Name, q.SunShare] = Field(
         default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    masses: dict[Name, MassShares] = Field(
+        default_factory=dict,
+        description="Fractions of both sides of surfaces within the zone (internal masses), by name",
     )
     lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
 
@@ -221,6 +238,10 @@ class GivenSun(Part):
     kind: Literal["shares"] = "shares"
     shares: dict[Name, q.SunShare] = Field(
         default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    masses: dict[Name, MassShares] = Field(
+        default_factory=dict,
+        description="Fractions of both sides of surfaces within the zone (internal masses), by name",
     )
     lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
     diffuse: SunShares | None = Field(
