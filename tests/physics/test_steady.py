@@ -70,7 +70,7 @@ def test_the_end_of_a_long_run_comes_to_it() -> None:
 
 
 def test_the_moment_is_that_of_the_weather() -> None:
-    noon, night = (mc.steady(box(), box_climate(), at=f"2001-07-01 {hour}:00") for hour in ("12", "02"))
+    noon, night = (mc.steady(box(), box_climate(), moment=f"2001-07-01 {hour}:00") for hour in ("12", "02"))
     assert noon.moment == "2001-07-01 12:00"
     assert noon.flows["solar"] > 1000.0
     assert night.flows["solar"] == 0.0

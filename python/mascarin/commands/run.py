@@ -108,6 +108,7 @@ def run(
     steady : bool
         Print the steady state in the weather at --start, which then does not change, and its heat flows [W].
     """
+    # Long because each option of the command is a line.
     from mascarin.simulation.records.files import require_ending
     from mascarin.validation.first_comparison import first_comparison
 
@@ -126,7 +127,7 @@ def run(
                 out=out, report=report, end=end, interval=interval, initial=initial, compare=compared
             )
             return _steady(
-                described, climate, measured, at=start, step=step, outputs=outputs, as_json=as_json
+                described, climate, measured, moment=start, step=step, outputs=outputs, as_json=as_json
             )
         sensors, readings = compared_columns(compared, *source)
         start, end = period_of(climate, readings, start, end)
@@ -173,7 +174,7 @@ def _steady(
     climate: Climate,
     measured: Measurements | None,
     *,
-    at: str | None,
+    moment: str | None,
     step: str,
     outputs: Sequence[str] | None,
     as_json: bool,
@@ -182,7 +183,7 @@ def _steady(
     from mascarin.simulation.steady import steady
 
     state = steady(
-        building, climate, at=at, step=seconds(step), measurements=measured,
+        building, climate, moment=moment, step=seconds(step), measurements=measured,
         outputs=matching_outputs(building, outputs),
     )  # fmt: skip
     _print_lines(state.warnings)

@@ -31,7 +31,7 @@ _STEPS: Final = 60
 #: Temperature everywhere that the search begins at, which a steady state does not depend on. [degC]
 _BEGIN: Final = 20.0
 #: Magnitude of flows below which a building is at rest. [W]
-_REST: Final = 1e-3
+_SMALLEST_FLOWS: Final = 1e-3
 #: Heat flows of a steady state sum to zero within this part of their magnitudes. [-]
 CLOSED: Final = 1e-9
 
@@ -61,7 +61,7 @@ class SteadyState:
     --------
     >>> import mascarin as mc
     >>> from mascarin.examples import box, box_climate
-    >>> state = mc.steady(box(), box_climate(), at="2001-07-01 12:00")
+    >>> state = mc.steady(box(), box_climate(), moment="2001-07-01 12:00")
     >>> abs(sum(state.flows.values())) < 1e-6
     True
     """
@@ -101,7 +101,7 @@ def steady(
     building: Building,
     climate: Climate,
     *,
-    at: TimeLike | None = None,
+    moment: TimeLike | None = None,
     parameters: Mapping[str, float] | None = None,
     outputs: Sequence[str] | None = None,
     step: str | float = "15min",
@@ -121,7 +121,7 @@ def steady(
         The building.
     climate : Climate
         Its weather.
-    at : str, datetime or pandas.Timestamp, optional
+    moment : str, datetime or pandas.Timestamp, optional
         The moment; local time of the climate unless an offset is given. Default: the end of the first step.
     parameters : mapping of str to float, optional
         Values by path that replace those of the building. [unit of each]
@@ -150,15 +150,21 @@ def steady(
     --------
     >>> import mascarin as mc
     >>> from mascarin.examples import box, box_climate
-    >>> state = mc.steady(box(), box_climate(), at="2001-01-01 00:00", outputs=["room.air_temperature"])
+    >>> state = mc.steady(box(), box_climate(), moment="2001-01-01 00:00", outputs=["room.air_temperature"])
     >>> round(state["room.air_temperature"], 3) == round(state.values["room.air_temperature"], 3)
     True
     """
     paths = names_of("vary", vary) if vary else []
     simulation = _at_a_moment(
-        building, climate, at, parameters=parameters, outputs=outputs, step=step, measurements=measurements
+        building,
+        climate,
+        moment,
+        parameters=parameters,
+        outputs=outputs,
+        step=step,
+        measurements=measurements,
     )
-    one_step, moment = simulation.compiled, f"{simulation.end:%Y-%m-%d %H:%M}"
+    one_step, clock = simulation.compiled, f"{simulation.end:%Y-%m-%d %H:%M}"
     vector = simulation.vector({})
     # Weather with gains or offsets is fixed at the values of the building.
     row = one_step.forcing_at(vector)[-1:]
@@ -172,7 +178,7 @@ def steady(
     records, after = compiled.run(vector)
     flows = {flow: (float(after[flow]) - float(before[flow])) / _STEP for flow in FLOWS}
     size = sum(abs(flow) for flow in flows.values())
-    imbalance = abs(sum(flows.values())) / max(size, _REST)
+    imbalance = abs(sum(flows.values())) / max(size, _SMALLEST_FLOWS)
     names = [output.name for output in simulation.outputs]
     _require_still(records, names, imbalance)
     slopes: dict[str, dict[str, float]] = {}
@@ -189,14 +195,14 @@ def steady(
         units={output.name: output.unit for output in simulation.outputs},
         flows=flows,
         imbalance=imbalance,
-        moment=moment,
+        moment=clock,
         slopes=slopes,
         warnings=tuple(simulation.building_warnings),
     )
 
 
 def _at_a_moment(
-    building: Building, climate: Climate, at: TimeLike | None, *, step: str | float, **options: Any
+    building: Building, climate: Climate, moment: TimeLike | None, *, step: str | float, **options: Any
 ) -> Simulation:
     """A run of the one step that ends at a moment."""
     import pandas as pd
@@ -205,8 +211,8 @@ def _at_a_moment(
 
     length = seconds_of(step)
     first, _ = span(climate, None, None)
-    end = first + length if at is None else max(span(climate, at, None)[0], first + length)
-    start, last = (pd.Timestamp(moment, unit="s", tz="UTC") for moment in (end - length, end))
+    end = first + length if moment is None else max(span(climate, moment, None)[0], first + length)
+    start, last = (pd.Timestamp(seconds, unit="s", tz="UTC") for seconds in (end - length, end))
     return Simulation(
         building,
         climate,

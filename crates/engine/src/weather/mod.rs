@@ -1,5 +1,6 @@
 //! The conditions that act on a building at an instant: forcing evaluated at its surfaces, zones and windows.
 
+mod beams;
 pub mod conditions;
 pub(crate) mod humidity;
 pub mod index;
