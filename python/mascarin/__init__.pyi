@@ -29,6 +29,7 @@ from .simulation.preparation.initial import MeasuredStart as MeasuredStart
 from .simulation.results import Results as Results
 from .simulation.run import simulate as simulate
 from .simulation.simulation import Simulation as Simulation
+from .simulation.steady import steady as steady
 from .study import Study as Study
 from .templates import new_room as new_room
 from .weather import Climate as Climate

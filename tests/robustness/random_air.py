@@ -318,6 +318,14 @@ def controlled_flows(tree: Json) -> None:
             flow["control"] = "control_1"
 
 
+def operative_set_points(tree: Json) -> None:
+    """Operative set points in zones with limited radiative heating, without a draw of their own."""
+    for entry in tree["zones"].values():
+        heating = entry.get("heating", {})
+        if "radiative" in heating and "capacity" in heating:
+            entry["setpoint_radiant_share"] = 0.4
+
+
 # --- humidity -----------------------------------------------------------------------------------------------
 
 

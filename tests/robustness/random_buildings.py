@@ -83,6 +83,7 @@ class _Maker:
             del tree["windows"], tree["glazings"]
         random_laws.add(Draw(f"laws {seed}"), tree)
         random_air.controlled_flows(tree)
+        random_air.operative_set_points(tree)
         return tree
 
     def _site(self) -> Json:
@@ -247,7 +248,15 @@ class _Maker:
             inner = any(all(walls[pane["surface"]]) for pane in panes)
             if panes and draw.chance(0.7):
                 ways: list[Any] = ["area", "floor"] + (["geometry"] * 3 if drawn else [])
-                entry["sun"] = draw.one(ways + ([] if inner else [_shares(draw, faced)] * 2))
+                entry["sun"] = draw.one(
+                    ways
+                    + (
+                        []
+                        if inner
+                        else [_shares(draw, faced, {name for name in faced if walls[name] == [zone, zone]})]
+                        * 2
+                    )
+                )
             if panes and not inner and draw.chance(0.15):
                 entry["solar_to_air"] = draw.number(0.0, 0.5)
             twice = any(both == [zone, zone] for both in (walls[name] for name in faced))
@@ -293,13 +302,19 @@ def _plain(number: Any) -> float:
     return float(number["value"] if isinstance(number, dict) else number)
 
 
-def _shares(draw: Draw, faced: list[str]) -> Json:
+def _shares(draw: Draw, faced: list[str], inner: set[str]) -> Json:
     """Fractions of the sun by surface that sum to one with what is lost."""
 
     def part() -> Json:
         weights = [draw.number(0.05, 1.0) for _ in range(len(faced) + 1)]
         *each, lost = [four(weight / sum(weights)) for weight in weights]
-        return {"shares": dict(zip(faced, each, strict=True)), "lost": lost}
+        shares = dict(zip(faced, each, strict=True))
+        masses = {
+            name: {"outside": four(0.7 * shares[name]), "inside": four(0.3 * shares.pop(name))}
+            for name in faced
+            if name in inner
+        }
+        return {"shares": shares, "lost": lost} | ({"masses": masses} if masses else {})
 
     return {"kind": "shares", **part(), **({"diffuse": part()} if draw.chance(0.5) else {})}
 

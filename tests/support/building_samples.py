@@ -326,6 +326,10 @@ OPTIONAL = {
         "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
         "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},
     },
+    "zones.room.sun": {
+        "kind": "shares", "shares": {"west": 0.7}, "masses": {"mass": {"outside": 0.2, "inside": 0.1}},
+        "diffuse": {"shares": {"west": 0.4}, "masses": {"mass": {"outside": 0.3, "inside": 0.3}}},
+    },
 }  # fmt: skip
 
 
@@ -512,7 +516,7 @@ def house() -> Building:
         plain["zones"][zone][key] = (given if isinstance(given, dict) and "value" not in given else {}) | part
     for zone in ("room", "attic"):
         plain["zones"][zone] |= {"makeup_air": "outdoors"}
-    plain["zones"]["room"] |= {"solar_to_air": 0.1}
+    plain["zones"]["room"] |= {"solar_to_air": 0.1, "setpoint_radiant_share": 0.3}
     for plant in ("heating", "cooling"):
         plain["zones"]["room"][plant] |= {"radiative": 0.2}
     for window, blind in BLINDS.items():

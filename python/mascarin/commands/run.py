@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.run_summary import Finished
     from mascarin.simulation.simulation import Simulation
     from mascarin.validation.comparison import Metrics
-    from mascarin.weather import Climate
+    from mascarin.weather import Climate, Measurements
 
 #: Shadows that take longer are announced [s].
 LONG = 2.0
@@ -72,6 +72,7 @@ def run(
     check_sun: CheckSun = True,
     shift: Shift = None,
     compared: Compared = None,
+    steady: Annotated[bool, Parameter(negative="")] = False,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -104,7 +105,10 @@ def run(
     initial : float
         Temperature of the whole building at the start [degC]. Default: the first day is repeated until it is
         periodic, which takes long in heavy buildings.
+    steady : bool
+        Print the steady state in the weather at --start, which then does not change, and its heat flows [W].
     """
+    # Long because each option of the command is a line.
     from mascarin.simulation.records.files import require_ending
     from mascarin.validation.first_comparison import first_comparison
 
@@ -118,6 +122,13 @@ def run(
             allow_outside=allow_outside, check_sun=check_sun, shift=shift,
         )  # fmt: skip
         source = (measurements or weather, described, timezone, stamps, shift)
+        if steady:
+            _require_alone(
+                out=out, report=report, end=end, interval=interval, initial=initial, compare=compared
+            )
+            return _steady(
+                described, climate, measured, moment=start, step=step, outputs=outputs, as_json=as_json
+            )
         sensors, readings = compared_columns(compared, *source)
         start, end = period_of(climate, readings, start, end)
         simulation = _compiled(
@@ -140,6 +151,53 @@ def run(
     else:
         _print_all(results, metrics, sensors, summary=out is None)
     return exit_code(sound=results.sound)
+
+
+def _require_alone(**options: object) -> None:
+    """Refuse options of a course in time beside --steady.
+
+    Raises
+    ------
+    InputError
+        The first of them.
+    """
+    for name, value in options.items():
+        if value is not None:
+            raise InputError(
+                f"--{name}: found it beside --steady, expected one of them: a steady state has no course in "
+                "time. '--json' writes it for other programs"
+            )
+
+
+def _steady(
+    building: Building,
+    climate: Climate,
+    measured: Measurements | None,
+    *,
+    moment: str | None,
+    step: str,
+    outputs: Sequence[str] | None,
+    as_json: bool,
+) -> int:
+    """Print the steady state."""
+    from mascarin.simulation.steady import steady
+
+    state = steady(
+        building, climate, moment=moment, step=seconds(step), measurements=measured,
+        outputs=matching_outputs(building, outputs),
+    )  # fmt: skip
+    _print_lines(state.warnings)
+    if as_json:
+        print_json(state.to_dict())
+        return 0
+    rows = [(name, state.units[name], round(value, 3)) for name, value in state.values.items()]
+    print_table(("output", "unit", f"steady, {state.moment}"), rows)
+    print()
+    print_table(("heat flow", "unit", "into the building"), [
+        (flow, "W", round(watts, 3)) for flow, watts in state.flows.items() if watts != 0.0
+    ])  # fmt: skip
+    print(f"sum of the flows {state.imbalance:.1e} of their magnitudes")
+    return 0
 
 
 def _plain(metrics: Mapping[str, Metrics]) -> dict[str, Any]:

@@ -14,6 +14,8 @@ from .records.provenance import Provenance as Provenance
 from .results import Results as Results
 from .run import simulate as simulate
 from .simulation import Simulation as Simulation
+from .steady import SteadyState as SteadyState
+from .steady import steady as steady
 from .unused_parameters import inactive_parameters as inactive_parameters
 
 __all__: list[str]

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use crate::building::coefficients::{Boundary, Coefficients, SurfaceCoefficients};
-use crate::building::ids::SideId;
+use crate::building::ids::{BySide, SideId};
 use crate::building::plan::{Plan, SideRole};
 use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
@@ -33,11 +33,24 @@ impl<'a, S: Real> Model<'a, S> {
         wall.first_cell..wall.first_cell + wall.len()
     }
 
-    /// Whether ideal loads are found by the responses of the building to each: where there is one load, and where loads are partly
-    /// radiated. (With derivatives they always are.)
+    /// Whether ideal loads are found by the responses of the building to each: where there is one load, where loads are partly
+    /// radiated, and where set points hold more than airs. (With derivatives they always are.)
     pub(crate) fn loads_by_responses(&self) -> bool {
         let radiated = self.coefficients.zones.iter().any(|zone| zone.radiated_loads.is_some());
-        self.plan.ideal_loads.len() == 1 || radiated
+        self.plan.ideal_loads.len() == 1 || radiated || self.holds_operative()
+    }
+
+    /// What the set points of a zone hold, at temperatures and an ideal load [W]: its air, or its operative temperature [degC].
+    #[inline(always)]
+    pub(crate) fn held_temperature(&self, zone: usize, (surfaces, air): (&BySide<S>, S), load: S) -> S {
+        let numbers = &self.coefficients.zones[zone];
+        let surfaces = self.plan.zones[zone].surfaces.iter().map(|&surface| surfaces[surface]);
+        numbers.held_temperature(|&number| number, (surfaces, air), numbers.load_parts(load)[1])
+    }
+
+    /// Whether the set points of some zone hold another temperature than that of its air.
+    pub(crate) fn holds_operative(&self) -> bool {
+        self.coefficients.zones.iter().any(|zone| zone.setpoint_radiant_share.is_some())
     }
 
     /// Law of convection at a surface; none where no heat passes it, or where the surface is held at a temperature.

@@ -207,24 +207,27 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         let stages = &stages[first..first + *count];
         let plan = linearized_stepper.model.plan;
         let first_air = plan.n_cells + plan.surfaces.len();
+        let radiated_part = |stepper: &TangentStepper<'a, S>, zone: usize| {
+            let numbers = &stepper.model.coefficients.zones[zone];
+            numbers.radiated_part(stepper.ideal_load(zone)).map_or(0.0, |part| part.lane(0))
+        };
         for (p, (&zone, rows)) in plan.ideal_loads.iter().zip(responses).enumerate() {
             rows.fill(0.0);
+            let radiated = radiated_part(linearized_stepper, zone);
             for (place, KnownStage { matrix, .. }) in linearized_stepper.stage_places(length).zip(stages) {
                 if let Some(before) = place.stage.checked_sub(1) {
                     // Heat capacities at the solution of the first stage, not of this one.
                     stages[before].matrix.stored_for_next_stage(rows, place.ratio);
                 }
                 let numbers = &linearized_stepper.model.coefficients.zones[zone];
-                let radiated = numbers
-                    .radiated_part(linearized_stepper.ideal_load(zone))
-                    .map_or(0.0, |part| part.lane(0));
                 rows[first_air + zone] += 1.0 - radiated;
                 for (&surface, &share) in plan.zones[zone].surfaces.iter().zip(&numbers.radiant_shares) {
                     rows[plan.n_cells + surface.index()] += radiated * share.lane(0);
                 }
                 matrix.solve_values(rows, scratch);
             }
-            linearized_stepper.set_response(p, &rows[first_air..]);
+            let (surfaces, airs) = rows[plan.n_cells..].split_at(first_air - plan.n_cells);
+            linearized_stepper.set_response(p, ([surfaces, airs], radiated));
         }
     }
 }

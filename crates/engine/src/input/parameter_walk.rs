@@ -176,7 +176,7 @@ walk!(Angular { transmittance_scale, absorptance_scale }
     plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance, back_transmittance,
         back_absorptance });
 
-walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, heating, cooling }
+walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, mixing, heating, cooling, setpoint_radiant_share }
     plain { name, view_weights });
 walk!(Mixing { air_changes } plain { schedule });
 walk!(Infiltration { constant, temperature, wind, leakage, law, density } plain { schedule, control });

@@ -282,7 +282,11 @@ impl Sink<f64> for Network<'_> {
             }
             (Origin::ConvectiveGains { zone }, _) => self.drive_by_gains(node, zone, 0, size),
             (Origin::RadiantGains { zone }, _) => self.drive_by_gains(node, zone, 1, size),
-            // A linear building has neither windows nor ideal loads, and no heat fluxes that are given.
+            (Origin::HeatFlux, Node::Surface(surface)) => {
+                let name = self.surface_input(surface, "heat_flux");
+                self.drive(node, (surface.index(), 0), &name, size);
+            }
+            // A linear building has neither windows nor ideal loads.
             (Origin::Sun { .. } | Origin::Window | Origin::HeatFlux | Origin::IdealLoad, _) => {}
         }
     }

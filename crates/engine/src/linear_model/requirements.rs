@@ -74,9 +74,6 @@ fn require_linear_surfaces(plan: &Plan, coefficients: &Coefficients<f64>) -> Res
         if surface.convection.as_ref().is_some_and(|convection| convection.constant().is_none()) {
             return refuse(&format!("convection at {name}"), "use a constant coefficient");
         }
-        if surface.heat_flux.is_some() {
-            return refuse(&format!("heat flux at {name}"), "hold the surface at a measured temperature");
-        }
         if let Boundary::Outdoors(outdoors) = &surface.boundary
             && matches!(outdoors.emission, Some(Emission::Exact))
         {

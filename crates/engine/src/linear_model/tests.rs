@@ -1,8 +1,11 @@
 use super::*;
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
+use crate::common::facing;
 use crate::common::{Builder, values};
-use crate::input::description::{Gain, OutdoorLongwave, ParamId, Parameter, ZoneLongwave};
+use crate::input::description::{
+    Facing, Gain, HeatFlux, OutdoorLongwave, ParamId, Parameter, Side, ZoneLongwave,
+};
 use crate::physics::constants::{KELVIN, SIGMA};
 use crate::step::control::RunControl;
 
@@ -86,4 +89,33 @@ fn two_capacities() {
             assert!((found - expected).abs() <= 1e-12 * expected.abs(), "{found:e} is not {expected:e}");
         }
     }
+}
+
+/// A heat flux that is given is an input: all of it reaches the cell, and the surface is warmer than the cell by its resistance.
+#[test]
+fn a_heat_flux_is_an_input() {
+    const AREA: f64 = 6.0;
+    const THICKNESS: f64 = 0.1;
+    const CONDUCTIVITY: f64 = 0.5;
+    const HEAT: f64 = 1.2e6;
+    let mut b = Builder::new();
+    let solid = b.solid("solid", CONDUCTIVITY, 1200.0, HEAT / 1200.0);
+    let construction = b.construction("wall", &[(solid, THICKNESS, 1)]);
+    let zone = b.zone("zone", 30.0, 0.5, ZoneLongwave::None);
+    let inner = b.convection(3.0);
+    let flux = b.number("flux", 40.0);
+    let outside =
+        Side { heat_flux: Some(HeatFlux { flux, schedule: None }), ..facing(Facing::Adiabatic, None) };
+    let inside = b.inside(zone, inner, 0.9);
+    b.surface("wall", construction, [AREA, 90.0, 0.0], outside, inside);
+    let plan = b.plan();
+    let numbers = values(&plan);
+    let system = state_space(&plan, &numbers, &RunControl::default()).unwrap();
+    let input = system.inputs.iter().position(|name| name == "wall.outside_heat_flux").unwrap();
+    let inputs = system.inputs.len();
+    let into_cell = system.b[input] * AREA * THICKNESS * HEAT;
+    assert!((into_cell / AREA - 1.0).abs() < 1e-12, "{into_cell}");
+    let surface = system.outputs.iter().position(|name| name == "wall.outside_temperature").unwrap();
+    let rise = system.d[surface * inputs + input];
+    assert!((rise * CONDUCTIVITY / (0.5 * THICKNESS) - 1.0).abs() < 1e-12, "{rise}");
 }

@@ -89,7 +89,7 @@ impl<'a, S: Real> TangentStepper<'a, S> {
             start: StageStart::new(&model),
             iterate: unknowns.clone(),
             solution: unknowns,
-            loads: StoredLoads::new(&plan.ideal_loads),
+            loads: StoredLoads::new(&model),
             mean_load: vec![S::zero(); plan.zones.len()],
             vapour: VapourBalances::new(&model, stages).map(Box::new),
             vents: plan.vents.as_ref().map(|network| Box::new(VentNetwork::new(network))),
@@ -399,7 +399,7 @@ impl<'a, S: Real> TangentStepper<'a, S> {
             *load = S::constant(known);
         }
         let row = weather.row(known.part.step, last);
-        self.loads.begin(&self.model.coefficients.zones, row, (known.load, &known.stages[last].air))
+        self.loads.begin(&self.model, row, (known.load, &known.stages[last]))
     }
 
     /// The ideal load of a zone [W].
@@ -408,15 +408,15 @@ impl<'a, S: Real> TangentStepper<'a, S> {
         self.start.load[zone]
     }
 
-    /// Sets the response of the airs at the end of the step to an ideal load [K/W].
+    /// Sets the response of surfaces and airs at the end of the step to an ideal load [K/W], of which `radiated` is radiated [-].
     #[inline(always)]
-    pub(crate) fn set_response(&mut self, ideal_load: usize, airs: &[f64]) {
-        self.loads.set_response(ideal_load, airs);
+    pub(crate) fn set_response(&mut self, ideal_load: usize, response: ([&[f64]; 2], f64)) {
+        self.loads.set_response(&self.model, ideal_load, response);
     }
 
     /// Corrects the ideal loads, and with them their slopes.
     #[inline(always)]
     pub(crate) fn correct_ideal_loads(&mut self) {
-        self.loads.correct(&self.solution.air, &mut self.start.load);
+        self.loads.correct(&self.model, &self.solution.view(), &mut self.start.load);
     }
 }

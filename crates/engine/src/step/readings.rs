@@ -1,5 +1,6 @@
 //! What outputs read after a step beside the state.
 
+use crate::building::coefficients::Boundary;
 use crate::building::ids::{BySide, SideId};
 use crate::building::layout::SideRole;
 use crate::building::model::Model;
@@ -11,6 +12,7 @@ use crate::step::stage_weather::StageWeather;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::step::vapour::balances::VapourBalances;
+use crate::weather::sun_position::position;
 use crate::weather::vents::VentConditions;
 
 /// What a step has left for outputs beside the state.
@@ -64,6 +66,24 @@ impl<S: Real> Readings<'_, S> {
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SideId) -> S {
         self.weather.incident(surface)
+    }
+
+    /// The part of it from the sun's disc, where it is not measured, mean over the last step [W/m2].
+    pub(crate) fn incident_beam(&self, surface: SideId) -> S {
+        self.weather.incident_beam(surface)
+    }
+
+    /// Altitude of the sun, negative below the horizon, and its azimuth clockwise from north, at the end of the step [deg].
+    pub(crate) fn sun_position(&self) -> [f64; 2] {
+        position(self.weather.conditions.sun.direction)
+    }
+
+    /// Fractions of sky and ground that a surface sees [-]; zeros where it does not face outdoors.
+    pub(crate) fn views(&self, surface: SideId) -> [S; 2] {
+        match &self.model.coefficients.surfaces[surface].boundary {
+            Boundary::Outdoors(outdoors) => [outdoors.plane.sky_view, outdoors.plane.ground_view],
+            _ => [S::zero(); 2],
+        }
     }
 
     /// Long-wave radiation that a surface gains in the weather of the last stage [W/m2]; zero where the heat transfer

@@ -112,9 +112,13 @@ impl<S: Real> StageWeather<S> {
         self.conditions.surround(&model.coefficients, &self.index, airs);
     }
 
-    /// Averages the sun absorbed by surfaces from now on.
+    /// Averages the sun absorbed by surfaces, and its beam on planes, from now on.
     pub(crate) fn average_absorbed(&mut self, model: &Model<'_, S>) {
         self.absorbed = vec![S::zero(); model.plan.surfaces.len()];
+        let beams = vec![S::zero(); self.sun.irradiances.len()];
+        for set in [&mut self.conditions.sun.beams, &mut self.other.sun.beams, &mut self.sun.beams] {
+            set.clone_from(&beams);
+        }
     }
 
     /// Sun absorbed by a surface, or by all panes of a window, mean over the last step [W/m2].
@@ -145,6 +149,12 @@ impl<S: Real> StageWeather<S> {
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SideId) -> S {
         self.index.irradiance_source(surface).map_or_else(S::zero, |source| self.sun.irradiances[source])
+    }
+
+    /// The part of it from the sun's disc, where it is not measured [W/m2].
+    pub(crate) fn incident_beam(&self, surface: SideId) -> S {
+        let source = self.index.irradiance_source(surface);
+        source.and_then(|source| self.sun.beams.get(source).copied()).unwrap_or_else(S::zero)
     }
 
     /// Temperature of the sky at the end of the last stage [degC].

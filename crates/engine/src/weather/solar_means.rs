@@ -8,6 +8,8 @@ use crate::weather::sun::SolarConditions;
 pub struct SolarMeans<S> {
     /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
     pub(crate) irradiances: Vec<S>,
+    /// The part of each from the sun's disc [W/m2]; empty where nobody reads it.
+    pub(crate) beams: Vec<S>,
     /// Transmitted by each window [W].
     pub windows: Vec<S>,
     /// Transmitted into each zone, from other zones included [W].
@@ -23,6 +25,7 @@ impl<S: Real> SolarMeans<S> {
         let zeros = |count: usize| vec![S::zero(); count];
         Self {
             irradiances: zeros(sun.irradiances.len()),
+            beams: zeros(sun.beams.len()),
             windows: zeros(sun.windows.len()),
             zones: zeros(sun.zones.len()),
             lost: zeros(sun.zones.len()),
@@ -32,7 +35,8 @@ impl<S: Real> SolarMeans<S> {
     /// Sets all means to zero.
     #[inline(always)]
     pub fn restart(&mut self) {
-        for means in [&mut self.irradiances, &mut self.windows, &mut self.zones, &mut self.lost] {
+        let Self { irradiances, beams, windows, zones, lost } = self;
+        for means in [irradiances, beams, windows, zones, lost] {
             means.fill(S::zero());
         }
     }
@@ -42,6 +46,9 @@ impl<S: Real> SolarMeans<S> {
     pub fn add(&mut self, sun: &SolarConditions<S>, weight: f64) {
         for (mean, irradiance) in self.irradiances.iter_mut().zip(&sun.irradiances) {
             *mean += irradiance.scale(weight);
+        }
+        for (mean, beam) in self.beams.iter_mut().zip(&sun.beams) {
+            *mean += beam.scale(weight);
         }
         for (mean, window) in self.windows.iter_mut().zip(&sun.windows) {
             *mean += window.transmitted.scale(weight);

@@ -46,6 +46,10 @@ pub struct ZoneSolar<S> {
 pub struct SolarConditions<S> {
     /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
     pub(crate) irradiances: Vec<S>,
+    /// The part of each that comes from the sun's disc, zero where the irradiance is measured [W/m2]; empty where nobody reads it.
+    pub(crate) beams: Vec<S>,
+    /// Direction of the sun (east, north, up).
+    pub(crate) direction: [f64; 3],
     /// Whether no sun is on any window.
     dark: bool,
     /// Per window, in the order of [`Plan::windows`](crate::building::plan::Plan::windows).
@@ -77,6 +81,8 @@ impl<S: Real> SolarConditions<S> {
         });
         Self {
             irradiances: vec![zero; weather_index.irradiance_sources.len()],
+            beams: Vec::new(),
+            direction: [0.0; 3],
             dark: true,
             windows: windows.collect(),
             zones: vec![ZoneSolar { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
@@ -96,6 +102,10 @@ impl<S: Real> SolarConditions<S> {
         {
             *at = line(a, b);
         }
+        for (at, (&a, &b)) in self.beams.iter_mut().zip(first.beams.iter().zip(&second.beams)) {
+            *at = line(a, b);
+        }
+        self.direction = second.direction;
         for (at, (a, b)) in self.windows.iter_mut().zip(first.windows.iter().zip(&second.windows)) {
             at.transmitted = line(a.transmitted, b.transmitted);
             at.beam = line(a.beam, b.beam);
@@ -130,6 +140,10 @@ impl<S: Real> SolarConditions<S> {
         now: &Instant<'_>,
     ) {
         let dark = now.sunlight.dark();
+        self.direction = now.sunlight.direction;
+        if !self.beams.is_empty() {
+            self.light_beams(plan, coefficients, weather_index, now);
+        }
         for (irradiance, source) in self.irradiances.iter_mut().zip(&weather_index.irradiance_sources) {
             *irradiance = match source {
                 IrradianceSource::Measured(channel) => S::constant(now.on_sensor(*channel)),

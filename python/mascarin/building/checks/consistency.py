@@ -54,6 +54,7 @@ def faults(building: Description) -> Faults:
     yield from _one_namespace(building)
     yield from _layers_have_what_they_need(building)
     yield from _radiation_has_surfaces(building)
+    yield from _shares_of_set_points_act(building)
     yield from _zones_have_not_too_many_surfaces(building)
     yield from _emissivities_where_exchange_is(building)
     yield from _convection_suits_its_side(building)
@@ -146,6 +147,29 @@ def _radiation_has_surfaces(building: Description) -> Faults:
                     "0: nothing is there that radiation could reach",
                     f"Write 'radiative: 0', or add a side with 'zone: {name}'.",
                 )
+
+
+def _shares_of_set_points_act(building: Description) -> Faults:
+    """A share of the mean radiant temperature needs set points, and surfaces that radiate."""
+    for name, zone in building.zones.items():
+        share = zone.setpoint_radiant_share
+        if share is None:
+            continue
+        location = ("zones", name, "setpoint_radiant_share")
+        if not zone.loads:
+            yield fault(
+                location,
+                f"{share:g} in a zone without heating and cooling",
+                "a set point that it acts on",
+                "Add 'heating: {setpoint: 20}', or remove it.",
+            )
+        elif not building.connections.sides(name):
+            yield fault(
+                location,
+                f"{share:g} in a zone that no surface faces",
+                "none: a zone without surfaces has no mean radiant temperature",
+                f"Remove it, or add a side with 'zone: {name}'.",
+            )
 
 
 def _zones_have_not_too_many_surfaces(building: Description) -> Faults:
@@ -371,12 +395,30 @@ def _shades_can_act(building: Description) -> Faults:
 
 
 def _fractions_sum_to_one(location: Location, sun: GivenSun | SunShares, names: list[str]) -> Faults:
+    sides = Counter(names)
+    masses = [name for name, count in sides.items() if count == 2]
     for name in sun.shares:
-        if name not in names:
+        if name in masses:
+            yield fault(
+                (*location, "shares", name),
+                f"'{name}', which has both sides in this zone",
+                "the fraction of each side",
+                f"Write 'masses: {{{name}: {{outside: 0.1, inside: 0.1}}}}' beside 'shares:'.",
+            )
+        elif name not in names:
             yield fault(
                 (*location, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
             )
-    total = float(sum(sun.shares.values()) + sun.lost)
+    for name in sun.masses:
+        if name not in masses:
+            yield fault(
+                (*location, "masses", name),
+                f"'{name}'",
+                "a surface with both sides in this zone",
+                "Write the fraction of another one under 'shares:'." if name in names else "Remove it.",
+            )
+    of_masses = sum(float(mass.outside) + float(mass.inside) for mass in sun.masses.values())
+    total = float(sum(sun.shares.values()) + sun.lost) + of_masses
     if abs(total - 1.0) > FRACTION_TOLERANCE:
         yield fault(
             location,

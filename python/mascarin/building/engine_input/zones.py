@@ -20,7 +20,7 @@ from mascarin.building.parts.air.zone import (
 from mascarin.building.parts.description import Description
 from mascarin.building.parts.envelope.surface import NoLongwave
 from mascarin.building.parts.materials.text_law import numbers_of
-from mascarin.building.parts.zone_surfaces import closed, floors, surface_names
+from mascarin.building.parts.zone_surfaces import ZoneSurface, closed, floors, surface_names
 from mascarin.errors import InputError
 
 
@@ -55,6 +55,9 @@ def describe_zone(building: Description, positions: Positions, name: str, zone: 
         "capacity_factor": ids("capacity_factor"),
         "infiltration": _infiltration(building, positions, zone.infiltration, deeper(ids, "infiltration")),
         "solar_to_air": None if zone.solar_to_air is None else ids("solar_to_air"),
+        "setpoint_radiant_share": None
+        if zone.setpoint_radiant_share is None
+        else ids("setpoint_radiant_share"),
         "longwave": fields_of(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
         "sun": _sun(building, name, zone, ids),
@@ -99,13 +102,13 @@ def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
     if not isinstance(zone.sun, GivenSun):
         return {"kind": "area" if zone.sun is None else zone.sun.kind}
 
+    def share(item: ZoneSurface, part: GivenSun | SunShares, path: str) -> int | None:
+        if item.name in part.masses:
+            return ids(f"{path}.masses.{item.name}.{item.side}")
+        return ids(f"{path}.shares.{item.name}") if item.name in part.shares else None
+
     def shares(part: GivenSun | SunShares, path: str) -> Json:
-        faces = [
-            ids(f"{path}.shares.{item.name}")
-            if item.name in part.shares and item.surface is not None
-            else None
-            for item in surfaces
-        ]
+        faces = [None if item.surface is None else share(item, part, path) for item in surfaces]
         return {"faces": faces, "lost": ids(f"{path}.lost")}
 
     written: Json = {"kind": "shares", **shares(zone.sun, "sun")}

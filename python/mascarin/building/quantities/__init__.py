@@ -82,6 +82,7 @@ from mascarin.building.quantities.loads import (
     ScheduledHumidityRatio,
     ScheduledTemperature,
     SetPoint,
+    SetPointRadiantShare,
     SolarToAir,
 )
 from mascarin.building.quantities.materials import (
@@ -292,6 +293,7 @@ __all__ = [
     "ScheduledTemperature",
     "SensibleHeatRatio",
     "SetPoint",
+    "SetPointRadiantShare",
     "Shelter",
     "ShutterResistance",
     "SideRatio",

@@ -30,6 +30,16 @@ LoadRadiative = Annotated[
         Limits(at_least=0.0, at_most=0.95),
     ),
 ]
+SetPointRadiantShare = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Share of the mean radiant temperature in what set points hold; none: they hold the air",
+        Span(0.2, 0.6, "thermostats by what they are exposed to; 0.5 is operative in still air, ISO 7726"),
+        # A load acts on the air first: with the surfaces alone it would be found by its radiation only.
+        Limits(at_least=0.0, at_most=0.9),
+    ),
+]
 SetPoint = Annotated[
     Number,
     Quantity(

@@ -17,6 +17,9 @@ use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, 
 use super::surface::SurfaceCoefficients;
 use super::wall::WallCoefficients;
 
+/// Temperature of a room [degC] about which the emission is linearised for the rise by an emitter.
+const ROOM: f64 = 20.0;
+
 /// A zone.
 #[derive(Debug, Clone)]
 pub struct ZoneCoefficients<S> {
@@ -58,6 +61,10 @@ pub struct ZoneCoefficients<S> {
     pub openings: Vec<Opening<S>>,
     /// Parts of ideal heating and of ideal cooling that are radiated to the surfaces [-]; none: all goes to the air.
     pub radiated_loads: Option<[S; 2]>,
+    /// What the radiated part of ideal loads adds to the mean radiant temperature [K/W]; none where all goes to the air.
+    pub(crate) emitter: Option<S>,
+    /// Share of the mean radiant temperature in what set points hold [-]; none: they hold the air.
+    pub(crate) setpoint_radiant_share: Option<S>,
     /// Ideal heating.
     pub heating: Option<Thermostat<S>>,
     /// Ideal cooling.
@@ -101,10 +108,13 @@ impl<S: Real> ZoneCoefficients<S> {
         let infiltrated =
             || AirFlow::new(air_capacity, *schedule, (density.as_ref(), [index; 2]), values, site);
         let ([heating, cooling], radiated_loads) = plants(definition, values);
+        let absorbing = exchanging.then_some(&emissivities);
         Self {
+            emitter: radiated_loads.as_ref().map(|_| radiant_rise(&areas, absorbing, &emission)),
+            setpoint_radiant_share: definition.setpoint_radiant_share.map(|id| values.get(id)),
             radiated_loads,
             gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
-            radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
+            radiant_shares: radiant_shares(&areas, absorbing),
             ventilation: definition.ventilation.iter().map(ventilated).collect(),
             mixing: definition.mixing.as_ref().map(|mixing| mixed(mixing, values)),
             openings: openings.map(|opening| Opening::new(opening, values, site.heat)).collect(),
@@ -136,6 +146,45 @@ impl<S: Real> ZoneCoefficients<S> {
     #[inline(always)]
     pub(crate) fn radiated_part(&self, load: S) -> Option<S> {
         self.radiated_loads.map(|[heating, cooling]| S::select(load.lt(S::zero()), cooling, heating))
+    }
+
+    /// Mean radiant temperature: the mean of surface temperatures by area, and what the radiation of an ideal load [W] adds; `air`
+    /// where the zone has no surfaces [degC]. Of changes of these temperatures [K] it gives the change.
+    #[inline(always)]
+    pub(crate) fn mean_radiant<V: Real>(
+        &self,
+        number: impl Fn(&S) -> V,
+        (surfaces, air): (impl Iterator<Item = V>, V),
+        radiated: V,
+    ) -> V {
+        if self.areas.is_empty() {
+            return air;
+        }
+        let (mut sum, mut total) = (V::zero(), V::zero());
+        for (temperature, area) in surfaces.zip(&self.areas) {
+            let area = number(area);
+            sum += area * temperature;
+            total += area;
+        }
+        match &self.emitter {
+            Some(rise) => sum / total + number(rise) * radiated,
+            None => sum / total,
+        }
+    }
+
+    /// What the set points hold: `(1 - s) T_a + s T_r` with the share `s` of the mean radiant temperature `T_r`, else the air [degC].
+    /// Of changes of temperatures [K] it gives the change.
+    #[inline(always)]
+    pub(crate) fn held_temperature<V: Real>(
+        &self,
+        number: impl Fn(&S) -> V,
+        (surfaces, air): (impl Iterator<Item = V>, V),
+        radiated: V,
+    ) -> V {
+        let Some(share) = &self.setpoint_radiant_share else { return air };
+        let share = number(share);
+        let radiant = self.mean_radiant(number, (surfaces, air), radiated);
+        (V::one() - share) * air + share * radiant
     }
 
     /// What an ideal load gives to the air and to the surfaces [W].
@@ -207,6 +256,20 @@ fn radiant_shares<S: Real>(areas: &[S], emissivities: Option<&Vec<S>>) -> Vec<S>
     };
     let total = weights.iter().fold(S::zero(), |sum, &weight| sum + weight);
     weights.into_iter().map(|weight| weight / total).collect()
+}
+
+/// What a watt that an emitter radiates into a zone adds to the mean radiant temperature in it [K/W].
+///
+/// Surfaces absorb it by area times emissivity (see [`radiant_shares`]), so that everything in the zone is exposed to the same
+/// irradiance `1/sum(e A)`. A black body in it is warmer by this over the slope `4 sigma T^3` of the emission, at the temperature
+/// about which the zone is linearised, else at 20 degC (mean radiant temperature: ISO 7726:1998, annex B).
+fn radiant_rise<S: Real>(areas: &[S], emissivities: Option<&Vec<S>>, emission: &Emission<S>) -> S {
+    let absorbing = areas.iter().enumerate().fold(S::zero(), |sum, (i, &area)| {
+        sum + emissivities.map_or(area, |emissivities| area * emissivities[i])
+    });
+    // A linearised emission has the slope of its reference everywhere.
+    let (_, slope) = emission.at(S::constant(ROOM));
+    S::one() / (slope * absorbing)
 }
 
 /// Given weights, or `A_i A_j` between surfaces that are not parts of one plane.

@@ -48,6 +48,9 @@ pub struct Zone {
     /// Ideal cooling.
     #[serde(default)]
     pub cooling: Option<IdealLoad>,
+    /// Share of the mean radiant temperature in the temperature that set points of heating and cooling hold [-]. None: the air alone.
+    #[serde(default)]
+    pub setpoint_radiant_share: Option<ParamId>,
 }
 
 /// Infiltration of outdoor air.
@@ -191,7 +194,7 @@ pub struct Mixing {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IdealLoad {
-    /// Set point of the air temperature.
+    /// Set point of the air temperature, or of the temperature that [`Zone::setpoint_radiant_share`] states.
     pub setpoint: SetPoint,
     /// Largest heat that it supplies or removes [W]. None: unlimited.
     #[serde(default)]

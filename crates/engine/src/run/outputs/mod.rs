@@ -28,7 +28,7 @@ outputs! {
         Row::state(Of::Zone, "ZONE.air_temperature", "degC", "Air temperature").usual(),
         |at| at.state.air[zone];
 
-    /// Mean of the surface temperatures of the zone, weighted by area; without view factors to a point and without emissivities.
+    /// Mean of the surface temperatures of the zone, weighted by area, and what the radiation of ideal loads adds; without view factors to a point and without emissivities.
     MeanRadiantTemperature { zone } =
         Row::state(Of::Zone, "ZONE.mean_radiant_temperature", "degC", "Mean radiant temperature"),
         |at| mean_radiant(&at, zone);
@@ -161,6 +161,48 @@ outputs! {
         ),
         |at| at.step.incident(SideId::outside(surface));
 
+    /// The part of it that comes from the sun's disc, after shading; 0 where the irradiance is measured.
+    IncidentBeam { surface } =
+        Row::mean(
+            Of::OutdoorSurface,
+            "SURFACE.incident_beam, WINDOW.incident_beam",
+            "W/m2",
+            "Incident beam radiation",
+        ),
+        |at| at.step.incident_beam(SideId::outside(surface));
+
+    /// The part of it from sky and ground, that around the sun's disc included; all of it where the irradiance is measured.
+    IncidentDiffuse { surface } =
+        Row::mean(
+            Of::OutdoorSurface,
+            "SURFACE.incident_diffuse, WINDOW.incident_diffuse",
+            "W/m2",
+            "Incident diffuse radiation",
+        ),
+        |at| at.step.incident(SideId::outside(surface)) - at.step.incident_beam(SideId::outside(surface));
+
+    /// Fraction of the sky that the surface sees, as diffuse radiation counts it before obstacles with vertices.
+    SkyView { surface } =
+        Row::state(
+            Of::OutdoorSurface,
+            "SURFACE.sky_view_factor, WINDOW.sky_view_factor",
+            "-",
+            "View factor to the sky",
+        )
+        .within(0.0, 1.0),
+        |at| at.step.views(SideId::outside(surface))[0];
+
+    /// Fraction of the ground that the surface sees, before obstacles with vertices.
+    GroundView { surface } =
+        Row::state(
+            Of::OutdoorSurface,
+            "SURFACE.ground_view_factor, WINDOW.ground_view_factor",
+            "-",
+            "View factor to the ground",
+        )
+        .within(0.0, 1.0),
+        |at| at.step.views(SideId::outside(surface))[1];
+
     /// Solar radiation that the window transmits; between two zones less what it transmits the other way.
     TransmittedSolar { surface } =
         Row::mean(Of::Window, "WINDOW.transmitted_solar", "W", "Transmitted solar radiation"),
@@ -248,6 +290,16 @@ outputs! {
         Row::state(Of::Building, "sky_temperature", "degC", "Sky temperature"),
         |at| at.step.sky_temperature();
 
+    /// Altitude of the sun above the level horizon, negative by night.
+    SunAltitude =
+        Row::state(Of::Building, "sun_altitude", "deg", "Altitude of the sun").within(-90.0, 90.0),
+        |at| S::constant(at.step.sun_position()[0]);
+
+    /// Azimuth of the sun, clockwise from north.
+    SunAzimuth =
+        Row::state(Of::Building, "sun_azimuth", "deg", "Azimuth of the sun").within(0.0, 360.0),
+        |at| S::constant(at.step.sun_position()[1]);
+
     /// Temperature at a depth of a wall.
     Sensor { sensor } =
         Row::state(Of::Sensor, "SENSOR.temperature", "degC", "Temperature of a sensor").usual(),
@@ -298,10 +350,16 @@ impl Output {
         self.row().of.part(plan, &self.place())
     }
 
-    /// Whether it is the mean over the step of the sun that surfaces absorb, which is averaged on request only.
+    /// Whether it is a mean over the step of the sun that surfaces absorb, or of its beam, which are averaged on request only.
     #[must_use]
     pub fn averages_absorbed_sun(&self) -> bool {
-        matches!(self, Self::AbsorbedSolar { .. } | Self::Derived { .. })
+        matches!(
+            self,
+            Self::AbsorbedSolar { .. }
+                | Self::IncidentBeam { .. }
+                | Self::IncidentDiffuse { .. }
+                | Self::Derived { .. }
+        )
     }
 }
 

@@ -22,18 +22,13 @@ pub(super) fn solar_transmittance<S: Real>(at: &At<'_, S>, surface: usize) -> S 
     S::select(dark, S::zero(), fraction)
 }
 
-/// Mean temperature of the surfaces of a zone, weighted by area; that of the air where it has none [degC].
+/// Mean temperature of the surfaces of a zone, weighted by area, with what the radiation of an ideal load adds; that of the air where it
+/// has no surfaces [degC].
 pub(super) fn mean_radiant<S: Real>(at: &At<'_, S>, zone: usize) -> S {
-    let areas = &at.step.model.coefficients.zones[zone].areas;
-    if areas.is_empty() {
-        return at.state.air[zone];
-    }
-    let (mut sum, mut total) = (S::zero(), S::zero());
-    for (&surface, &area) in at.plan.zones[zone].surfaces.iter().zip(areas) {
-        sum += area * at.state.surfaces[surface];
-        total += area;
-    }
-    sum / total
+    let numbers = &at.step.model.coefficients.zones[zone];
+    let surfaces = at.plan.zones[zone].surfaces.iter().map(|&surface| at.state.surfaces[surface]);
+    let radiated = numbers.load_parts(at.state.load[zone])[1];
+    numbers.mean_radiant(|&number| number, (surfaces, at.state.air[zone]), radiated)
 }
 
 #[allow(clippy::cast_precision_loss, reason = "cell counts are small")]

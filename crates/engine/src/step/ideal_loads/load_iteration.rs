@@ -49,7 +49,17 @@ impl<S: Real> Stepper<'_, S> {
         ideal_loads.begin(&model.coefficients.zones, row, load, previous.is_some());
         let tableau = self.scheme.tableau();
         let expected = |zone: usize| line(state.air[zone], iterate.air[zone], 1.0 / tableau.diagonal);
-        ideal_loads.mark_needed(load, expected);
+        if ideal_loads.controlled.is_empty() {
+            ideal_loads.mark_needed(load, expected);
+        } else {
+            let controlled = |zone: usize| {
+                let [now, next] =
+                    [(&state.surfaces, state.air[zone]), (&iterate.surfaces, iterate.air[zone])]
+                        .map(|at| model.held_temperature(zone, at, load[zone]));
+                line(now, next, 1.0 / tableau.diagonal)
+            };
+            ideal_loads.mark_needed(load, controlled);
+        }
         ideal_loads.begin_holding(model, row, (tableau.diagonal * length, tableau.ratio), load, expected);
         if let Some(previous) = previous {
             let known = [previous, ideal_loads.first.view()];
@@ -78,7 +88,9 @@ impl<S: Real> Stepper<'_, S> {
             let LoadIteration { mut energy, change, accepted } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
             let still = accepted | S::Mask::splat(whole);
-            let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
+            let (solution, load) = (&self.solver.solution, &mut self.solver.start.load);
+            let air = &solution.air;
+            self.ideal_loads.read_controlled(&self.model, &solution.view(), load);
             let found = self.ideal_loads.correct(air, load, (number, active, further > 0));
             let moving = active & !(found & still) & !self.solver.failed;
             if moving.any() && !(number + 1 == self.most_sweeps() && self.fail_some(moving)) {
@@ -260,6 +272,7 @@ impl<S: Real> Stepper<'_, S> {
         let weight = weights[weights.len() - 1];
         let Self { model, solver, ideal_loads, known, .. } = self;
         if ideal_loads.any_needed(!solver.failed) {
+            ideal_loads.read_controlled(model, &solver.solution.view(), &solver.start.load);
             ideal_loads.complete(model, &mut solver.system, &solver.solution.air, &solver.start.load);
             solver.system.resolve_all(model, &mut solver.solution);
             known.amend(&solver.solution);

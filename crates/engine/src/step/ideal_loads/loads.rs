@@ -73,6 +73,8 @@ pub(crate) struct IdealLoads<S: Real> {
     /// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
     pub(super) close: f64,
     pub(super) limits: Vec<Limits<S>>,
+    /// What the set points of each zone hold [degC]; empty where that is the air everywhere.
+    pub(super) controlled: Vec<S>,
     /// Response of the building to each load, where there are few.
     pub(super) responses: Vec<Response<S>>,
     /// The airs that the last stage holds, where there are many.
@@ -111,11 +113,13 @@ impl<S: Real> IdealLoads<S> {
         // Airs are held by heat to them; loads that are partly radiated need the responses as well.
         let direct = S::DERIVATIVES || model.loads_by_responses();
         let few = if direct { count } else { 0 };
+        let operative = model.holds_operative();
         Self {
             zones: zones.clone(),
             close,
             limits: vec![nothing; count],
-            responses: vec![Response::new(unknowns, rows, stages); few],
+            controlled: zeros(if operative { unknowns.air.len() } else { 0 }),
+            responses: vec![Response::new(unknowns, rows, stages, operative); few],
             held: (!direct).then(|| ZoneLoadSolver::new(count, rows, close)),
             load_sensitivities: (!direct && count > 0).then(|| LoadSensitivity::new(model, zones, stages)),
             changes: vec![Change::none(); if direct { 0 } else { count }],
@@ -319,11 +323,18 @@ impl<S: Real> IdealLoads<S> {
         within
     }
 
-    /// Response of the air of load `p` at the end of the step to load `q` [K/W].
+    /// Response of what the set points of load `p` hold at the end of the step to load `q` [K/W].
     #[inline(always)]
     pub(super) fn gain(&self, p: usize, q: usize) -> S {
-        let stages = &self.responses[q].stages;
-        stages[stages.len() - 1].air[self.zones[p]]
+        self.responses[q].gain(self.zones[p])
+    }
+
+    /// Reads what the set points hold, where that is not the air everywhere, at temperatures and loads [W].
+    #[inline(always)]
+    pub(super) fn read_controlled(&mut self, model: &Model<'_, S>, at: &Temperatures<'_, S>, loads: &[S]) {
+        for (zone, temperature) in self.controlled.iter_mut().enumerate() {
+            *temperature = model.held_temperature(zone, (at.surfaces, at.air[zone]), loads[zone]);
+        }
     }
 
     /// Zone whose load changes most in a lane, and by how much its air would change [K].
@@ -364,7 +375,10 @@ impl<S: Real> IdealLoads<S> {
             return;
         }
         self.respond_last(model, system, loads);
-        self.complete_by_responses(air, loads, &mut system.coupled.right);
+        let controlled = core::mem::take(&mut self.controlled);
+        let held = if controlled.is_empty() { air } else { &controlled };
+        self.complete_by_responses(held, loads, &mut system.coupled.right);
+        self.controlled = controlled;
     }
 
     /// Adds the heat that still holds the airs at the end to the corrections: some millionth.

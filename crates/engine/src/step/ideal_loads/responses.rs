@@ -13,6 +13,8 @@ use crate::number::real::Real;
 pub(crate) struct Response<S> {
     /// Of the temperatures at the end of each stage [K/W].
     pub(super) stages: Vec<Unknowns<S>>,
+    /// Of what the set points of each zone hold at the end of the step [K/W]; empty where that is the air everywhere.
+    pub(super) controlled: Vec<S>,
     /// Of the enthalpies that the second stage starts from [J/(m3 W)].
     held: Vec<S>,
     /// Forward sweeps of the nonlinear walls.
@@ -24,9 +26,11 @@ pub(crate) struct Response<S> {
 }
 
 impl<S: Real> Response<S> {
-    pub(super) fn new(unknowns: &Unknowns<S>, rows: usize, stages: usize) -> Self {
+    /// In a building whose set points hold operative temperatures, or airs alone.
+    pub(super) fn new(unknowns: &Unknowns<S>, rows: usize, stages: usize, operative: bool) -> Self {
         let zeros = |n: usize| vec![S::zero(); n];
         Self {
+            controlled: zeros(if operative { unknowns.air.len() } else { 0 }),
             stages: vec![unknowns.clone(); stages],
             held: zeros(unknowns.cells.len()),
             known: zeros(unknowns.cells.len()),
@@ -67,6 +71,7 @@ impl<S: Real> Response<S> {
         }
         system.solve_again(&mut self.right);
         self.set_temperatures(model, system, stage, ratio);
+        self.set_controlled(model, of_zone);
     }
 
     /// Response of the airs at the end of the step to a load in the last stage only.
@@ -83,12 +88,34 @@ impl<S: Real> Response<S> {
         for (air, plan) in self.stages[last].air.iter_mut().zip(&model.plan.zones) {
             *air = self.right[plan.air_row];
         }
+        self.set_controlled(model, of_zone);
+    }
+
+    /// What the set points hold in the stage just solved, where that is not the air everywhere.
+    #[inline(always)]
+    fn set_controlled(&mut self, model: &Model<'_, S>, (own, load): (usize, S)) {
+        let Self { controlled, right, .. } = self;
+        for (zone, rise) in controlled.iter_mut().enumerate() {
+            let (plan, numbers) = (&model.plan.zones[zone], &model.coefficients.zones[zone]);
+            let surfaces = plan.surfaces.iter().map(|&surface| right[model.plan.row(surface)]);
+            let radiated = numbers.radiated_part(load).filter(|_| zone == own).unwrap_or_else(S::zero);
+            *rise = numbers.held_temperature(|&number| number, (surfaces, right[plan.air_row]), radiated);
+        }
+    }
+
+    /// What the set points of a zone hold at the end of the step [K/W].
+    #[inline(always)]
+    pub(super) fn gain(&self, zone: usize) -> S {
+        match self.controlled.get(zone) {
+            Some(&rise) => rise,
+            None => self.stages[self.stages.len() - 1].air[zone],
+        }
     }
 
     /// The effect of the response of the first stage on the second: heat stored in walls and airs.
     #[inline(always)]
     fn carry_over(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, length: f64, ratio: f64) {
-        let Self { stages, held, known, right, sources } = self;
+        let Self { stages, held, known, right, sources, .. } = self;
         let first = &stages[0];
         for (zone, plan) in model.plan.zones.iter().enumerate() {
             let storage = model.coefficients.zones[zone].capacity.scale(ratio / length);
@@ -129,7 +156,7 @@ impl<S: Real> Response<S> {
         stage: usize,
         ratio: f64,
     ) {
-        let Self { stages, held, known, right, sources } = self;
+        let Self { stages, held, known, right, sources, .. } = self;
         let rise = &mut stages[stage];
         for (zone, plan) in model.plan.zones.iter().enumerate() {
             rise.air[zone] = right[plan.air_row];

@@ -43,6 +43,21 @@ impl<S: Real> IdealLoads<S> {
             self.correction.fill(S::zero());
             return held.correct(limits, (air, loads), (number, active, all));
         }
+        let controlled = core::mem::take(&mut self.controlled);
+        let held = if controlled.is_empty() { air } else { &controlled };
+        let found = self.correct_by_responses(held, loads, (active, all));
+        self.controlled = controlled;
+        found
+    }
+
+    /// As [`Self::correct`], by the responses, of what the set points hold.
+    #[inline(always)]
+    fn correct_by_responses(
+        &mut self,
+        air: &[S],
+        loads: &mut [S],
+        (active, all): (S::Mask, bool),
+    ) -> S::Mask {
         let quiet = self.within_set_points(|zone| air[zone]);
         let known = self.responses_known;
         self.needed = self.needed | !quiet;
@@ -86,17 +101,15 @@ impl<S: Real> IdealLoads<S> {
         find_loads(
             (zones, limits),
             #[inline(always)]
-            |p, q| {
-                let stages = &responses[q].stages;
-                stages[stages.len() - 1].air[zones[p]]
-            },
+            |p, q| responses[q].gain(zones[p]),
             (air, loads),
             (correction, matrix, right),
         );
     }
 }
 
-/// The loads of some zones that bring airs to their set points, by the response `gain(p, q)` of the air of load `p` to load `q` [K/W].
+/// The loads of some zones that bring airs, or what else the set points hold, to their set points, by the response `gain(p, q)` of the air
+/// of load `p` to load `q` [K/W].
 #[inline(always)]
 pub(super) fn find_loads<S: Real>(
     (zones, limits): (&[usize], &[Limits<S>]),

@@ -211,6 +211,7 @@ impl Builder {
             view_weights: Vec::new(),
             sun: ZoneSun::Area,
             solar_to_air: None,
+            setpoint_radiant_share: None,
             gains: Vec::new(),
             ventilation: Vec::new(),
             mixing: None,

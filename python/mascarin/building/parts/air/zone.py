@@ -161,7 +161,9 @@ class MixingAir(Driven):
 
 
 class IdealLoads(Part):
-    """Ideal heating or cooling: it holds the air temperature, without losses and without delay.
+    """Ideal heating or cooling: it holds the air, or an operative temperature, without losses and delay.
+
+    The share of the mean radiant temperature is the zone's ``setpoint_radiant_share``.
 
     Examples
     --------
@@ -192,6 +194,19 @@ class EvenSun(Part):
     kind: Literal["area"] = "area"
 
 
+class MassShares(Part):
+    """Fractions of the solar radiation that the two sides of a surface within the zone absorb.
+
+    Examples
+    --------
+    >>> float(MassShares(outside=0.1, inside=0.2).inside)
+    0.2
+    """
+
+    outside: q.SunShare = Number(0.0, source=Remark("not given: this side gets none"))
+    inside: q.SunShare = Number(0.0, source=Remark("not given: this side gets none"))
+
+
 class SunShares(Part):
     """Fractions of the diffuse part of the solar radiation, scaled to a sum of one.
 
@@ -203,6 +218,10 @@ class SunShares(Part):
 
     shares: dict[Name, q.SunShare] = Field(
         default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    masses: dict[Name, MassShares] = Field(
+        default_factory=dict,
+        description="Fractions of both sides of surfaces within the zone (internal masses), by name",
     )
     lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
 
@@ -219,6 +238,10 @@ class GivenSun(Part):
     kind: Literal["shares"] = "shares"
     shares: dict[Name, q.SunShare] = Field(
         default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    masses: dict[Name, MassShares] = Field(
+        default_factory=dict,
+        description="Fractions of both sides of surfaces within the zone (internal masses), by name",
     )
     lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
     diffuse: SunShares | None = Field(
@@ -350,6 +373,7 @@ class Zone(Part):
     )
     heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
     cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
+    setpoint_radiant_share: q.SetPointRadiantShare | None = None
     thermal_bridges: dict[Name, ThermalBridge] = Field(
         default_factory=dict, description="Thermal bridges of the zone, by name"
     )
