@@ -11,7 +11,8 @@ import mascarin
 
 PACKAGES: Final = (
     "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization", "validation",
-    "calibration", "study", "design", "comfort", "energyplus", "fmu", "pages.view", "physics",
+    "calibration", "study", "design", "comfort", "energyplus", "fmu", "pages.view",
+    "pages.live", "physics",
 )  # fmt: skip
 
 
