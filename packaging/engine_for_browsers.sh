@@ -10,5 +10,5 @@ if ! [ -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
     exit 0
 fi
 RUSTFLAGS="-C target-feature=+simd128" cargo build --profile web --package mascarin-web --lib --target "$target" \
-    --target-dir target/web --locked --quiet
-cp "target/web/$target/web/mascarin_web.wasm" "$out"
+    --target-dir target/browsers --locked --quiet
+cp "target/browsers/$target/web/mascarin_web.wasm" "$out"

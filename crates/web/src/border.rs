@@ -31,6 +31,15 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Keeps the text of a panic.
+fn note_panics() {
+    panic::set_hook(Box::new(|about| {
+        if let Ok(mut text) = PANIC.try_lock() {
+            *text = about.to_string();
+        }
+    }));
+}
+
 /// Does something with the model; a refusal becomes the message.
 fn with_model(work: impl FnOnce(&mut Model) -> Result<(), String>) -> i32 {
     let mut state = state();
@@ -47,6 +56,7 @@ fn with_model(work: impl FnOnce(&mut Model) -> Result<(), String>) -> i32 {
 /// Room for a file: 0 is `run.json`, 1 `building.json`, 2 `forcing.bin`.
 #[unsafe(no_mangle)]
 pub extern "C" fn reserve(file: usize, bytes: usize) -> *mut u8 {
+    note_panics();
     let room = &mut state().files[file];
     *room = vec![0; bytes];
     room.as_mut_ptr()
@@ -55,11 +65,6 @@ pub extern "C" fn reserve(file: usize, bytes: usize) -> *mut u8 {
 /// Makes a model of the files.
 #[unsafe(no_mangle)]
 pub extern "C" fn load() -> i32 {
-    panic::set_hook(Box::new(|about| {
-        if let Ok(mut text) = PANIC.try_lock() {
-            *text = about.to_string();
-        }
-    }));
     let files = core::mem::take(&mut state().files);
     let made = Model::read(&files);
     let mut state = state();

@@ -43,6 +43,7 @@ def run_json(
     *,
     global_follows: bool = False,
     readings: Readings | None = None,
+    sources: bool = True,
 ) -> bytes:
     """The file ``run.json``: settings, what is recorded, variables, and where all of it comes from.
 
@@ -58,6 +59,8 @@ def run_json(
         Whether the global radiation is calculated from its parts, because one of them is an input.
     readings : Readings, optional
         What is recorded. Default: the outputs of the run.
+    sources : bool
+        Whether it names the weather file and the measured table, with what was read of each column.
     """
     compiled = simulation.compiled
     content = {
@@ -71,10 +74,10 @@ def run_json(
         "global_follows": global_follows,
         "building": simulation.building.name,
         "building_sha256": compiled.hash,
-        "climate": summary(simulation.climate),
-        "measurements": simulation.measured,
         "start": simulation.start.isoformat(),
     }
+    if sources:
+        content |= {"climate": summary(simulation.climate), "measurements": simulation.measured}
     return json.dumps(content, default=str).encode()
 
 

@@ -107,6 +107,12 @@
     if (unit === "°C") lines.push(outdoors);
     return lines;
   }
+  // Quantity and unit of an axis.
+  function label(unit, names) {
+    const quantities = [...new Set(names.map((name) => outputs[name].quantity))];
+    const words = quantities.length === 1 ? quantities[0] : unit === "°C" ? "Temperature" : "";
+    return [words, unit].filter(Boolean).join(", ");
+  }
   function build() {
     for (const { plot } of plots) plot.destroy();
     const target = $("plots"), narrow = innerWidth < 640;
@@ -119,7 +125,7 @@
       });
       if (unit === "°C") lines.push(Curves.line("outdoors", Curves.style("--soft"), unit, { width: 1 }));
       const plot = new uPlot({
-        width: target.clientWidth, height: number ? 170 : narrow ? 210 : 320, tzDate: Curves.local, axes: Curves.axes(unit || "–"),
+        width: target.clientWidth, height: number ? 170 : narrow ? 210 : 320, tzDate: Curves.local, axes: Curves.axes(label(unit, names)),
         scales: { x: { time: true } }, cursor: { sync: { key: "live" }, drag: { x: true, y: false } }, legend: { live: !narrow }, series: lines,
         hooks: { setLegend: [(self) => self.root.classList.toggle("idle", self.legend.idx === null || self.legend.idx === undefined)] },
       }, columns(unit, names), target);

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from mascarin import __version__
 from mascarin._io import atomic, units
+from mascarin.building.outputs.kinds import KINDS
 from mascarin.building.rooms import rooms
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import text
@@ -192,12 +193,17 @@ class _Page:
                 measured=bool(self._sent.compared),
                 rooms=self._rooms(),
                 same=self._has_the_mesh_of_a_run(),
-                inputs=how_it_was_run(self._results, Notes(inputs=self._sent.inputs)),
+                inputs=self._inputs(),
                 worker=Markup(asset("pages/live/worker.js")),  # noqa: S704  (our own file)
                 engine=text_of(module),
                 contents=text_of(b"".join(files)),
             )
         )
+
+    def _inputs(self) -> list[tuple[str, str]]:
+        """How the run was made, without what was read of each column of a table."""
+        rows = how_it_was_run(self._results, Notes(inputs=self._sent.inputs))
+        return [(name, words) for name, words in rows if not name.endswith(", provenance")]
 
     def _files(self) -> list[bytes]:
         """What the engine reads, then measured values."""
@@ -206,7 +212,13 @@ class _Page:
         names = [simulation.paths[k] for entry in self._sliders for k, _ in entry["positions"]]
         variables = [each for each in variables_of(simulation, (), names) if each.causality == "parameter"]
         return [
-            run_json(simulation, variables, f"{{{simulation.identity[:32]}}}", readings=simulation.recorded),
+            run_json(
+                simulation,
+                variables,
+                f"{{{simulation.identity[:32]}}}",
+                readings=simulation.recorded,
+                sources=False,
+            ),
             simulation.compiled.description.encode(),
             planes(np.moveaxis(simulation.compiled.forcing.reshape(-1, channels), -1, 0)),
             json.dumps(self._measured(), allow_nan=False).encode(),
@@ -233,7 +245,13 @@ class _Page:
                 "outdoors": CHANNELS.index("air_temperature"),
             },
             "outputs": [
-                {"name": name, "unit": units.shown(output.unit), "plain": output.unit, "column": column}
+                {
+                    "name": name,
+                    "quantity": KINDS[output.kind].label,
+                    "unit": units.shown(output.unit),
+                    "plain": output.unit,
+                    "column": column,
+                }
                 for name, output, column in self._recorded()
             ],
             "curves": list(self._curves),

@@ -3,7 +3,10 @@
 let engine;
 const bytes = (start, length) => new Uint8Array(engine.memory.buffer, start, length);
 const text = (start, length) => new TextDecoder().decode(bytes(start, length));
-const message = () => text(engine.message(), engine.message_length());
+// After a trap within a call that holds what it reads, the module has no message.
+function message() {
+  try { return text(engine.message(), engine.message_length()); } catch { return ""; }
+}
 const require = (code) => { if (code) throw new Error(message()); };
 async function load({ module, files }) {
   engine = (await WebAssembly.instantiate(module)).exports;
@@ -27,7 +30,7 @@ onmessage = async ({ data }) => {
   } catch (error) {
     const trap = error instanceof WebAssembly.RuntimeError || error instanceof RangeError; // the memory stays as it is: the page starts another worker
     let why = error.message;
-    if (trap && engine) why = `${message()} (${why})`.trim();
+    if (trap && engine) why = `${message() || "the engine has stopped"} (${why})`;
     postMessage({ refused: why, trap });
   }
 };
