@@ -47,7 +47,7 @@ def tree() -> dict[str, Any]:
     whole = description("nothing")
     for feature in HOUSE:
         FEATURES[feature](whole)
-    whole["controls"]["warmth"]["minimum_open_time"] = 10
+    whole["controls"]["warmth"] |= {"minimum_open_time": 10, "indoor": {"open": 24.5, "close": 23.5}}
     return whole
 
 
@@ -269,9 +269,10 @@ def test_runs_in_the_page_have_the_bits_of_runs_in_python(
         assert np.array_equal(records_in(page, values), expected), values
         distinct.add(expected.tobytes())
     assert len(distinct) == len(cases)
-    load, fraction = (simulation.run().records[:, k] for k in (1, 2))
+    load, fraction, inflow = (simulation.run().records[:, k] for k in (1, 2, 3))
     assert load.max() > 0.0
     assert np.ptp(fraction) > 0.05
+    assert inflow.min() == 0.0 < inflow.max()
     assert said == []
 
 

@@ -189,7 +189,9 @@
     if (data.rooms.length) $("comfort").tBodies[0].replaceChildren(...data.rooms.map((zone) => line(zone, pairs(discomfort(now, zone), discomfort(reference, zone)).map(number))));
     if ($("fit")) $("fit").tBodies[0].replaceChildren(...Object.keys(measured).map((name) => line(`${name}, ${outputs[name].unit.replace("°C", "K")}`, pairs(difference(now, name), difference(reference, name)).map((v) => Curves.shown(v, 2)))));
     fillEnergy();
-    $("warnings").replaceChildren(...(now ? now.warnings : []).map((words) => cell("li", words)));
+    const lines = now ? now.warnings : [];
+    $("warned").hidden = !lines.length;
+    $("warnings").replaceChildren(...lines.map((words) => cell("li", words)));
     $("csv").disabled = !now;
     $("state").textContent = now ? `Simulated in ${now.took < 1 ? "less than 1" : now.took.toFixed(0)} ms.` : "No result for these values.";
   }

@@ -1,5 +1,10 @@
 //! SIMD of WebAssembly: eight numbers in four registers.
 
+#![allow(
+    unused_unsafe,
+    reason = "safe to call in a module that is compiled with them; `registers` is written for all instruction sets"
+)]
+
 #[allow(clippy::wildcard_imports, reason = "intrinsics carry their own prefix")]
 use core::arch::wasm32::*;
 
