@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from mascarin import __version__
 from mascarin._io import atomic, units
+from mascarin._io.arguments import names_of
 from mascarin.building.outputs.kinds import KINDS
 from mascarin.building.rooms import rooms
 from mascarin.errors import InputError, did_you_mean
@@ -124,8 +125,9 @@ def live_page(
     """
     module = engine.module()
     about = sent or Sent()
-    chosen = [building.output(name).name for name in outputs] or choice.curves(building)
-    simulation, parameters_shown = _compiled(building, climate, parameters, chosen, options)
+    chosen = [building.output(name).name for name in names_of("outputs", outputs)] or choice.curves(building)
+    patterns = names_of("parameters", parameters)
+    simulation, parameters_shown = _compiled(building, climate, patterns, chosen, options)
     results = simulation.run()
     html = _Page(simulation, results, parameters_shown, chosen, about).html(module)
     atomic.write(Path(path), html)
