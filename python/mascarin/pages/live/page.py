@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -211,7 +212,7 @@ class _Page:
         """What the engine reads, then measured values."""
         simulation = self._simulation
         channels = simulation.compiled.forcing.shape[-1]
-        names = [simulation.paths[k] for entry in self._sliders for k, _ in entry["positions"]]
+        names = [escape(simulation.paths[k]) for entry in self._sliders for k, _ in entry["positions"]]
         variables = [each for each in variables_of(simulation, (), names) if each.causality == "parameter"]
         return [
             run_json(
