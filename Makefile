@@ -28,8 +28,11 @@ BUILT := .venv/stamp-built
 FIRST := .venv/stamp-first
 HYPERFINE_VERSION := 1.20.0
 HYPERFINE := target/bench/tools/bin/hyperfine
+WASM := python/mascarin/pages/live/engine.wasm
 RUST_SOURCES := Cargo.toml Cargo.lock $(wildcard rust-toolchain.toml) \
 	$(shell find crates -name '*.rs' -o -name Cargo.toml)
+WEB_SOURCES := Cargo.toml Cargo.lock \
+	$(shell find crates/contents crates/engine/src crates/web -name '*.rs' -o -name Cargo.toml)
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_NO_INPUT := 1
@@ -121,7 +124,7 @@ fuzz: $(BUILT)
 	cargo run --quiet --release --manifest-path fuzz/Cargo.toml --target-dir target/fuzz --bin campaign -- \
 		target/fuzz/calls $(FUZZ_CALLS) 1
 
-build: $(BUILT)
+build: $(BUILT) $(WASM)
 
 check-tools:
 	@command -v "$(PYTHON)" >/dev/null 2>&1 || { \
@@ -154,6 +157,10 @@ $(FIRST): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
 	@touch $@
 	@echo "The engine is built for a first try: 'make build' makes it three times as fast."
 
+# The engine for browsers, where the compiler has their target.
+$(WASM): $(WEB_SOURCES) packaging/engine_for_browsers.sh | check-tools
+	@sh packaging/engine_for_browsers.sh $@
+
 check-rust: $(ENVIRONMENT)
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || { \
 		echo "error: cargo has no 'fmt' or no 'clippy'. With rustup: rustup component add rustfmt clippy" >&2; exit 1; }
@@ -169,5 +176,5 @@ check-python: $(BUILT)
 	$(PY) -m mypy
 	$(PY) -m mypy.stubtest --mypy-config-file pyproject.toml mascarin._engine
 
-pytest: $(BUILT) check-rust check-python
+pytest: $(BUILT) $(WASM) check-rust check-python
 	$(PY) -m pytest $(PYTEST_FLAGS)

@@ -77,6 +77,27 @@ def data_dir() -> Path:
     return folder
 
 
+WASM = "MASCARIN_WASM"
+
+
+@pytest.fixture(scope="session")
+def wasm() -> Path:
+    """The engine for browsers, which `make build` compiles where Rust has the target."""
+    file = ROOT / "python" / "mascarin" / "pages" / "live" / "engine.wasm"
+    if not file.is_file():
+        unavailable("no engine for browsers: rustup target add wasm32-unknown-unknown, make build", WASM)
+    return file
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _engine_for_browsers() -> None:
+    """Let tests that write a page in which the model runs, and do not open it, do without its engine."""
+    if not (ROOT / "python" / "mascarin" / "pages" / "live" / "engine.wasm").is_file():
+        from mascarin.pages.live import engine
+
+        vars(engine)["module"] = lambda: b"\0asm"
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """A headless Chromium. It ends with its file of tests: its event loop would be in the way of others."""

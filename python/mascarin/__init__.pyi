@@ -20,6 +20,7 @@ from .errors import MascarinError as MascarinError
 from .errors import SolverError as SolverError
 from .materials.dsc import from_dsc as from_dsc
 from .measurements.sensor import Sensor as Sensor
+from .pages.live import live_page as live_page
 from .sensitivity import Sensitivity as Sensitivity
 from .sensitivity import sensitivity_analysis as sensitivity_analysis
 from .simulation.derivatives import gradient as gradient

@@ -89,6 +89,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "explore", "mascarin.commands.explore:explore", "Move sliders and see the curves of a building."
         ),
+        Command("page", "mascarin.commands.page:page", "Write a page in which the model runs."),
         Command("fmu", "mascarin.commands.fmu:fmu", "Write a building as a unit for co-simulation (FMU)."),
         Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
         Command(

@@ -31,6 +31,7 @@ ORDER = [
     {"examples", "templates"},
     {"pages", "pages.frame", "pages.study", "pages.run", "pages.suites"},
     {"pages.view", "pages.explore"},
+    {"pages.live"},
     {"study"},
     {"design.evaluation", "design.variants"},
     {"pages.design"},

@@ -63,7 +63,9 @@ def code_of(file: Path) -> str:
 
 
 FILES = sorted(path for path in SOURCE.rglob("*.rs") if not is_test(path))
-OF_UNITS = sorted((ROOT / "crates" / "fmu" / "src").rglob("*.rs"))
+BESIDE = sorted(
+    file for crate in ("contents", "fmu", "web") for file in (ROOT / "crates" / crate / "src").rglob("*.rs")
+)
 MODULES = {module_of(file): file for file in FILES if file != SOURCE / "lib.rs"}
 
 
@@ -169,28 +171,42 @@ def test_files_and_functions_are_short_or_say_why_not(file: Path) -> None:
             assert "Long because " in before, f"{name}, line {first}: {length} lines without a reason"
 
 
-def test_unsafe_is_in_two_folders_only() -> None:
-    """Vector instructions of the engine, and the C functions of the unit for co-simulation."""
+def test_unsafe_is_in_three_places_only() -> None:
+    """Vector instructions of the engine, the C functions of a unit, the exports of the module for pages."""
     word = re.compile(r"\bunsafe\b(?!_code)")
     crates = ROOT / "crates"
     where = {file.relative_to(crates) for file in crates.rglob("*.rs") if word.search(code_of(file))}
-    allowed = [Path("engine", "src", "number", "simd"), Path("fmu", "src", "border")]
-    assert not [file for file in where if not any(folder in file.parents for folder in allowed)]
-    assert {folder for folder in allowed for file in where if folder in file.parents} == set(allowed)
+    allowed = [
+        Path("engine", "src", "number", "simd"),
+        Path("fmu", "src", "border"),
+        Path("web", "src", "border.rs"),
+    ]
+    assert not [file for file in where if not any(place in (file, *file.parents) for place in allowed)]
+    assert {place for place in allowed for file in where if place in (file, *file.parents)} == set(allowed)
 
 
-@pytest.mark.parametrize("file", OF_UNITS, ids=lambda file: file.stem)
-def test_files_of_the_unit_are_short(file: Path) -> None:
+def test_the_border_of_pages_is_unsafe_by_its_exports_only() -> None:
+    """It is given no pointers: the attribute of a name is all that is unsafe there."""
+    code = code_of(ROOT / "crates" / "web" / "src" / "border.rs")
+    assert re.search(r"\bunsafe\b(?!_code)", code.replace("#[unsafe(no_mangle)]", "")) is None
+    assert "from_raw_parts" not in code
+
+
+@pytest.mark.parametrize("file", BESIDE, ids=lambda file: f"{file.parents[1].name} {file.stem}")
+def test_files_beside_the_engine_are_short(file: Path) -> None:
     text = file.read_text(encoding="utf-8")
     assert len(text.split("\n")) <= FILE_LINES
     assert not [name for name, _, length in functions(text) if length > FUNCTION_LINES]
 
 
-def test_only_the_contents_of_a_unit_read_files() -> None:
-    users = [file.name for file in OF_UNITS if "std::fs" in file.read_text(encoding="utf-8")]
-    assert users == ["contents.rs"]
-    manifest = (ROOT / "crates" / "fmu" / "Cargo.toml").read_text(encoding="utf-8")
-    assert "pyo3" not in manifest
+def test_only_the_resources_of_a_unit_are_read_from_files() -> None:
+    users = [file.name for file in BESIDE if "std::fs" in file.read_text(encoding="utf-8")]
+    assert users == ["resources.rs"]
+    for crate in ("contents", "fmu", "web"):
+        manifest = (ROOT / "crates" / crate / "Cargo.toml").read_text(encoding="utf-8")
+        assert "pyo3" not in manifest
+        # The C functions of a unit stay out of the module for pages.
+        assert crate == "fmu" or "mascarin-fmu" not in manifest
 
 
 def test_paths_are_understood() -> None:

@@ -20,7 +20,7 @@ from mascarin.simulation.preparation.run_results import EnsembleRun, Failure
 
 #: Commands that end with 1 where a run is unsound.
 JUDGED: Final = (
-    "run", "sweep", "fmu", "design", "study", "sensitivity", "calibrate", "validate", "genopt",
+    "run", "sweep", "fmu", "page", "design", "study", "sensitivity", "calibrate", "validate", "genopt",
 )  # fmt: skip
 #: Commands that run ensembles whose members may fail, and their exit code then.
 FAILING: Final = {"sweep": 1, "design": 1, "sensitivity": 3}

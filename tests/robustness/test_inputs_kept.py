@@ -88,6 +88,11 @@ CASES: dict[str, Case] = {
         {"--out": ".yaml"},
         reads=("run", "house.yaml", "--weather", "site.epw", *DAY),
     ),
+    "page": Case(
+        ("house.yaml", "--weather", "site.epw", *DAY),
+        {"--out": ".html"},
+        reads=("run", "house.yaml", "--weather", "site.epw", *DAY),
+    ),
     "fmu": Case(
         ("house.yaml", "--weather", "site.epw", *DAY),
         {"--out": ".fmu"},

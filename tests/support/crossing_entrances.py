@@ -228,6 +228,15 @@ def _view(bench: Bench) -> Told:
     return Told(told.code, _with(told.text, page))
 
 
+def _page(bench: Bench) -> Told:
+    page = bench.folder / "page.html"
+    words: tuple[str | Path, ...] = ("--weather", bench.file("inputs.yaml"), "-o", page, *_period(bench))
+    sliders = [word for path in VARIED for word in ("--parameter", path)]
+    initial = ("--initial", str(bench.initial))
+    told = bench.command("page", bench.file("building.yaml"), *words, *sliders, *initial)
+    return Told(told.code, told.text)
+
+
 def _explore(bench: Bench) -> Told:
     """The page of ``mascarin explore`` and a run with other values, without its server."""
     from mascarin.pages.explore import Session
@@ -340,6 +349,7 @@ COMMANDS: Final[dict[str, Driver]] = {
     "fmu": _fmu,
     "view": _view,
     "explore": _explore,
+    "page": _page,
     "design": _design_command,
     "study": _of_study("study"),
     "sensitivity": _of_study("sensitivity"),

@@ -3,6 +3,8 @@
 //! A [`description::Description`] is compiled to a [`plan::Plan`]. [`run::simulate()`] (or [`run::ensemble::ensemble`]) runs the plan with
 //! a [`forcing::Forcing`] and returns records and an energy ledger. The engine reads no files, and has no dates and no Python.
 
+// Compiled for a browser the engine makes single runs: ensembles, derivatives and linear models are left out, and what they alone use.
+#![cfg_attr(target_arch = "wasm32", allow(dead_code, unused_imports, unused_macros, reason = "see above"))]
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in square brackets: [m] is no link")]
 
 // Unit tests build their plans with the builders of `tests/common`, which name this crate from outside.
@@ -14,11 +16,13 @@ mod common;
 
 mod balance;
 mod building;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod derivatives;
 pub mod error;
 mod geometry;
 mod input;
 mod linear;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod linear_model;
 pub mod number;
 mod physics;

@@ -8,7 +8,7 @@ use mascarin_engine::run::stepwise::StepByStep;
 use mascarin_engine::run::validity::OutOfRange;
 use self_cell::self_cell;
 
-use crate::contents::Contents;
+use mascarin_contents::Contents;
 
 /// What a run is made of.
 pub(crate) struct Base {

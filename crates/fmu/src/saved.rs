@@ -1,7 +1,7 @@
 //! States of a unit, which an importing program keeps and comes back to, also as bytes in a file.
 
-use crate::contents::Contents;
 use crate::unit::Mode;
+use mascarin_contents::Contents;
 
 /// First bytes of a state in a file, with the number of its format.
 const MAGIC: &[u8; 8] = b"MASCST01";

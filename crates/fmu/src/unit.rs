@@ -7,14 +7,12 @@ use std::sync::Arc;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::run::physical_limits::Outlier;
 
-use crate::contents::{Contents, Role, SetPoint};
 use crate::running::Running;
 use crate::saved::Saved;
+use mascarin_contents::{Contents, Role};
 
 /// Part of a step that a time may be off by, from rounding in the importing program.
 const TIME: f64 = 1e-6;
-/// How far heating may be set above cooling, from rounding [K].
-const APART: f64 = 1e-9;
 
 /// What a unit is being used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -333,27 +331,7 @@ impl Unit {
         rows.clear();
         rows.extend_from_slice(contents.rows(step, 1));
         contents.put(driven, rows);
-        self.require_set_points_apart(step)
-    }
-
-    fn require_set_points_apart(&self, step: usize) -> Outcome {
-        let last = self.rows.len() - self.rows.len() / self.contents.stages();
-        let value = |point: SetPoint| match point {
-            SetPoint::Channel(channel) => self.rows[last + channel],
-            SetPoint::Parameter(parameter) => self.parameters[parameter],
-        };
-        for zone in &self.contents.conditioned {
-            let (heating, cooling) = (value(zone.heating), value(zone.cooling));
-            if heating > cooling + APART {
-                return Err(Refusal::Discard(format!(
-                    "zones.{}: found heating to {heating} degC above cooling to {cooling} degC at {} s; lower \
-                     the one or raise the other",
-                    zone.zone,
-                    step as f64 * self.contents.options.dt
-                )));
-            }
-        }
-        Ok(())
+        contents.require_apart_in(rows, &self.parameters, step).map_err(Refusal::Discard)
     }
 
     fn read_outputs(&mut self) {

@@ -12,7 +12,7 @@ import mascarin
 PACKAGES: Final = (
     "building", "materials", "weather", "simulation", "ensemble", "sensitivity", "optimization",
     "measurements", "validation", "calibration", "study", "design", "comfort", "energyplus", "fmu",
-    "pages.view", "physics",
+    "pages.view", "pages.live", "physics",
 )  # fmt: skip
 
 

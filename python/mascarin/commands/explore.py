@@ -113,7 +113,7 @@ def explore(
             "measurements": measured,
         }
         if end is None:
-            options["end"] = _end(climate, start)
+            options["end"] = two_weeks_after(climate, start)
         session = Session(
             described,
             climate,
@@ -165,8 +165,16 @@ def _values(content: Mapping[str, Any]) -> Mapping[str, Any]:
     return values
 
 
-def _end(climate: Climate, start: str | None) -> Any:
-    """Two weeks after the start, or the end of the weather."""
+def two_weeks_after(climate: Climate, start: str | None) -> Any:
+    """Two weeks after the start, or the end of the weather.
+
+    Parameters
+    ----------
+    climate : Climate
+        The weather.
+    start : str or None
+        Start of the period, local time; None: that of the weather.
+    """
     import pandas as pd
 
     from mascarin.simulation.preparation.prepare import period

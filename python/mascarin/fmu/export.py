@@ -3,38 +3,28 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import uuid
 import zipfile
 from collections.abc import Sequence
 from importlib.resources import files as package_files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Final, Literal
 
 from mascarin import __version__, _engine
 from mascarin._io import atomic
 from mascarin.errors import InputError
-from mascarin.fmu.inputs import Channel, chosen_inputs, global_follows
+from mascarin.fmu.contents import packed, run_json
+from mascarin.fmu.inputs import chosen_inputs, global_follows
 from mascarin.fmu.model_description import LIBRARY, Model, fmi2, fmi3
 from mascarin.fmu.variables import Variable, variables_of
-from mascarin.weather import CHANNELS, summary
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from mascarin.simulation import Simulation
-
-    Array = npt.NDArray[np.float64]
 
 Version = Literal["3.0", "2.0"]
 VERSIONS: Final[tuple[Version, ...]] = ("3.0", "2.0")
 """Versions of the Functional Mock-up Interface."""
 
-#: Number of the format of the files in `resources`, as in `crates/fmu/src/contents.rs`.
-_FORMAT: Final = 2
-_MAGIC: Final = b"MASCARIN"
 #: Folders of the libraries by architecture and system of Rust: that of version 3.0, and that of version 2.0.
 _PLATFORMS: Final = {
     ("x86_64", "linux"): ("x86_64-linux", "linux64"),
@@ -97,10 +87,12 @@ def export(
     variables = variables_of(simulation, channels, parameters)
     resources = {
         "resources/building.json": simulation.compiled.description.encode(),
-        "resources/forcing.bin": _packed(simulation.compiled.forcing),
+        "resources/forcing.bin": packed(simulation.compiled.forcing),
     }
     token = _token(simulation, resources, variables)
-    resources["resources/run.json"] = _run(simulation, channels, variables, token)
+    resources["resources/run.json"] = run_json(
+        simulation, variables, token, global_follows=global_follows(channels)
+    )
     model = Model(
         name=simulation.building.name,
         description=_words(simulation),
@@ -119,7 +111,7 @@ def export(
     }
     # No seals as in `_io.own_files`: each entry has the checksum of the archive, a unit is a result for
     # programs of others, which unpack it and may set start values in its description, and the library
-    # compares its resources with their format, sizes and names (`crates/fmu/src/contents.rs`).
+    # compares its resources with their format, sizes and names (`crates/contents`).
     with atomic.replacing(Path(path)) as target, zipfile.ZipFile(target, "w") as archive:
         for name, content in files.items():
             entry = zipfile.ZipInfo(name, _DATE)
@@ -147,11 +139,6 @@ def _library(version: Version) -> dict[str, bytes]:
     return {f"binaries/{folder}/{LIBRARY}{suffix}": content}
 
 
-def _packed(forcing: Array) -> bytes:
-    """The forcing with each channel in one piece, which archives pack tighter."""
-    return _MAGIC + np.ascontiguousarray(np.moveaxis(forcing, -1, 0), dtype="<f8").tobytes()
-
-
 def _token(simulation: Simulation, files: dict[str, bytes], variables: Sequence[Variable]) -> str:
     """A name of the content: equal for equal units, and different for all others."""
     digest = hashlib.sha256(__version__.encode())
@@ -160,44 +147,6 @@ def _token(simulation: Simulation, files: dict[str, bytes], variables: Sequence[
     digest.update(repr(simulation.compiled.settings).encode())
     digest.update(repr([variable.plain() for variable in variables]).encode())
     return "{" + str(uuid.UUID(bytes=digest.digest()[:16])) + "}"
-
-
-def _run(
-    simulation: Simulation, channels: Sequence[Channel], variables: Sequence[Variable], token: str
-) -> bytes:
-    compiled = simulation.compiled
-    content = {
-        "format": _FORMAT,
-        "mascarin_version": __version__,
-        "token": token,
-        "settings": dict(compiled.settings),
-        "outputs": json.loads(compiled.readings.outputs),
-        "variables": [variable.plain() for variable in variables],
-        "conditioned": _conditioned(simulation),
-        "global_follows": global_follows(channels),
-        "building": simulation.building.name,
-        "building_sha256": compiled.hash,
-        "climate": summary(simulation.climate),
-        "measurements": simulation.measured,
-        "start": simulation.start.isoformat(),
-    }
-    return json.dumps(content, default=str).encode()
-
-
-def _conditioned(simulation: Simulation) -> list[dict[str, Any]]:
-    """Zones whose set points must not cross."""
-
-    def place(zone: str, which: str) -> dict[str, int]:
-        point = simulation.building.zones[zone].loads[which].setpoint
-        if point.temperature is not None:
-            return {"parameter": simulation.position(f"zones.{zone}.{which}.setpoint.temperature")}
-        return {"channel": len(CHANNELS) + simulation.channels.index(f"schedule {point.course}")}
-
-    return [
-        {"zone": name, "heating": place(name, "heating"), "cooling": place(name, "cooling")}
-        for name, zone in simulation.building.zones.items()
-        if zone.heating is not None and zone.cooling is not None
-    ]
 
 
 def _words(simulation: Simulation) -> str:

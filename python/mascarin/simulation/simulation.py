@@ -400,7 +400,7 @@ class Simulation(VectorRuns):
             watch.add(rows)
             take(rows[:, :count])
 
-        raw = self.compiled.run_into(vector, seen, self._recorded, keeps_rows=keeps_rows, progress=progress)
+        raw = self.compiled.run_into(vector, seen, self.recorded, keeps_rows=keeps_rows, progress=progress)
         energy, judgement = EnergyLedger.read(raw), Judgement.read(raw, self.compiled.dated)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         judged = run_warnings.of_engine(judgement, raw, self.compiled.dated, self.step_seconds, self.scheme)
@@ -431,7 +431,7 @@ class Simulation(VectorRuns):
         )
 
     @cached_property
-    def _recorded(self) -> Readings:
+    def recorded(self) -> Readings:
         """What a run records: the outputs asked for, and layers and airs that are watched."""
         from mascarin.simulation.checks import unmelted  # pydantic, as above
 

@@ -21,6 +21,7 @@ COMMANDS = {
     "run.parquet": ("run", "{box}", *PERIOD, "--interval", "2h", "-o"),
     "page.html": ("run", "{box}", *PERIOD, "--report"),
     "unit.fmu": ("fmu", "{box}", *PERIOD, "-o"),
+    "live.html": ("page", "{box}", *PERIOD, "-o"),
     "view.html": ("view", "{box}", "-o"),
     "year.epw": ("weather", "shipped:golden", "--epw"),
     "explored.yaml": ("explore", "{box}", "--weather", "shipped:golden", "-o"),

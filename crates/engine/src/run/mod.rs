@@ -3,6 +3,7 @@
 mod action;
 pub(crate) mod anderson;
 
+#[cfg(not(target_arch = "wasm32"))]
 pub mod ensemble;
 pub mod options;
 mod output_limits;

@@ -6,9 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::{ptr, slice};
 
-use crate::contents::Contents;
 use crate::saved::Saved;
 use crate::unit::{Outcome, Refusal, Unit};
+use mascarin_contents::Contents;
 
 /// Result of a call, the same in both versions of the standard.
 pub(super) type Status = c_int;
@@ -291,5 +291,5 @@ pub(super) fn terminate<L: Listener>(instance: *mut c_void) -> Status {
 
 /// Reads the contents of a unit from its folder `resources`.
 pub(super) fn contents_at(folder: &str) -> Result<Contents, String> {
-    Contents::read(Path::new(folder))
+    crate::resources::read(Path::new(folder))
 }

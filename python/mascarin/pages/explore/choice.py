@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io import units
 from mascarin.building.base.wildcards import is_pattern, matching
 from mascarin.errors import InputError, SolverError
+from mascarin.figures import text
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -148,3 +150,36 @@ def curves(building: Building) -> list[str]:
     zones = {name.rpartition(".")[0] for name in operative}
     chosen = operative + [name for name in loads if name.rpartition(".")[0] in zones]
     return chosen or [output.name for output in outputs if output.kind == "face_temperature"][: 2 * MAX_ZONES]
+
+
+def slider(parameter: Parameter) -> dict[str, Any]:
+    """What a page says of a parameter, and the ends of its slider.
+
+    Parameters
+    ----------
+    parameter : Parameter
+        The parameter.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> slider(box().parameter("surfaces.facade.outside.absorptance"))["unit"]
+    ''
+    """
+    low, high = (parameter.low, parameter.high) if parameter.low < parameter.high else _range_of(parameter)
+    return {
+        "path": parameter.path,
+        "value": parameter.value,
+        "low": min(low, parameter.value),
+        "high": max(high, parameter.value),
+        "unit": units.shown(parameter.unit),
+        "description": parameter.description,
+        "limits": f"{text.significant(parameter.lower)} to {text.significant(parameter.upper)}",
+        "note": parameter.reason or "",
+    }
+
+
+def _range_of(parameter: Parameter) -> tuple[float, float]:
+    """A range for a parameter that has none: half to twice its value, within its limits."""
+    ends = sorted((0.5 * parameter.value, 2.0 * parameter.value)) if parameter.value else [0.0, 1.0]
+    return max(ends[0], parameter.lower), min(ends[1], parameter.upper)

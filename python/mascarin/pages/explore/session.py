@@ -7,7 +7,7 @@ import reprlib
 import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from mascarin.building import load
 from mascarin.building.files.yaml_text import text_of
 from mascarin.building.rooms import rooms
 from mascarin.errors import InputError
-from mascarin.figures import text
 from mascarin.pages.explore import choice
 from mascarin.pages.run.page import flow_words
 from mascarin.simulation.simulation import Simulation
@@ -39,6 +38,28 @@ class Band(NamedTuple):
 
     low: float = 20.0
     high: float = 26.0
+
+    @classmethod
+    def checked(cls, band: object) -> Self:
+        """Make one of two numbers that may come from anywhere.
+
+        Parameters
+        ----------
+        band : object
+            Two temperatures. [degC]
+
+        Raises
+        ------
+        InputError
+            It is something else, or the lower one does not come first.
+        """
+        ends = list(band) if isinstance(band, list | tuple) else []
+        if len(ends) != 2 or not all(map(_is_number, ends)) or not ends[0] < ends[1]:
+            raise InputError(
+                f"band: found {reprlib.repr(ends or band)}; expected two temperatures, the lower one first, "
+                "such as 20 26"
+            )
+        return cls(float(ends[0]), float(ends[1]))
 
 
 class Session:
@@ -82,7 +103,7 @@ class Session:
         band: Band | None = None,
         options: Mapping[str, Any] | None = None,
     ) -> None:
-        self.band = _checked(band or Band())
+        self.band = Band.checked(band or Band())
         chosen = [building.output(name).name for name in outputs] or choice.curves(building)
         operative = [output.name for output in building.outputs() if output.kind == "operative_temperature"]
         self._curves = tuple(chosen)
@@ -122,7 +143,7 @@ class Session:
         SolverError
             The run did not converge.
         """
-        limits = self.band if band is None else _checked(band)
+        limits = self.band if band is None else Band.checked(band)
         numbers = self._numbers(values)
         with self._lock:
             results = self.simulation.run(numbers)
@@ -142,7 +163,7 @@ class Session:
         """What the page needs once: sliders, times, curves, and the run of the building as it is."""
         times = self.simulation.index[:: self._stride]
         return {
-            "sliders": [_slider(slider) for slider in self.sliders],
+            "sliders": [choice.slider(parameter) for parameter in self.sliders],
             # Local times, as if they were UTC.
             "times": [round(time.timestamp()) for time in times.tz_localize(None)],
             "curves": [
@@ -235,36 +256,6 @@ class Session:
 def _is_number(value: object) -> bool:
     """Whether a value of JSON is a number that a float can hold; integers of JSON have no end."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MAX_VALUE
-
-
-def _checked(band: object) -> Band:
-    ends = list(band) if isinstance(band, list | tuple) else []
-    if len(ends) != 2 or not all(map(_is_number, ends)) or not ends[0] < ends[1]:
-        raise InputError(
-            f"band: found {reprlib.repr(ends or band)}; expected two temperatures, the lower one first, such "
-            "as 20 26"
-        )
-    return Band(float(ends[0]), float(ends[1]))
-
-
-def _slider(parameter: Parameter) -> dict[str, Any]:
-    low, high = (parameter.low, parameter.high) if parameter.low < parameter.high else _about(parameter)
-    return {
-        "path": parameter.path,
-        "value": parameter.value,
-        "low": min(low, parameter.value),
-        "high": max(high, parameter.value),
-        "unit": units.shown(parameter.unit),
-        "description": parameter.description,
-        "limits": f"{text.significant(parameter.lower)} to {text.significant(parameter.upper)}",
-        "note": parameter.reason or "",
-    }
-
-
-def _about(parameter: Parameter) -> tuple[float, float]:
-    """A range for a parameter that has none: half to twice its value, within its limits."""
-    ends = sorted((0.5 * parameter.value, 2.0 * parameter.value)) if parameter.value else [0.0, 1.0]
-    return max(ends[0], parameter.lower), min(ends[1], parameter.upper)
 
 
 def _path(base: Path, folder: Path) -> str:

@@ -78,6 +78,7 @@ def frame(
     scripts: Sequence[str] = (),
     data: Mapping[str, Any] | None = None,
     served: bool = False,
+    computes: bool = False,
 ) -> dict[str, Any]:
     """Values of the frame of a page.
 
@@ -93,6 +94,8 @@ def frame(
         Data of the scripts, in the element ``page-data``.
     served : bool
         Whether the page may ask the server that it comes from.
+    computes : bool
+        Whether the page has a module of WebAssembly, and a worker that runs it.
 
     Returns
     -------
@@ -108,7 +111,7 @@ def frame(
     style = "\n".join((palette(), asset("pages/frame/report.css"), *map(asset, styles)))
     return {
         "style": Markup(style),  # noqa: S704  (our own files)
-        "policy": _policy(texts, served=served),
+        "policy": _policy(texts, served=served, computes=computes),
         "scripts": [Markup(script) for script in texts],  # noqa: S704
         "data": None if data is None else _json(data),
         "software": [
@@ -135,15 +138,20 @@ def palette() -> str:
     return ":root {" + " ".join(f"--{name}: {color};" for name, color in named.items()) + "}"
 
 
-def _policy(scripts: Sequence[str], *, served: bool) -> str:
-    """Content security policy: only the scripts of this file run, and nothing is loaded from elsewhere."""
+def _policy(scripts: Sequence[str], *, served: bool, computes: bool) -> str:
+    """Content security policy: only the scripts of this file run, and nothing is loaded from elsewhere.
+
+    A worker is started from a text of the page, and has this policy, too.
+    """
     digests = " ".join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
         for script in scripts
     )
+    module = " 'wasm-unsafe-eval'" if computes else ""
     rules = [
         "default-src 'none'",
-        *([f"script-src {digests}"] if digests else []),
+        *([f"script-src {digests}{module}"] if digests else []),
+        *(["worker-src blob:"] if computes else []),
         "style-src 'unsafe-inline'",
         "img-src data:",
         *(["connect-src 'self'"] if served else []),

@@ -140,7 +140,7 @@ def render(results: Results, notes: Notes) -> str:
             ("loads", "Ideal heating and cooling", _loads(results)),
             ("energy", "Energy balance", _energy(results)),
             ("outputs", "All outputs", _outputs(results)),
-            ("inputs", "How it was run", _inputs(results, notes)),
+            ("inputs", "How it was run", how_it_was_run(results, notes)),
         )
         if content
     ]
@@ -330,7 +330,16 @@ def _outputs(results: Results) -> list[tuple[str, str, str, str, str]]:
     return rows
 
 
-def _inputs(results: Results, notes: Notes) -> list[tuple[str, str]]:
+def how_it_was_run(results: Results, notes: Notes) -> list[tuple[str, str]]:
+    """Files, options, weather, period and scheme of a run, by name.
+
+    Parameters
+    ----------
+    results : Results
+        The run.
+    notes : Notes
+        Has files and options.
+    """
     provenance = results.provenance
     rows = [*notes.inputs, ("Mascarin", provenance.version), ("Building, SHA-256", provenance.building_hash)]
     rows += [

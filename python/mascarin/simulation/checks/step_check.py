@@ -38,8 +38,8 @@ def watched(building: Building, outputs: Sequence[Output]) -> list[Output]:
     """Air temperatures of zones without plant that are not among the outputs of a run."""
     names = {output.name for output in outputs}
     all_outputs = building.outputs()
-    free_airs = _free(building, all_outputs).values()
-    return [all_outputs[column] for column in free_airs if all_outputs[column].name not in names]
+    columns = free_airs(building, all_outputs).values()
+    return [all_outputs[column] for column in columns if all_outputs[column].name not in names]
 
 
 def member_errors(
@@ -63,7 +63,7 @@ def member_errors(
     ndarray, shape (members,)
         Root mean square as of `Bends`; NaN where no air of a zone without plant was recorded. [K]
     """
-    columns = list(_free(building, outputs).values())
+    columns = list(free_airs(building, outputs).values())
     order, share = SHARES[scheme]
     if not columns or records.shape[1] <= START + order:
         return np.full(len(records), np.nan)
@@ -71,8 +71,16 @@ def member_errors(
     return np.asarray(share * np.sqrt(np.mean(bends**2, axis=1)).max(axis=1))
 
 
-def _free(building: Building, outputs: Sequence[Output]) -> dict[str, int]:
-    """Zones without heating and cooling whose air temperature is an output, with its place."""
+def free_airs(building: Building, outputs: Sequence[Output]) -> dict[str, int]:
+    """Zones without heating and cooling whose air temperature is an output, with its position.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    outputs : sequence of Output
+        The outputs.
+    """
     zones = list(building.zones.items())
     columns = {}
     for column, output in enumerate(outputs):
@@ -104,7 +112,7 @@ class Bends:
 
     def __init__(self, building: Building, outputs: Sequence[Output], scheme: str = "sdirk2") -> None:
         self._order, self._share = SHARES[scheme]
-        columns = _free(building, outputs)
+        columns = free_airs(building, outputs)
         self._names = list(columns)
         self._columns = list(columns.values())
         self._skip = START

@@ -24,7 +24,7 @@ def watched(building: Building) -> list[Output]:
     outputs = {output.name: output for output in building.outputs()}
     return [
         outputs[f"{name}.{layer}_{word}"]
-        for name, layer, _ in _layers(building)
+        for name, layer, _ in layers(building)
         for word in ("temperature", "liquid_fraction")
     ]
 
@@ -39,7 +39,7 @@ class Extremes:
     """
 
     def __init__(self, building: Building) -> None:
-        self._layers = list(_layers(building))
+        self._layers = list(layers(building))
         self._first: npt.NDArray[np.float64] | None = None
         self._low = self._high = np.empty(0)
 
@@ -76,8 +76,14 @@ class Extremes:
         return lines
 
 
-def _layers(building: Building) -> Iterator[tuple[str, str, PhaseChangeMaterial]]:
-    """Surface, layer and material of every phase-change layer."""
+def layers(building: Building) -> Iterator[tuple[str, str, PhaseChangeMaterial]]:
+    """Surface, layer and material of every phase-change layer.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    """
     for name, surface in building.surfaces.items():
         for layer in building.constructions[surface.construction].layers:
             material = building.materials[layer.material]

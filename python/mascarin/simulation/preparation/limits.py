@@ -133,7 +133,7 @@ def require_set_points_apart(
         channel = len(CHANNELS) + list(channels).index(f"schedule {course}")
         return forcing[None, :, -1, channel]
 
-    for pair in _pairs(building):
+    for pair in set_point_pairs(building):
         (low, high) = (set_point(path, course) for path, course in pair.points)
         crossing = _first_above(low, high + 1e-9)
         if crossing is None:
@@ -150,8 +150,20 @@ def require_set_points_apart(
 
 
 @dataclass(frozen=True)
-class _Pair:
-    """Two set points that must not cross: path of the number, and name of the course that takes its place."""
+class SetPointPair:
+    """Two set points that must not cross.
+
+    Attributes
+    ----------
+    where : str
+        The zone.
+    low, high : str
+        What they are set points of.
+    unit : str
+        Their unit, after a space.
+    points : pair of (str, str or None)
+        Of each the path of the number, and the name of the course that takes its place.
+    """
 
     where: str
     low: str
@@ -160,11 +172,18 @@ class _Pair:
     points: tuple[tuple[str, str | None], tuple[str, str | None]]
 
 
-def _pairs(building: Building) -> Iterator[_Pair]:
+def set_point_pairs(building: Building) -> Iterator[SetPointPair]:
+    """The set points of a building that must not cross.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    """
     for name, zone in building.zones.items():
         if zone.heating is not None and zone.cooling is not None:
             prefix = f"zones.{name}"
-            yield _Pair(
+            yield SetPointPair(
                 prefix, "heating", "cooling", " degC",
                 (
                     (f"{prefix}.heating.setpoint.temperature", zone.heating.setpoint.course),
@@ -179,7 +198,7 @@ def _pairs(building: Building) -> Iterator[_Pair]:
         # Ranges of two constant ones may overlap: drying decides there.
         if low is not None or high is not None:
             prefix = f"humidity.zones.{name}"
-            yield _Pair(
+            yield SetPointPair(
                 prefix, "humidifying", "drying", "" if key == "relative_humidity" else " kg/kg",
                 ((f"{prefix}.humidifying.{key}.constant", low), (f"{prefix}.drying.{key}.constant", high)),
             )  # fmt: skip

@@ -113,7 +113,7 @@ class VectorRuns:
         values : float or ndarray, shape (...)
             Its values. [unit]
         """
-        for position, weight in self._spread(path):
+        for position, weight in self.spread_of(path):
             vectors[..., position] = values if weight is None else weight * values
 
     def value_in(self, vector: Array, path: str) -> float:
@@ -126,12 +126,23 @@ class VectorRuns:
         path : str
             The parameter.
         """
-        position, weight = next(entry for entry in self._spread(path) if entry[1] != 0.0)
+        position, weight = next(entry for entry in self.spread_of(path) if entry[1] != 0.0)
         value = float(vector[position])
         return value if weight is None else value / weight
 
-    def _spread(self, path: str) -> list[tuple[int, float | None]]:
-        """Positions of what a path stands for; a factor has the value of the building that it multiplies."""
+    def spread_of(self, path: str) -> list[tuple[int, float | None]]:
+        """Positions of what a path stands for; a factor has the value of the building that it multiplies.
+
+        Parameters
+        ----------
+        path : str
+            The parameter.
+
+        Returns
+        -------
+        list of (int, float or None)
+            Position in a parameter vector, and what a value is multiplied by there; None: by nothing.
+        """
         parameter = self.building.parameter(path)
         if not parameter.members:
             return [(self.position(path), None)]
@@ -260,7 +271,7 @@ class VectorRuns:
             )
         # The numbers that a tied parameter stands for change together.
         directions = [
-            [(position, 1.0 if weight is None else weight) for position, weight in self._spread(path)]
+            [(position, 1.0 if weight is None else weight) for position, weight in self.spread_of(path)]
             for path in vary
         ]
         return self.compiled.jacobian(

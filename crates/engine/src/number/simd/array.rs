@@ -75,3 +75,5 @@ chunk!(super::avx512::Eight, |numbers| Self::of(numbers), |value| value.numbers(
 chunk!(super::avx2::Eight, |numbers| Self::of(numbers), |value| value.numbers());
 #[cfg(target_arch = "aarch64")]
 chunk!(super::neon::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+chunk!(super::wasm::Eight, |numbers| Self::of(numbers), |value| value.numbers());

@@ -1,6 +1,6 @@
 //! Eight numbers at once in the vector registers of the machine, or sixteen in single precision.
 //!
-//! The only module with `unsafe` code. Each type `Eight` or `Sixteen` below holds that many numbers and computes with one set of
+//! The only module of the engine with `unsafe` code. Each type `Eight` or `Sixteen` below holds that many numbers and computes with one set of
 //! vector instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every
 //! level gives the bits of a plain `f64`, or of a plain `f32`.
 //!
@@ -24,11 +24,13 @@ mod neon;
 mod neon_single;
 mod registers;
 mod token;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 
 #[cfg(test)]
 mod tests;
 
-pub use token::{Avx2, Avx512, Level, Neon};
+pub use token::{Avx2, Avx512, Level, Neon, Simd128};
 
 use crate::number::lanes::Lanes;
 use crate::number::real::{ChunkTask, Real};
@@ -99,6 +101,13 @@ fn in_chunks_at<T: ChunkTask<f64>>(level: Level, task: T) -> T::Output {
             #[inline(always)]
             || task.run::<neon::Eight>(),
         ),
+        // A module that is compiled with these vectors is loaded by machines that have them, and by no others.
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        _ => wasm::Eight::vectorised(
+            #[inline(always)]
+            || task.run::<wasm::Eight>(),
+        ),
+        #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
         _ => task.run::<Lanes<WIDTH>>(),
     }
 }

@@ -55,6 +55,22 @@ token!(
     Avx512, "x86_64", is_x86_feature_detected, ["avx512f", "avx2"]
 );
 
+/// Proof that the module was compiled with the vectors of WebAssembly, so that a machine that runs it has them.
+///
+/// ```compile_fail,E0423
+/// let forged = mascarin_engine::number::simd::Simd128(());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Simd128(());
+
+impl Simd128 {
+    /// The token, where the module was compiled with them.
+    #[must_use]
+    pub fn detect() -> Option<Self> {
+        cfg!(all(target_arch = "wasm32", target_feature = "simd128")).then_some(Self(()))
+    }
+}
+
 impl From<Avx512> for Avx2 {
     fn from(_: Avx512) -> Self {
         Self(())
@@ -179,6 +195,7 @@ mod tests {
     #[test]
     fn instructions_of_other_architectures_are_never_found() {
         assert!(!cfg!(target_arch = "x86_64") || Neon::detect().is_none());
+        assert!(cfg!(target_arch = "wasm32") || Simd128::detect().is_none());
         assert!(!cfg!(target_arch = "aarch64") || (Avx2::detect().is_none() && Avx512::detect().is_none()));
     }
 }

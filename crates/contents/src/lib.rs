@@ -1,7 +1,5 @@
-//! What is in a unit: the building, how it is run, the weather, and the variables. `python/mascarin/fmu` writes it.
-
-use std::fs;
-use std::path::Path;
+//! What programs without Python need of a run: the building, how it is run, the weather, and the variables. `python/mascarin/fmu` writes
+//! it; a unit for co-simulation and a page whose model runs in the browser read it.
 
 use mascarin_engine::Scheme;
 use mascarin_engine::description::Description;
@@ -16,8 +14,10 @@ use serde::Deserialize;
 const FORMAT: u32 = 2;
 /// First bytes of the file with the weather.
 const MAGIC: &[u8; 8] = b"MASCARIN";
+/// How far heating may be set above cooling, from rounding [K].
+const APART: f64 = 1e-9;
 
-/// A variable of a unit; its value reference is its position in the list, counted from 1. Time has 0.
+/// A variable; its value reference in a unit is its position in the list, counted from 1. Time has 0.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Variable {
     /// Its name.
@@ -96,7 +96,7 @@ struct Header {
     global_follows: bool,
 }
 
-/// What is in a unit.
+/// What is in a unit or a page.
 #[derive(Debug)]
 pub struct Contents {
     /// What the model description and the importing program call this unit.
@@ -118,33 +118,26 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Reads the folder `resources` of a unit.
+    /// Reads the three files.
     ///
     /// # Errors
-    /// A file is missing, damaged or of another version; the text names it.
-    pub fn read(folder: &Path) -> Result<Self, String> {
-        let text = |name: &str| {
-            let file = folder.join(name);
-            fs::read_to_string(&file).map_err(|error| format!("{}: cannot be read: {error}", file.display()))
-        };
-        let damaged = |name: &str, error: &dyn core::fmt::Display| {
-            format!("{}: is damaged: {error}. Export the unit again", folder.join(name).display())
-        };
+    /// A file is damaged or of another version: its name, and what is wrong with it.
+    pub fn read(run: &str, building: &str, forcing: &[u8]) -> Result<Self, (&'static str, String)> {
+        let damaged = |name, error: &dyn core::fmt::Display| (name, format!("is damaged: {error}"));
         let header: serde_json::Value =
-            serde_json::from_str(&text("run.json")?).map_err(|error| damaged("run.json", &error))?;
+            serde_json::from_str(run).map_err(|error| damaged("run.json", &error))?;
         if header.get("format").and_then(serde_json::Value::as_u64) != Some(u64::from(FORMAT)) {
             return Err(damaged("run.json", &format!("it does not have format {FORMAT}")));
         }
         let header: Header = serde_json::from_value(header).map_err(|error| damaged("run.json", &error))?;
-        let description: Description = serde_json::from_str(&text("building.json")?)
-            .map_err(|error| damaged("building.json", &error))?;
+        let description: Description =
+            serde_json::from_str(building).map_err(|error| damaged("building.json", &error))?;
         let parameters = description.parameters.iter().map(|parameter| parameter.value).collect();
         let plan = Plan::new(description).map_err(|error| damaged("building.json", &error))?;
         let options =
             options(header.settings, header.outputs).map_err(|error| damaged("run.json", &error))?;
         let stages = options.scheme.weights().len();
-        let bytes = fs::read(folder.join("forcing.bin")).map_err(|error| damaged("forcing.bin", &error))?;
-        let forcing = unpack(&bytes, stages, plan.n_channels())
+        let forcing = unpack(forcing, stages, plan.n_channels())
             .ok_or_else(|| damaged("forcing.bin", &"its size does not fit the building"))?;
         let contents = Self {
             token: header.token,
@@ -184,6 +177,41 @@ impl Contents {
             return Err("a set point is not one of the building".to_owned());
         }
         self.options.outputs.iter().try_for_each(|output| output.check(&self.plan)).map_err(|e| e.to_string())
+    }
+
+    /// Refuses values with which heating would be set above cooling.
+    ///
+    /// # Errors
+    /// The zone, both set points, and the time of the first such step.
+    pub fn require_set_points_apart(&self, parameters: &[f64]) -> Result<(), String> {
+        if self.conditioned.is_empty() {
+            return Ok(());
+        }
+        (0..self.steps()).try_for_each(|step| self.require_apart_in(self.rows(step, 1), parameters, step))
+    }
+
+    /// The same for the weather of one step.
+    ///
+    /// # Errors
+    /// As [`Self::require_set_points_apart`].
+    pub fn require_apart_in(&self, rows: &[f64], parameters: &[f64], step: usize) -> Result<(), String> {
+        let last = rows.len() - self.plan.n_channels();
+        let value = |point: SetPoint| match point {
+            SetPoint::Channel(channel) => rows[last + channel],
+            SetPoint::Parameter(parameter) => parameters[parameter],
+        };
+        for zone in &self.conditioned {
+            let (heating, cooling) = (value(zone.heating), value(zone.cooling));
+            if heating > cooling + APART {
+                return Err(format!(
+                    "zones.{}: found heating to {heating} degC above cooling to {cooling} degC at {} s; lower the one \
+                     or raise the other",
+                    zone.zone,
+                    step as f64 * self.options.dt
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Steps that there is weather for.
