@@ -28,7 +28,7 @@ from mascarin.pages.live.packing import ALPHABET, planes, text_of
 from mascarin.pages.run.page import Notes, flow_words, how_it_was_run
 from mascarin.simulation.checks import step_check, unmelted
 from mascarin.simulation.checks.energy import CLOSED, FLOWS
-from mascarin.simulation.checks.warning_kinds import Kind
+from mascarin.simulation.checks.warning_kinds import WarningKind
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather import CHANNELS
 
@@ -264,8 +264,8 @@ class _Page:
             "flows": [[flow, flow_words(flow)] for flow in FLOWS],
             "checks": self._checks(),
             "warnings": {
-                "building": [line for line in self._results.warnings if line.kind == Kind.BUILDING],
-                "sent": [line for line in self._results.warnings if line.kind != Kind.BUILDING],
+                "building": [line for line in self._results.warnings if line.kind == WarningKind.BUILDING],
+                "sent": [line for line in self._results.warnings if line.kind != WarningKind.BUILDING],
             },
             "base": self._sent.base,
             "settings": dict(self._sent.settings),
