@@ -59,6 +59,8 @@ class Conversion:
         Period of the run, in a year with the same days of the week.
     steps_per_hour : int
         Number of time steps of EnergyPlus in an hour.
+    systems : dict of str to str
+        Zone in the file by the name of its ideal loads system.
     """
 
     file: Path
@@ -70,6 +72,7 @@ class Conversion:
     start: str
     end: str
     steps_per_hour: int
+    systems: dict[str, str]
 
     @property
     def complete(self) -> bool:
@@ -139,6 +142,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
         start=start,
         end=end,
         steps_per_hour=steps,
+        systems=context.systems,
     )
 
 

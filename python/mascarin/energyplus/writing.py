@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from mascarin.building.files.yaml_text import text_of
 from mascarin.energyplus.conversion import Conversion
-from mascarin.energyplus.model.findings import LEVELS, Finding
+from mascarin.energyplus.model.findings import LEVELS, Finding, Level
 
 #: What stands before the mark of a written file.
 _MARK: Final = "unchanged while its mark is "
@@ -33,14 +33,27 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
         From `convert`.
     """
     for level in LEVELS:
-        groups: dict[tuple[str, str], list[Finding]] = {}
-        for finding in conversion.findings:
-            if finding.level == level:
-                groups.setdefault((finding.kind, finding.consequence), []).append(finding)
-        if groups:
+        lines = level_lines(conversion, level)
+        if lines:
             yield _HEADINGS[level]
-            for findings in sorted(groups.values(), key=_rank):
-                yield f"  {_line(findings)}"
+            yield from (f"  {line}" for line in lines)
+
+
+def level_lines(conversion: Conversion, level: Level) -> list[str]:
+    """Lines on the findings of one level, the largest measured effects first.
+
+    Parameters
+    ----------
+    conversion : Conversion
+        From `convert`.
+    level : str
+        One of `LEVELS`.
+    """
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for finding in conversion.findings:
+        if finding.level == level:
+            groups.setdefault((finding.kind, finding.consequence), []).append(finding)
+    return [_line(findings) for findings in sorted(groups.values(), key=_rank)]
 
 
 def _rank(findings: list[Finding]) -> tuple[float, int, int]:

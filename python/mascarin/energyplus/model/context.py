@@ -102,6 +102,8 @@ class Context:
         Schedules of the description by what they say.
     resistances : dict of str to float
         Whole resistance of the materials without mass, which may be several layers. [m2 K/W]
+    systems : dict of str to str
+        Zone in the file by the name of its ideal loads system.
     """
 
     model: IdfModel
@@ -111,6 +113,7 @@ class Context:
     years: dict[str, Year] = field(default_factory=dict)
     shapes: dict[str, str] = field(default_factory=dict)
     resistances: dict[str, float] = field(default_factory=dict)
+    systems: dict[str, str] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
         """A section of the description.

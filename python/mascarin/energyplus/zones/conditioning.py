@@ -215,6 +215,7 @@ def _condition(
     """Heating and cooling of one zone by its system."""
     on = year(context, system, "availability_schedule_name", "system_availability_schedule_name")
     plants = {}
+    context.systems[system.name] = zone.item.name
     for which in ("heating", "cooling"):
         allowed = year(context, system, f"{which}_availability_schedule_name")
         available = combined(lambda first, second: float(first > 0.0 and second > 0.0), on, allowed)
