@@ -26,7 +26,11 @@ from mascarin.energyplus.model.idf import IdfObject, read
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
-from mascarin.energyplus.zones.conditioning import describe_conditioning, usual_temperatures
+from mascarin.energyplus.zones.conditioning import (
+    describe_conditioning,
+    seasonal_temperatures,
+    usual_temperatures,
+)
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
 from mascarin.energyplus.zones.water import describe_water
@@ -121,7 +125,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
     air = usual_temperatures(context, zones)
-    describe_gains(context, zones, air)
+    describe_gains(context, zones, seasonal_temperatures(context, zones))
     describe_water(context, zones, air)
     describe_air(context, zones, all_surfaces, inside)
     describe_conditioning(context, zones)

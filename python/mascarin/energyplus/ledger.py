@@ -123,6 +123,7 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "treat_weather_as_actual": "dates of the weather file",
         "first_hour_interpolation_starting_values": "the first hour of a run",
     },
+    "schedule:year": {"start_*": "a week begins where the one before it ends"},
     "schedule:week:daily": {"*designday_*": "days for sizes", "customday*": "days that do not occur"},
     "schedule:file": {
         "number_of_hours_of_data": _COUNT,

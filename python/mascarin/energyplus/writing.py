@@ -57,7 +57,7 @@ def level_lines(conversion: Conversion, level: Level) -> list[str]:
 
 
 def _rank(findings: list[Finding]) -> tuple[float, int, int]:
-    sizes = [finding.kelvin for finding in findings if finding.kelvin is not None]
+    sizes = [finding.measured.rank for finding in findings if finding.measured is not None]
     return -max(sizes, default=0.0), -len(findings), findings[0].line or 0
 
 
@@ -142,6 +142,7 @@ def report(conversion: Conversion) -> dict[str, Any]:
             {
                 "level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line,
                 "found": finding.what, "effect": finding.effect, "kelvin": finding.kelvin,
+                "loads_percent": None if finding.measured is None else finding.measured.percent,
             }
             for finding in conversion.findings
         ],
