@@ -454,9 +454,10 @@ CASES = {
     ),
     "dividers": Case(
         "FenestrationSurface:Detailed", "dividers",
-        _frame(divider_type="DividedLite", divider_width=0.04, number_of_horizontal_dividers=2,
+        _frame(divider_type="Suspended", divider_width=0.04, number_of_horizontal_dividers=2,
                number_of_vertical_dividers=2, divider_conductance=3.0, divider_solar_absorptance=0.5,
                divider_thermal_hemispherical_emissivity=0.9),
+        both=panes,
     ),
     "frame_edge": Case(
         "WindowProperty:FrameAndDivider", "ratio of frame edge*",

@@ -143,6 +143,8 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "maximum_total_cooling_capacity": _METHOD,
         "*_supply_air_temperature": "of a supply without a limit",
         "*humidi*": "moisture: listed with the system",
+        "latent_heat_recovery_effectiveness": "moisture: listed with the recovery",
+        "sensible_heat_recovery_effectiveness": _METHOD,
     },
     "zoneinfiltration:designflowrate": {"*flow*": _METHOD, "air_changes_per_hour": _METHOD},
     "zoneventilation:designflowrate": {

@@ -48,6 +48,7 @@ LARGER = {
 REFUSED = {"extra_field": "extra field", "macro_include": "##include walls.imf"}
 #: Not carried over, or only in part: class of the object that the list names.
 LISTED = {
+    "ceiling_interzone": "Ceiling:Interzone",
     "ground_hidden": "BuildingSurface:Detailed",
     "hvac_template_vav": "HVACTemplate:Zone:PTAC",
     "incident_inside": "SurfaceProperty:SolarIncidentInside",
@@ -248,6 +249,25 @@ def test_what_energyplus_reads_over_is_read_over(tmp_path: Path) -> None:
     conversion = convert(written(tmp_path, blank, step))
     assert conversion.steps_per_hour == 6
     assert any(finding.kind == "Timestep" for finding in conversion.findings)
+
+
+def test_dividers_are_a_part_of_the_frame() -> None:
+    # Two and two bars of 0.04 m on 3 x 1.4 m of glass; a U value with both films.
+    frame = convert(SMALL / "dividers.idf").description["windows"]["room_win"]["frame"]
+    assert frame["fraction"] == pytest.approx(0.04 * (2 * 3.0 + 2 * 1.4 - 4 * 0.04) / 4.2, rel=1e-6)
+    assert frame["u_value"] == pytest.approx(1.0 / (1.0 / 3.0 + 0.17), rel=1e-6)
+    assert frame["absorptance"] == 0.5
+
+
+def test_recovered_air_passes_by_where_no_heat_is_needed(tmp_path: Path) -> None:
+    description = convert(SMALL / "recovery.idf").description
+    flows = description["zones"]["room"]["ventilation"].values()
+    base, bypass = sorted(flows, key=lambda flow: "control" in flow)
+    assert base["flow"] == pytest.approx(0.3 * 2.0 * 75.0 / 3600.0)
+    assert bypass["flow"] == pytest.approx(0.7 * 2.0 * 75.0 / 3600.0)
+    control = description["controls"][bypass["control"]]
+    assert control["difference"] == {"open": 0, "close": 0}
+    assert control["indoor"] == {"open": 21, "close": 21}, "1 K above the heating set point"
 
 
 def test_expressions_have_the_values_of_the_first_run(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context
@@ -11,7 +11,7 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
 from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
-from mascarin.energyplus.zones.draughts import Draught, density_of, ventilate
+from mascarin.energyplus.zones.draughts import Draught, density_of, limited, ventilate
 from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
 from mascarin.energyplus.zones.zones import Zone
@@ -38,6 +38,9 @@ _AIR_DENSITY: Final = 1.2
 #: Temperatures of the zone at which a limit of flow is a limit of power [degC].
 #: Air temperature of a zone that its set points allow [degC].
 _USUAL: Final = 23.0
+#: So far above a heating set point, a zone needs no heat in a step without recovery either: air of 2 changes
+#: per hour, 15 K colder, takes 1 to 2 K from the air of a room within a step [K].
+_ABOVE_SET_POINT: Final = 1.0
 #: Latitude of the tropics [deg], and last days of winter, spring, summer, autumn and winter in the north.
 _TROPICS: Final = 23.44
 _SEASONS: Final = ("02-28", "05-31", "08-31", "11-30", "12-31")
@@ -256,7 +259,7 @@ def _condition(
         available = combined(lambda first, second: float(first > 0.0 and second > 0.0), on, allowed)
         plants[which] = Plant(available, _limit(context, system, which))
     _hold(context, zone, points, plants)
-    _outdoor_air(context, zone, system, on, zones)
+    _outdoor_air(context, zone, system, on, zones, points)
 
 
 def _hold(context: Context, zone: Zone, points: SetPoints, plants: dict[str, Plant]) -> None:
@@ -329,7 +332,14 @@ def _limit(context: Context, system: IdfObject, which: str) -> float | None:
 
 
 @reads("DesignSpecification:OutdoorAir")
-def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zones: dict[str, Zone]) -> None:
+def _outdoor_air(
+    context: Context,
+    zone: Zone,
+    system: IdfObject,
+    on: Year,
+    zones: dict[str, Zone],
+    points: SetPoints,
+) -> None:
     """Outdoor air of the ideal loads as ventilation, whenever the system is available."""
     flow, values = 0.0, constant(1.0)
     named = system.text("design_specification_outdoor_air_object_name")
@@ -351,13 +361,14 @@ def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zone
             context.findings.left_out(
                 system, word, "the flow of outdoor air stays as designed: other cooling loads"
             )
+    recovered = 0.0
     if system.word("heat_recovery_type") not in ("", "none"):
-        share = system.number("sensible_heat_recovery_effectiveness") or 0.0
-        flow *= 1.0 - share
+        recovered = system.number("sensible_heat_recovery_effectiveness") or 0.0
         context.findings.approximated(
             system,
             "heat recovery",
-            "less outdoor air by its effectiveness, at all times: other cooling loads",
+            "less outdoor air by its effectiveness, while the zone is less than 1 K above its heating set "
+            "point or colder than outdoors; air changes are those of the smaller flow then",
         )
     context.findings.approximated(
         system,
@@ -370,7 +381,18 @@ def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zone
     air = Draught(
         system, flow, (1.0, 0.0, 0.0, 0.0), active, density=density_of(context, system, usual="standard")
     )
-    ventilate(context, zone, air, flow)
+    ventilate(context, zone, air, flow * (1.0 - recovered))
+    if recovered > 0.0:
+        _bypass(context, zone, replace(air, flow=flow * recovered), points)
+
+
+def _bypass(context: Context, zone: Zone, air: Draught, points: SetPoints) -> None:
+    """Air whose heat is not recovered while the zone needs no heat and the outdoor air is cooler."""
+    limits = [("difference", constant(0.0))]
+    if points.heating.constant != NEVER_HEATS:
+        limits.append(("indoor", combined(lambda set_point: set_point + _ABOVE_SET_POINT, points.heating)))
+    for part in limited(context, zone, air, limits):
+        ventilate(context, zone, part, part.flow)
 
 
 def _outdoor_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:
