@@ -39,10 +39,10 @@ LARGER = {
     "daylight_saving_south": (0.23, "the same"),
     "capacity_limit": (0.24, "loads at their limit"),
     "tank_stratified": (0.37, "a tank of one temperature"),
-    "interzone_one_sided": (0.28, "not known"),
+    "interzone_one_sided": (0.28, "EnergyPlus takes a surface that names itself as adiabatic in its balance"),
     "skylight": (0.26, "circumsolar radiation through horizontal glass"),
     "skylight_panes": (0.24, "the same"),
-    "plenum_of_walls": (0.8, "not known: a zone whose heat leaves by windows alone"),
+    "plenum_of_walls": (0.45, "not known: the zone above, whose heat leaves by windows alone"),
 }
 #: Refused by EnergyPlus, or with macros: a word of the error.
 REFUSED = {"extra_field": "extra field", "macro_include": "##include walls.imf"}

@@ -67,6 +67,12 @@ DOCUMENTED: Final = (
         "+0.1 %, cooling -0.2 % in a room with one window)",
     ),
     Documented(
+        lambda *_: True,
+        "EnergyPlus repeats the first day at most 25 times, until temperatures change by less than 0.4 K: "
+        "the first weeks of zones without heating (1 K in January in a closed plenum). Smaller tolerances "
+        "and more days in 'Building' take it away",
+    ),
+    Documented(
         _has_old_sun,
         "EnergyPlus took the place of the sun and the shadows from the mean of several days (0.03 K in two "
         "rooms with windows): 'ShadowCalculation,PolygonClipping,Periodic,1;' takes each day's",
