@@ -19,7 +19,10 @@ LATER = {
 #: Rules on lines of IDF: what an older version has in place of a field of 25.2.
 ALL = [
     (r"^( *BuildingSurface:Detailed,(?:[^,]*,){4}),", r"\1"),  # no space
-    (r"^( *(?:Wall:(?:Interzone|Exterior|Underground)|InternalMass),(?:[^,]*,){3}),", r"\1"),
+    (
+        r"^( *(?:Wall:(?:Interzone|Exterior|Underground)|Ceiling:Interzone|InternalMass),(?:[^,]*,){3}),",
+        r"\1",
+    ),
 ]
 OLDEST = [
     (r"^( *FenestrationSurface:Detailed,(?:[^,]*,){5}[^,]*,)", r"\1,"),  # a shading control before the frame
