@@ -77,7 +77,9 @@ CASES: dict[str, Case] = {
     "outputs": Case(("house.yaml",)),
     "cite": Case(("house.yaml",)),
     "verify": Case(),
-    "convert": Case(("model.idf", "--weather", "site.epw"), {"--out": ".yaml"}),
+    "convert": Case(
+        ("model.idf", "--weather", "site.epw", "--compare", "run"), {"--out": ".yaml", "--report": ".html"}
+    ),
     "view": Case(("house.yaml", "--no-open"), {"--out": ".html"}),
     "materials": Case(("rt25",), {"--plot": ".svg"}),
     "dsc": Case(("dsc.csv",), {"--out": ".yaml", "--plot": ".svg"}),
@@ -205,6 +207,8 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "study" / "study.yaml").write_text(STUDY, encoding="utf-8")
     logger_table(folder / "study" / "building.yaml").to_csv(folder / "study" / "logger.csv")
     write_project(folder / "genopt")
+    (folder / "run").mkdir()
+    (folder / "run" / "eplusout.csv").write_text("Date/Time,ROOM:Zone Mean Air Temperature [C](Hourly)\n")
     (folder / "suites" / "bland").mkdir(parents=True)
     with gzip.open(folder / "suites" / "bland" / "Test_1-1_Analytical.csv.gz", "wt") as file:
         file.write(SLAB)
@@ -263,6 +267,7 @@ def test_every_command_is_tried() -> None:
             "--ranges",
             "--project",
             "--data",
+            "--compare",
         }, name
 
 

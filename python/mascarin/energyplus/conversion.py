@@ -26,7 +26,11 @@ from mascarin.energyplus.model.idf import IdfObject, read
 from mascarin.energyplus.model.site import describe_site
 from mascarin.energyplus.unsupported import note_unsupported
 from mascarin.energyplus.zones.airflow import describe_air
-from mascarin.energyplus.zones.conditioning import describe_conditioning, usual_temperatures
+from mascarin.energyplus.zones.conditioning import (
+    describe_conditioning,
+    seasonal_temperatures,
+    usual_temperatures,
+)
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
 from mascarin.energyplus.zones.water import describe_water
@@ -59,6 +63,8 @@ class Conversion:
         Period of the run, in a year with the same days of the week.
     steps_per_hour : int
         Number of time steps of EnergyPlus in an hour.
+    systems : dict of str to str
+        Zone in the file by the name of its ideal loads system.
     """
 
     file: Path
@@ -70,6 +76,7 @@ class Conversion:
     start: str
     end: str
     steps_per_hour: int
+    systems: dict[str, str]
 
     @property
     def complete(self) -> bool:
@@ -118,7 +125,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_openings(context, inside, coefficients, surfaces)
     describe_shades(context, all_surfaces, inside)
     air = usual_temperatures(context, zones)
-    describe_gains(context, zones, air)
+    describe_gains(context, zones, seasonal_temperatures(context, zones))
     describe_water(context, zones, air)
     describe_air(context, zones, all_surfaces, inside)
     describe_conditioning(context, zones)
@@ -139,6 +146,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
         start=start,
         end=end,
         steps_per_hour=steps,
+        systems=context.systems,
     )
 
 

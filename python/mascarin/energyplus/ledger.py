@@ -123,6 +123,7 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "treat_weather_as_actual": "dates of the weather file",
         "first_hour_interpolation_starting_values": "the first hour of a run",
     },
+    "schedule:year": {"start_*": "a week begins where the one before it ends"},
     "schedule:week:daily": {"*designday_*": "days for sizes", "customday*": "days that do not occur"},
     "schedule:file": {
         "number_of_hours_of_data": _COUNT,
@@ -142,6 +143,8 @@ IDLE_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "maximum_total_cooling_capacity": _METHOD,
         "*_supply_air_temperature": "of a supply without a limit",
         "*humidi*": "moisture: listed with the system",
+        "latent_heat_recovery_effectiveness": "moisture: listed with the recovery",
+        "sensible_heat_recovery_effectiveness": _METHOD,
     },
     "zoneinfiltration:designflowrate": {"*flow*": _METHOD, "air_changes_per_hour": _METHOD},
     "zoneventilation:designflowrate": {

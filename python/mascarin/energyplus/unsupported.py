@@ -103,14 +103,6 @@ _MISSING: Final = {
     "foundation": "see the surfaces that use it",
     "site:groundtemperature:undisturbed": "see the surfaces that use it",
 }
-#: Rms of the air temperature of a small room with and without such an object [K], in EnergyPlus 25.2; the
-#: models are in tests/idf_small.
-_MEASURED: Final = {
-    "surfaceproperty:solarincidentinside": 1.0,
-    "surfacecontrol:movableinsulation": 0.7,
-    "surfaceproperty:incidentsolarmultiplier": 2.7,
-    "surfaceproperty:surroundingsurfaces": 0.5,
-}
 #: Objects that others name: without effect where nothing that is carried over does.
 _NAMED: Final = (
     "material", "construction", "windowmaterial", "schedule", "thermostat", "designspecification",
@@ -139,7 +131,7 @@ def note_unsupported(context: Context) -> None:
         idle = _longest(low, _IDLE)
         if missing and len(missing) >= len(idle):
             for item in items:
-                context.findings.left_out(item, "not carried over", _MISSING[missing], _MEASURED.get(missing))
+                context.findings.left_out(item, "not carried over", _MISSING[missing])
         elif idle:
             context.findings.no_effect(items, "not needed", _IDLE[idle])
         elif low.startswith(_NAMED):
@@ -168,8 +160,16 @@ def _beside(context: Context) -> None:
         )
     days = context.model.one("RunPeriod")
     if days is not None:
-        for key in ("use_weather_file_daylight_saving_period", "use_weather_file_holidays_and_special_days"):
-            if days.word(key) == "yes" and days.fields.get(key):
+        for key, what in (
+            ("use_weather_file_daylight_saving_period", "daylight saving"),
+            ("use_weather_file_holidays_and_special_days", "holidays"),
+        ):
+            asked = days.word(key) == "yes" and days.fields.get(key)
+            if asked and context.special_days.get(what, True):
                 context.findings.approximated(
                     days, key.replace("_", " "), "those of the weather file have no effect, if it has any"
                 )
+        if days.word("use_weather_file_rain_indicators") in ("", "yes"):
+            context.findings.approximated(
+                days, "rain", "surfaces outdoors stay dry, where EnergyPlus wets them while it rains"
+            )

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from mascarin.building.files.yaml_text import text_of
 from mascarin.energyplus.conversion import Conversion
-from mascarin.energyplus.model.findings import LEVELS, Finding
+from mascarin.energyplus.model.findings import LEVELS, Finding, Level
 
 #: What stands before the mark of a written file.
 _MARK: Final = "unchanged while its mark is "
@@ -33,18 +33,31 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
         From `convert`.
     """
     for level in LEVELS:
-        groups: dict[tuple[str, str], list[Finding]] = {}
-        for finding in conversion.findings:
-            if finding.level == level:
-                groups.setdefault((finding.kind, finding.consequence), []).append(finding)
-        if groups:
+        lines = level_lines(conversion, level)
+        if lines:
             yield _HEADINGS[level]
-            for findings in sorted(groups.values(), key=_rank):
-                yield f"  {_line(findings)}"
+            yield from (f"  {line}" for line in lines)
+
+
+def level_lines(conversion: Conversion, level: Level) -> list[str]:
+    """Lines on the findings of one level, the largest measured effects first.
+
+    Parameters
+    ----------
+    conversion : Conversion
+        From `convert`.
+    level : str
+        One of `LEVELS`.
+    """
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for finding in conversion.findings:
+        if finding.level == level:
+            groups.setdefault((finding.kind, finding.consequence), []).append(finding)
+    return [_line(findings) for findings in sorted(groups.values(), key=_rank)]
 
 
 def _rank(findings: list[Finding]) -> tuple[float, int, int]:
-    sizes = [finding.kelvin for finding in findings if finding.kelvin is not None]
+    sizes = [finding.measured.rank for finding in findings if finding.measured is not None]
     return -max(sizes, default=0.0), -len(findings), findings[0].line or 0
 
 
@@ -129,6 +142,7 @@ def report(conversion: Conversion) -> dict[str, Any]:
             {
                 "level": finding.level, "class": finding.kind, "name": finding.name, "line": finding.line,
                 "found": finding.what, "effect": finding.effect, "kelvin": finding.kelvin,
+                "loads_percent": None if finding.measured is None else finding.measured.percent,
             }
             for finding in conversion.findings
         ],

@@ -43,9 +43,6 @@ _OPENINGS: Final = {
 }
 #: Tilt above which EnergyPlus turns a roof or ceiling, and below which it turns a floor [deg].
 _VERTICAL: Final = 90.0
-#: Rms of the air temperature of a small room where no sun of the ground reaches its south side [K], in
-#: EnergyPlus 25.2; the model is in tests/idf_small.
-_GROUND_HIDDEN: Final = 0.6
 #: Difference of view factors that is not noted [-].
 _SAME_VIEW: Final = 0.05
 OPENINGS: Final = ("FenestrationSurface:Detailed", *_OPENINGS)
@@ -164,7 +161,6 @@ def _ground_seen(context: Context, item: IdfObject, points: g.Array) -> None:
             item,
             f"a view factor to the ground of {entered_view:g}",
             f"{by_tilt:.2f} by its tilt: {share} % {more} of the sun that the ground reflects reaches it",
-            _GROUND_HIDDEN,
         )
 
 
@@ -182,6 +178,13 @@ def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
     if boundary == "surface" and context.model.of_any_class(beyond, *SURFACES) is None:
         # Such a surface may name a zone in place of a surface.
         boundary = "surface" if context.model.of_any_class(beyond, "Zone") is None else "zone"
+        if boundary == "zone" and item.kind == "Ceiling:Interzone":
+            context.findings.approximated(
+                item,
+                f"the zone '{beyond}' as its other side",
+                "heat passes to that zone, as EnergyPlus describes it; EnergyPlus 25.2 lets none "
+                "through, and gives that zone no floor: about 3 K in two rooms one above the other",
+            )
     points = _upright(context, item, shape, _checked(item, points))
     return IdfSurface(item, zone, shape, boundary, beyond, outdoors, outdoors, points)
 

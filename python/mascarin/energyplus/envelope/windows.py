@@ -28,6 +28,10 @@ _FILMS: Final = 0.17
 _MAX_FRAME_U_VALUE: Final = 5.8
 #: Width [m], U value [W/(m2 K)], absorptance and emissivity [-] of a frame.
 FrameData = tuple[float, float, float, float]
+#: Area [m2], U value [W/(m2 K)], absorptance and emissivity [-] of dividers.
+Bars = tuple[float, float, float, float]
+#: Corners of a window whose dividers are counted.
+_CORNERS: Final = 4
 
 
 def describe_openings(
@@ -88,7 +92,13 @@ def _window(
         context.findings.approximated(
             item, "a window over a door", "its area alone is taken from the wall, as in EnergyPlus"
         )
-    shape = _glazed_shape(context, opening, points, frame, free and surfaces.has_vertices[wall])
+    shape = _glazed_shape(
+        context,
+        opening,
+        points,
+        (frame, _dividers_of(context, opening)),
+        free and surfaces.has_vertices[wall],
+    )
     coefficient = coefficients.outside(item, base.zone, "very_smooth")
     tilt = g.tilt_of(base.points)
     window: Section = {"surface": wall, "glazing": glazed.name, **shape}
@@ -102,21 +112,30 @@ def _window(
 
 
 def _glazed_shape(
-    context: Context, opening: IdfOpening, points: g.Array, frame: FrameData | None, has_vertices: bool
+    context: Context,
+    opening: IdfOpening,
+    points: g.Array,
+    opaque: tuple[FrameData | None, Bars | None],
+    has_vertices: bool,
 ) -> Section:
-    """Corners, area and frame of a window; the glass of EnergyPlus lies inside its frame."""
+    """Corners, area and frame of a window; the glass of EnergyPlus lies inside its frame, dividers on it."""
     glass = g.area_of(opening.points)
     shape: Section = {}
-    outline = points
-    if frame is not None:
-        outline = _framed(points, frame[0])
-        outer_area = g.area_of(outline)
-        _, u_value, absorptance, emissivity = frame
+    frame, bars = opaque
+    outline = points if frame is None else _framed(points, frame[0])
+    outer_area = glass if frame is None else g.area_of(outline)
+    parts = [] if frame is None else [(outer_area - glass, *frame[1:])]
+    parts += [] if bars is None else [bars]
+    covered = sum(part[0] for part in parts)
+    if covered > 0.0:
+        u_value, absorptance, emissivity = (
+            sum(part[0] * part[k] for part in parts) / covered for k in (1, 2, 3)
+        )
         shape["frame"] = {
-            "fraction": round(1.0 - glass / outer_area, 9),
+            "fraction": round(covered / outer_area, 9),
             "u_value": min(round(u_value, 9), _MAX_FRAME_U_VALUE),
-            "absorptance": absorptance,
-            "emissivity": emissivity,
+            "absorptance": round(absorptance, 9),
+            "emissivity": round(emissivity, 9),
         }
         glass = outer_area
     total = round(glass * opening.copies, 6)
@@ -174,12 +193,6 @@ def _frame_of(context: Context, item: IdfObject) -> FrameData | None:
     if not item.text("frame_and_divider_name"):
         return None
     frame = context.model.require(item, "frame_and_divider_name", "WindowProperty:FrameAndDivider")
-    bars = frame.number("divider_width") or 0.0
-    count = sum(frame.number(f"number_of_{way}_dividers") or 0.0 for way in ("horizontal", "vertical"))
-    if bars > 0.0 and count > 0.0:
-        context.findings.left_out(
-            item, "dividers", "more sun enters, by their fraction of the glass, and less heat is conducted"
-        )
     width, conductance = frame.number("frame_width") or 0.0, frame.number("frame_conductance")
     if width <= 0.0:
         return None
@@ -193,6 +206,41 @@ def _frame_of(context: Context, item: IdfObject) -> FrameData | None:
         1.0 / (1.0 / conductance + _FILMS),
         frame.number("frame_solar_absorptance") or 0.7,
         frame.number("frame_thermal_hemispherical_emissivity") or 0.9,
+    )
+
+
+@reads("WindowProperty:FrameAndDivider")
+def _dividers_of(context: Context, opening: IdfOpening) -> Bars | None:
+    """Dividers on the glass: they cover a part of it; None without, or where they are listed."""
+    item = opening.item
+    if not item.text("frame_and_divider_name"):
+        return None
+    frame = context.model.require(item, "frame_and_divider_name", "WindowProperty:FrameAndDivider")
+    width = frame.number("divider_width") or 0.0
+    across, upright = (
+        round(frame.number(f"number_of_{way}_dividers") or 0.0) for way in ("horizontal", "vertical")
+    )
+    if width <= 0.0 or across + upright == 0:
+        return None
+    conductance = frame.number("divider_conductance")
+    if frame.word("divider_type") == "suspended" or len(opening.points) != _CORNERS or not conductance:
+        context.findings.left_out(
+            item, "dividers", "more sun enters, by their fraction of the glass, and less heat is conducted"
+        )
+        return None
+    edges = [float(np.linalg.norm(opening.points[k + 1] - opening.points[k])) for k in range(2)]
+    # The edge that is less steep is the width of the window.
+    rises = [abs(float(opening.points[k + 1][2] - opening.points[k][2])) / edges[k] for k in range(2)]
+    horizontal, vertical = edges if rises[0] < rises[1] else edges[::-1]
+    area = width * (across * horizontal + upright * vertical - across * upright * width)
+    for key in ("divider_outside_projection", "divider_inside_projection"):
+        if frame.number(key):
+            context.findings.approximated(frame, key.replace("_", " "), "it neither shades nor adds surface")
+    return (
+        min(area, 0.99 * g.area_of(opening.points)),
+        1.0 / (1.0 / conductance + _FILMS),
+        frame.number("divider_solar_absorptance") or 0.0,
+        frame.number("divider_thermal_hemispherical_emissivity") or 0.9,
     )
 
 

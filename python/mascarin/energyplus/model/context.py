@@ -102,6 +102,10 @@ class Context:
         Schedules of the description by what they say.
     resistances : dict of str to float
         Whole resistance of the materials without mass, which may be several layers. [m2 K/W]
+    systems : dict of str to str
+        Zone in the file by the name of its ideal loads system.
+    special_days : dict of str to bool
+        Whether the weather file has ``daylight saving`` and ``holidays``; empty without a weather file.
     """
 
     model: IdfModel
@@ -111,6 +115,8 @@ class Context:
     years: dict[str, Year] = field(default_factory=dict)
     shapes: dict[str, str] = field(default_factory=dict)
     resistances: dict[str, float] = field(default_factory=dict)
+    systems: dict[str, str] = field(default_factory=dict)
+    special_days: dict[str, bool] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
         """A section of the description.

@@ -26,7 +26,7 @@ def calendar_year(context: Context) -> int:
     item = context.model.one("RunPeriod")
     if item is None:
         return 2017
-    begin_year = item.number("begin_year")
+    begin_year = item.number("begin_year", "start_year")
     if begin_year is not None and not YEARS[0] <= begin_year <= YEARS[1]:
         raise item.error(
             f"begin_year: found {begin_year:g}", f"a year from {YEARS[0]} to {YEARS[1]}", "Correct it"

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
+from mascarin.energyplus.model.effects import Effect, effect_of
 from mascarin.energyplus.model.idf import IdfObject
 
 Level = Literal["left out", "approximated", "no effect"]
@@ -31,9 +32,8 @@ class Finding:
         What was found.
     effect : str
         What this does to the results.
-    kelvin : float or None
-        Rms of the air temperature of a small room in EnergyPlus with the object, and without it, where it was
-        measured: ``bench/energyplus_small.py``. [K]
+    measured : Effect or None
+        Its size in small rooms in EnergyPlus with the object, and without it, where it was measured.
     """
 
     level: Level
@@ -42,13 +42,17 @@ class Finding:
     line: int | None
     what: str
     effect: str
-    kelvin: float | None = None
+    measured: Effect | None = None
+
+    @property
+    def kelvin(self) -> float | None:
+        """Measured effect on the air temperature of a small room; None where it was not measured. [K]"""
+        return None if self.measured is None else self.measured.kelvin
 
     @property
     def consequence(self) -> str:
         """The effect, with its measured size."""
-        size = "" if self.kelvin is None else f": about {self.kelvin:g} K in a small room"
-        return self.effect + size
+        return self.effect if self.measured is None else f"{self.effect}: {self.measured.text()}"
 
     def text(self) -> str:
         """The finding on one line."""
@@ -64,13 +68,13 @@ class Findings:
     unique: dict[Finding, None] = field(default_factory=dict)
     _objects: set[tuple[str, str, int | None, str]] = field(default_factory=set)
 
-    def left_out(self, item: IdfObject, what: str, effect: str, kelvin: float | None = None) -> None:
+    def left_out(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is not carried over and changes the results."""
-        self._add("left out", item, what, effect, kelvin)
+        self._add("left out", item, what, effect)
 
-    def approximated(self, item: IdfObject, what: str, effect: str, kelvin: float | None = None) -> None:
+    def approximated(self, item: IdfObject, what: str, effect: str) -> None:
         """Note an object or property that is carried over in another form."""
-        self._add("approximated", item, what, effect, kelvin)
+        self._add("approximated", item, what, effect)
 
     def no_effect(self, items: Iterable[IdfObject], what: str, effect: str) -> None:
         """Note objects of one class that are not needed."""
@@ -81,10 +85,9 @@ class Findings:
             count = f"{len(objects)} objects"
             self.unique[Finding("no effect", objects[0].kind, count, objects[0].line, what, effect)] = None
 
-    def _add(
-        self, level: Level, item: IdfObject, what: str, effect: str, kelvin: float | None = None
-    ) -> None:
-        self.unique[Finding(level, item.kind, item.name, item.line, what, effect, kelvin)] = None
+    def _add(self, level: Level, item: IdfObject, what: str, effect: str) -> None:
+        measured = None if level == "no effect" else effect_of(item.kind, what)
+        self.unique[Finding(level, item.kind, item.name, item.line, what, effect, measured)] = None
         self._objects |= {(item.kind, item.name, item.line, any_level) for any_level in ("", level)}
 
     def about(self, item: IdfObject, level: Level | Literal[""] = "") -> bool:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from datetime import date, timedelta
 from itertools import pairwise
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from mascarin._io.regular import require_regular
 from mascarin._io.tables import csv_refused
@@ -310,13 +310,25 @@ def _week(context: Context, item: IdfObject, days: Iterable[tuple[str, Day]]) ->
 @reads(*_WEEKS)
 def _weeks(context: Context, item: IdfObject) -> Year:
     seasons = []
-    for row in item.rows("schedule_weeks"):
+    for row in item.rows("schedule_weeks") or _numbered(item):
         week = context.model.require(item, "schedule_week_name", *_WEEKS, name=str(row["schedule_week_name"]))
         month, day = int(row.get("end_month", 12)), int(row.get("end_day", 31))
         seasons.append((f"{month:02d}-{28 if (month, day) == (2, 29) else day:02d}", _week_of(context, week)))
     if not seasons or seasons[-1][0] != "12-31":
         raise item.error("weeks that end before 31 December", "weeks of a whole year", "Add the rest")
     return year_of(sorted(seasons))
+
+
+def _numbered(item: IdfObject) -> list[dict[str, Any]]:
+    """Weeks of a year as version 8.9 has them, with numbered fields; the first blank name ends them."""
+    rows: list[dict[str, Any]] = []
+    while item.text(f"schedule_week_name_{len(rows) + 1}"):
+        number = len(rows) + 1
+        values = {
+            key: item.fields.get(f"{key}_{number}") for key in ("schedule_week_name", "end_month", "end_day")
+        }
+        rows.append({key: value for key, value in values.items() if value is not None})
+    return rows
 
 
 @reads(*_DAYS)

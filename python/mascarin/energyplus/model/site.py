@@ -32,6 +32,8 @@ _MONTHS: Final = (
 _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 #: Differences of latitude, longitude [deg], altitude [m] and time zone [h] of one place.
 _SAME_PLACE: Final = (1.0, 1.0, 100.0, 0.0)
+#: Lines before the data of a weather file.
+_HEADER_LINES: Final = 8
 #: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
 _GROUND: Final = 18.0
 
@@ -47,6 +49,7 @@ def describe_site(context: Context, weather: Path | None) -> None:
     """
     site = context.section("site")
     site |= _location(context, weather)
+    context.special_days |= {} if weather is None else _special_days(weather)
     reflectance = _monthly(context.model.one("Site:GroundReflectance"), "ground_reflectance")
     if reflectance is not None:
         mean = sum(v * n for v, n in zip(reflectance, _LENGTHS, strict=True)) / 365.0
@@ -93,6 +96,16 @@ def _of_weather(path: Path) -> list[float]:
             f"{path}:1: found no LOCATION; expected a weather file of EnergyPlus (.epw)"
         ) from None
     return [latitude, longitude, altitude, zone]
+
+
+def _special_days(path: Path) -> dict[str, bool]:
+    """Whether a weather file has daylight saving time and holidays."""
+    with require_regular(path).open(encoding="latin-1") as lines:
+        for _, line in zip(range(_HEADER_LINES), lines, strict=False):
+            cells = [cell.strip() for cell in line.split(",")]
+            if cells[0].upper() == "HOLIDAYS/DAYLIGHT SAVINGS" and len(cells) > 4:
+                return {"daylight saving": cells[2] != "0", "holidays": cells[4] != "0"}
+    return {}
 
 
 @reads("Building", "Site:HeightVariation", "Site:WeatherStation")

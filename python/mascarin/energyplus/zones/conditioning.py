@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
-from mascarin.energyplus.model.year import Year, combined, constant
-from mascarin.energyplus.zones.draughts import Draught, density_of, ventilate
+from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
+from mascarin.energyplus.zones.draughts import Draught, density_of, limited, ventilate
 from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
 from mascarin.energyplus.zones.zones import Zone
@@ -38,6 +38,12 @@ _AIR_DENSITY: Final = 1.2
 #: Temperatures of the zone at which a limit of flow is a limit of power [degC].
 #: Air temperature of a zone that its set points allow [degC].
 _USUAL: Final = 23.0
+#: So far above a heating set point, a zone needs no heat in a step without recovery either: air of 2 changes
+#: per hour, 15 K colder, takes 1 to 2 K from the air of a room within a step [K].
+_ABOVE_SET_POINT: Final = 1.0
+#: Latitude of the tropics [deg], and last days of winter, spring, summer, autumn and winter in the north.
+_TROPICS: Final = 23.44
+_SEASONS: Final = ("02-28", "05-31", "08-31", "11-30", "12-31")
 _ROOM: Final = {"heating": 20.0, "cooling": 24.0}
 
 
@@ -104,6 +110,38 @@ def usual_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, fl
         if key in temperatures:
             temperatures[key] = sum(means) - _USUAL
     return temperatures
+
+
+def seasonal_temperatures(context: Context, zones: dict[str, Zone]) -> dict[str, Year]:
+    """Temperature of each zone by season: its heating set point in winter, its cooling set point in summer.
+
+    Between them in spring and autumn; the cooling set point all year in the tropics; a usual temperature
+    where there is no set point. [degC]
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    """
+    latitude = float(context.section("site").get("latitude", 0.0))
+    shares: tuple[float, ...] = (0.0, 0.5, 1.0, 0.5, 0.0) if latitude > 0.0 else (1.0, 0.5, 0.0, 0.5, 1.0)
+    shares = (1.0,) * len(shares) if abs(latitude) < _TROPICS else shares
+    weeks = zip(_SEASONS, shares, strict=True)
+    summer = year_of([(until, (((0, share),),) * len(DAYS)) for until, share in weeks])
+    temperatures = dict.fromkeys(zones, constant(_USUAL))
+    for key, points in _thermostats(context, zones):
+        if key in temperatures:
+            temperatures[key] = combined(_between, points.heating, points.cooling, summer)
+    return temperatures
+
+
+def _between(heating: float, cooling: float, share: float) -> float:
+    """Temperature between two set points of which either may never act. [degC]"""
+    low = heating if heating > NEVER_HEATS else min(cooling, _USUAL)
+    high = cooling if cooling < NEVER_COOLS else max(heating, _USUAL)
+    return low + share * (max(high, low) - low)
 
 
 @reads("ZoneControl:Thermostat", _TEMPLATE, "HVACTemplate:Thermostat")
@@ -215,12 +253,13 @@ def _condition(
     """Heating and cooling of one zone by its system."""
     on = year(context, system, "availability_schedule_name", "system_availability_schedule_name")
     plants = {}
+    context.systems[system.name] = zone.item.name
     for which in ("heating", "cooling"):
         allowed = year(context, system, f"{which}_availability_schedule_name")
         available = combined(lambda first, second: float(first > 0.0 and second > 0.0), on, allowed)
         plants[which] = Plant(available, _limit(context, system, which))
     _hold(context, zone, points, plants)
-    _outdoor_air(context, zone, system, on, zones)
+    _outdoor_air(context, zone, system, on, zones, points)
 
 
 def _hold(context: Context, zone: Zone, points: SetPoints, plants: dict[str, Plant]) -> None:
@@ -293,7 +332,14 @@ def _limit(context: Context, system: IdfObject, which: str) -> float | None:
 
 
 @reads("DesignSpecification:OutdoorAir")
-def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zones: dict[str, Zone]) -> None:
+def _outdoor_air(
+    context: Context,
+    zone: Zone,
+    system: IdfObject,
+    on: Year,
+    zones: dict[str, Zone],
+    points: SetPoints,
+) -> None:
     """Outdoor air of the ideal loads as ventilation, whenever the system is available."""
     flow, values = 0.0, constant(1.0)
     named = system.text("design_specification_outdoor_air_object_name")
@@ -315,13 +361,14 @@ def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zone
             context.findings.left_out(
                 system, word, "the flow of outdoor air stays as designed: other cooling loads"
             )
+    recovered = 0.0
     if system.word("heat_recovery_type") not in ("", "none"):
-        share = system.number("sensible_heat_recovery_effectiveness") or 0.0
-        flow *= 1.0 - share
+        recovered = system.number("sensible_heat_recovery_effectiveness") or 0.0
         context.findings.approximated(
             system,
             "heat recovery",
-            "less outdoor air by its effectiveness, at all times: other cooling loads",
+            "less outdoor air by its effectiveness, while the zone is less than 1 K above its heating set "
+            "point or colder than outdoors; air changes are those of the smaller flow then",
         )
     context.findings.approximated(
         system,
@@ -334,7 +381,18 @@ def _outdoor_air(context: Context, zone: Zone, system: IdfObject, on: Year, zone
     air = Draught(
         system, flow, (1.0, 0.0, 0.0, 0.0), active, density=density_of(context, system, usual="standard")
     )
-    ventilate(context, zone, air, flow)
+    ventilate(context, zone, air, flow * (1.0 - recovered))
+    if recovered > 0.0:
+        _bypass(context, zone, replace(air, flow=flow * recovered), points)
+
+
+def _bypass(context: Context, zone: Zone, air: Draught, points: SetPoints) -> None:
+    """Air whose heat is not recovered while the zone needs no heat and the outdoor air is cooler."""
+    limits = [("difference", constant(0.0))]
+    if points.heating.constant != NEVER_HEATS:
+        limits.append(("indoor", combined(lambda set_point: set_point + _ABOVE_SET_POINT, points.heating)))
+    for part in limited(context, zone, air, limits):
+        ventilate(context, zone, part, part.flow)
 
 
 def _outdoor_flow(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Zone]) -> float:

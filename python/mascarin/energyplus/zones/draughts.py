@@ -107,6 +107,26 @@ def conditioned(context: Context, zone: Zone, draught: Draught) -> Iterator[Drau
         if all(limit <= idle if idle < 0.0 else limit >= idle for limit in values.values):
             continue
         limits.append((key, values))
+    yield from limited(context, zone, draught, limits)
+
+
+def limited(
+    context: Context, zone: Zone, draught: Draught, limits: list[tuple[str, Year]]
+) -> Iterator[Draught]:
+    """A flow that limits let in: one for each set of their values, with a control.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zone : Zone
+        The zone.
+    draught : Draught
+        The flow without limits.
+    limits : list of (str, Year)
+        Keys of a control, such as ``indoor``, with the value at which it opens and closes.
+    """
+    item = draught.item
     sets = list(itertools.product(*(sorted(values.values) for _, values in limits)))
     if not limits or (draught.values.constant == 0.0):
         yield draught

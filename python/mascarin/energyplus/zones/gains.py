@@ -50,7 +50,7 @@ class Heat:
 
 
 @reads(*KINDS)
-def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, float]) -> None:
+def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, Year]) -> None:
     """Enter all internal gains.
 
     Parameters
@@ -59,7 +59,7 @@ def describe_gains(context: Context, zones: dict[str, Zone], air: dict[str, floa
         The conversion.
     zones : dict of str to Zone
         Zones by the name in the file, in small letters.
-    air : dict of str to float
+    air : dict of str to Year
         Temperature of each at which the sensible heat of people is taken. [degC]
 
     Raises
@@ -142,17 +142,21 @@ def sensible(activity: float, air: float) -> float:
     return min(max(heat, 0.0), activity)
 
 
-def _people(context: Context, item: IdfObject, zone: Zone, air: float) -> Heat:
+def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
     if share is None:
-        power = combined(lambda presence, heat: count * presence * sensible(heat, air), present, activity)
+        power = combined(
+            lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
+        )
+        low, high = min(air.values), max(air.values)
+        used = f"{low:.1f} degC" if low == high else f"{low:.1f} to {high:.1f} degC, by season,"
         context.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {air:.1f} degC is used, about 4 % less for each kelvin above it; moisture is left out",
+            f"that at {used} is used, about 4 % less for each kelvin above it; moisture is left out",
         )
     else:
         sensible_share = share
