@@ -22,6 +22,10 @@ def test_the_results_of_a_room() -> None:
         ("south.inside_flux", "W/m2"),
         ("south.concrete_flux", "W/m2"),
         ("south.incident_solar", "W/m2"),
+        ("south.incident_beam", "W/m2"),
+        ("south.incident_diffuse", "W/m2"),
+        ("south.sky_view_factor", "-"),
+        ("south.ground_view_factor", "-"),
         ("south.outside_absorbed_solar", "W/m2"),
         ("south.outside_longwave", "W/m2"),
         ("south.outside_convection", "W/(m2 K)"),
@@ -35,6 +39,8 @@ def test_the_results_of_a_room() -> None:
         ("rest.inside_longwave", "W/m2"),
         ("rest.inside_convection", "W/(m2 K)"),
         ("sky_temperature", "degC"),
+        ("sun_altitude", "deg"),
+        ("sun_azimuth", "deg"),
         ("core.temperature", "degC"),
     ]
 
