@@ -213,7 +213,10 @@ def test_of_a_long_record_the_days_that_were_not_identified_on_are_run(tmp_path:
     context = Study.from_yaml(tmp_path / "study.yaml").context
     start, end = live_page.period(context)
     # The identification ends on 6 March: the days after it are all there is.
-    assert (start, end) == (pd.Timestamp("2023-03-06", tz="UTC+01:00"), pd.Timestamp("2023-03-20", tz="UTC+01:00"))
+    assert (start, end) == (
+        pd.Timestamp("2023-03-06", tz="UTC+01:00"),
+        pd.Timestamp("2023-03-20", tz="UTC+01:00"),
+    )
 
 
 def test_parameters_without_a_slider_are_named() -> None:

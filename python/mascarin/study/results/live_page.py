@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal, get_args
+from typing import TYPE_CHECKING, Any, Final, Literal, cast, get_args
 
 import numpy as np
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.simulation.preparation.initial import Initial
     from mascarin.study.context.context import StudyContext
 
 PageContent = Literal["model", "measured", "none"]
@@ -37,10 +38,9 @@ def checked(content: str) -> PageContent:
     InputError
         It is none of the three.
     """
-    for choice in get_args(PageContent):
-        if content == choice:
-            return choice
-    raise InputError(f"page: found {kind_of(content)}, expected {', '.join(get_args(PageContent))}")
+    if content not in get_args(PageContent):
+        raise InputError(f"page: found {kind_of(content)}, expected {', '.join(get_args(PageContent))}")
+    return cast("PageContent", content)
 
 
 def write_page(study: StudyContext, building: Building, out: Path, content: PageContent) -> LivePageEntry:
@@ -72,26 +72,23 @@ def write_page(study: StudyContext, building: Building, out: Path, content: Page
         "end": end,
         "step": study.plan.step,
         "scheme": study.plan.scheme,
-        # A later day has no stated start.
-        "initial": study.models.initial if start == study.periods.start else "repeat",
         "measurements": study.inputs.driving,
     }
     outputs = dict.fromkeys(building.output(s.output).name for s in study.plan.sensors.values())
     sent = Sent(base=FILE, inputs=[("Study", study.plan.name), ("Building", FILE)])
     if content == "measured":
         sent = sent._replace(**_compared(study, building, start, end))
-    try:
-        live_page(
-            building,
-            study.climate,
-            out / MODEL,
-            parameters=[each.path for each in parameters],
-            outputs=list(outputs),
-            sent=sent,
-            **options,
-        )
-    except (InputError, SolverError) as error:
-        return LivePageEntry(refusal=str(error))
+    names = {"parameters": [each.path for each in parameters], "outputs": list(outputs)}
+    refusal = ""
+    for initial in _starts(study, start):
+        try:
+            live_page(building, study.climate, out / MODEL, **names, sent=sent, initial=initial, **options)
+        except (InputError, SolverError) as error:
+            refusal = refusal or str(error)
+        else:
+            break
+    else:
+        return LivePageEntry(refusal=refusal)
     return LivePageEntry(
         file=MODEL,
         period=[time.tz_localize(None).isoformat() for time in (start, end)],
@@ -127,6 +124,14 @@ def period(study: StudyContext) -> tuple[pd.Timestamp, pd.Timestamp]:
     inside = [counts[observation.times.searchsorted([start, start + length])] for start in starts]
     first = starts[int(np.argmax([last - earlier for earlier, last in inside]))]
     return first, first + periods.whole_steps(length.total_seconds())
+
+
+def _starts(study: StudyContext, start: pd.Timestamp) -> list[Initial]:
+    """Initial states to try: that of the study, where it can be had at the start of the page."""
+    if start == study.periods.start:
+        return [study.models.initial]
+    # Sensors may have no values then; temperatures that the study states are those of its own start.
+    return [study.models.initial, "repeat"] if study.plan.initial == "measured" else ["repeat"]
 
 
 def _compared(

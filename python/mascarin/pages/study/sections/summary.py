@@ -152,7 +152,7 @@ def live_words(study: StudyDocument) -> Markup | None:
         names = ", ".join(parameter_label(study, path) for path in live.fixed)
         parameters = f"{count} of its {count + len(live.fixed)} calibrated parameters (not {names})"
     return Markup(
-        'Run it here: <a href="{}">{}</a>, beside this file, runs the calibrated building in the browser '
+        'Run it here: <a href="{}">{}</a>, beside this file, simulates the calibrated building in a browser '
         "({}){}, with {} for {}."
     ).format(
         quote(live.file),
