@@ -22,6 +22,7 @@ from mascarin.study.file import opening
 from mascarin.study.file.writing import study_text, write_study
 from mascarin.study.results.document.errors import error_words
 from mascarin.study.results.files import write_all
+from mascarin.study.results.live_page import PageContent, checked
 from mascarin.study.results.results import StudyResults
 from mascarin.study.single_steps import validation
 from mascarin.study.steps.calibration_result import Calibrated, calibrated
@@ -278,7 +279,12 @@ class Study:
 
     @one_thread()
     def run(
-        self, out: str | Path | None = None, *, figures: bool = True, progress: ProgressOption = None
+        self,
+        out: str | Path | None = None,
+        *,
+        figures: bool = True,
+        page: PageContent = "model",
+        progress: ProgressOption = None,
     ) -> StudyResults:
         """Carry out all steps of the study.
 
@@ -289,6 +295,9 @@ class Study:
             interrupted study continues from them. Default: nothing is kept on disk.
         figures : bool
             Whether the figures are written as files, too. The report does not need them.
+        page : str
+            The page beside the report in which the calibrated building runs: ``model``; ``measured`` shows
+            the measured values of the sensors, too; ``none`` writes no page.
         progress : bool, callable or None
             True shows progress, None only in notebooks; a callable gets the number of units done and their
             total.
@@ -307,12 +316,13 @@ class Study:
         """
         context = self.context
         _ = context.inputs.calibration_plan
+        content = checked(page)
         if out is None:
             with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), context.identity()) as work:
                 return all_steps(context, work, progress)
         with Workspace(Path(out), context.identity()) as workspace, context.keeping(workspace):
             results = all_steps(context, workspace, progress)
-            written = write_all(results, workspace, figures=figures)
+            written = write_all(results, workspace, figures=figures, page=content)
             study.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.record("study", written)
             workspace.drop("sensitivity")

@@ -71,6 +71,23 @@ class SourceEntry(ResultEntry):
     doi: str = ""
 
 
+class LivePageEntry(ResultEntry):
+    """The page beside the report in which the calibrated building runs."""
+
+    file: str = ""
+    """Its name in the folder of the study; empty where there is none."""
+    period: list[str] = []
+    """Start and end of its run, local times, ISO 8601 without offset."""
+    sliders: list[str] = []
+    """Calibrated parameters with a slider."""
+    fixed: list[str] = []
+    """Those without one."""
+    measured: bool = False
+    """Whether it has measured values."""
+    refusal: str = ""
+    """Why there is no page, with what to do."""
+
+
 NO_VALUES = MetricValues()
 """Metrics of what was not compared."""
 
@@ -99,6 +116,7 @@ class StudyDocument(ResultEntry):
     """[s]"""
     processors: int | None = None
     seed: int | None = None
+    live: LivePageEntry = LivePageEntry()
     timezone: str = ""
     command: list[str] = []
     """Commands that give the same results."""

@@ -33,6 +33,7 @@ def study(
     *,
     out: Annotated[Path, Parameter(alias="-o")],
     figures: bool = True,
+    page: Literal["model", "measured", "none"] = "model",
     allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
@@ -51,11 +52,14 @@ def study(
         Folder for study.json, tables, figures, the report and intermediate results.
     figures : bool
         Write the figures as files, too; the report does not need them.
+    page : str
+        Page beside the report, model.html, in which the calibrated building runs: model; measured shows the
+        measured values of the sensors, too; none writes no page.
     """
     from mascarin.study.results.document.comparison import criterion_entry, run_warnings
 
     opened = _open(file, allow_outside)
-    results = opened.run(out, figures=figures, progress=True)
+    results = opened.run(out, figures=figures, page=page, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     lines = run_warnings({"nominal": results.nominal, "fitted": results.fitted, **results.variants})
@@ -290,6 +294,10 @@ def _exit_code(
 
 def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     """Print a summary on standard error."""
+    from mascarin.pages.study.data.series import read_json
+    from mascarin.study.context.storage import RUN
+    from mascarin.study_document.document import StudyDocument
+
     count = len(opened.plan.sensors)
     lines = [f"{opened.plan.name}: {opened.plan.observed}, {count} sensor{'s' * (count != 1)}"]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
@@ -321,4 +329,9 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     residual = results.fitted.results.energy.closure
     lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")
+    live = StudyDocument.read(read_json(out / RUN)).live
+    if live.file:
+        lines.append(f"the calibrated building runs in: {out / live.file}")
+    elif live.refusal:
+        lines.append(f"no page in which the calibrated building runs: {live.refusal}")
     print("\n".join(lines), file=sys.stderr)

@@ -51,13 +51,36 @@ def chosen(building: Building, simulation: Simulation, patterns: Sequence[str]) 
                 raise InputError(f"--parameter: {parameter.path}: {reason}")
         return parameters
     if building.posterior is not None:
-        calibrated = [building.parameter(path) for path in building.posterior.intervals]
-        able = [each for each in calibrated if not each.structural and _refusal(building, each) is None]
+        able, _ = calibrated(building)
         if able:
-            return able[: choice.MAX_SLIDERS]
+            return able
     ordered = choice.strongest(building, simulation, choice.MAX_SLIDERS)
     able = [parameter for parameter in ordered if _refusal(building, parameter) is None]
     return able[: choice.DEFAULT_SLIDERS]
+
+
+def calibrated(building: Building) -> tuple[list[Parameter], dict[str, str]]:
+    """What a study has calibrated: the parameters with a slider, and why the others have none.
+
+    Parameters
+    ----------
+    building : Building
+        Perhaps with the posterior of a study.
+    """
+    able: list[Parameter] = []
+    without: dict[str, str] = {}
+    for path in () if building.posterior is None else building.posterior.intervals:
+        parameter = building.parameter(path)
+        reason = _refusal(building, parameter)
+        if parameter.structural:
+            reason = f"found a structural number ({parameter.reason}), which cannot follow a slider"
+        elif reason is None and len(able) == choice.MAX_SLIDERS:
+            reason = f"a page has {choice.MAX_SLIDERS} sliders at most"
+        if reason is None:
+            able.append(parameter)
+        else:
+            without[path] = reason
+    return able, without
 
 
 def _refusal(building: Building, parameter: Parameter) -> str | None:
@@ -143,6 +166,9 @@ def plain(simulation: Simulation, parameter: Parameter) -> dict[str, Any]:
     posterior = building.posterior
     if posterior is not None and parameter.path in posterior.intervals:
         estimate, low, high = posterior.intervals[parameter.path]
+        if not posterior.stated:
+            # The study does not state intervals where its model contradicts its own data.
+            return entry | {"estimate": f"Estimate {text.significant(estimate, 3)} {entry['unit']}".rstrip()}
         entry["low"], entry["high"] = min(entry["low"], low), max(entry["high"], high)
         confidence = text.significant(100.0 * posterior.confidence)
         ends = " to ".join(text.alike([low, high], 3))

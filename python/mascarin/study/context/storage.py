@@ -36,6 +36,8 @@ _FOLDER: Final = ".work"
 REPORT: Final = "report.html"
 #: Date and run time of a study, in the folder of its results.
 RUN: Final = "run.json"
+#: The page in which the calibrated building runs, beside the report.
+MODEL: Final = "model.html"
 #: Files of the result folder itself.
 WRITTEN: Final = ("study.json", RUN, REPORT)
 #: Files that single steps write into the result folder.
@@ -46,7 +48,7 @@ OF_STEPS: Final = (
 #: Names of results in the folder of a study.
 _RESULT: Final = re.compile(
     r"(tables/[^/]+\.csv|figures/[^/]+\.(svg|pdf|png)|"
-    + "|".join(re.escape(name) for name in (*WRITTEN, *OF_STEPS))
+    + "|".join(re.escape(name) for name in (*WRITTEN, MODEL, *OF_STEPS))
     + ")"
 )
 _STAYS: Final = "; the earlier report stays until a new one replaces it"
@@ -74,7 +76,7 @@ class Workspace:
             raise InputError(f"{out}: found a file, expected a folder; choose another folder (-o)")
         self.out = out
         self.folder = out / _FOLDER
-        for name in (*WRITTEN, *OF_STEPS):
+        for name in (*WRITTEN, MODEL, *OF_STEPS):
             identity.require_no_input(out / name)
         for name in (_FOLDER, "tables", "figures"):
             identity.require_no_inputs_in(own_files.require_folder(out, name))
@@ -97,7 +99,7 @@ class Workspace:
             self._clear("*.npz")
         for place in (self.folder, out / "tables", out / "figures"):
             atomic.remove_drafts(place)
-        for name in WRITTEN:
+        for name in (*WRITTEN, MODEL):
             atomic.remove_drafts_of(out / name)
         atomic.write(manifest, text)
 

@@ -21,6 +21,7 @@ from mascarin.study.context.step_cache import written_once
 from mascarin.study.context.storage import RUN, WRITTEN
 from mascarin.study.results.document.sensitivity import analyzed_hours
 from mascarin.study.results.document.whole import document
+from mascarin.study.results.live_page import PageContent, write_page
 from mascarin.study.results.tables import tables_of, write_tables
 from mascarin.study.steps.calibration_result import building_with_posterior
 from mascarin.study.steps.comfort import comfort_figures, comfort_table, rated
@@ -36,7 +37,9 @@ if TYPE_CHECKING:
     from mascarin.study.steps.findings import Findings
 
 
-def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> list[Path]:
+def write_all(
+    findings: Findings, workspace: Workspace, *, figures: bool = True, page: PageContent = "model"
+) -> list[Path]:
     """Write everything but the report into the folder of the study.
 
     Parameters
@@ -47,6 +50,8 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
         The folder.
     figures : bool
         Whether figures are written.
+    page : str
+        What the page beside the report has: ``model``, ``measured`` or ``none``.
 
     Returns
     -------
@@ -58,7 +63,6 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
     of_comfort = {"comfort": comfort_table(comfort)} if comfort else {}
     tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", as_json(document(findings)))
-    atomic.write(out / RUN, as_json(run_facts(findings)))
     calibrated = building_with_posterior(
         findings.context,
         findings.fitted,
@@ -67,8 +71,12 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
         findings.combination,
     )
     calibrated.to_yaml(out / FILE)
+    live = None if page == "none" else write_page(findings.context, calibrated, out, page)
+    facts = [run_facts(findings), *([] if live is None else [StudyDocument(live=live)])]
+    atomic.write(out / RUN, as_json(StudyDocument.joined(*facts)))
     return [
         out / FILE,
+        *([] if live is None or not live.file else [out / live.file]),
         *chains_file(findings.calibration, out),
         *(_all_figures(findings, workspace) if figures else []),
         *(comfort_figures(comfort, out / "figures") if figures else []),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Any, Final
+from urllib.parse import quote
 
 from markupsafe import Markup
 
@@ -44,6 +46,7 @@ def content(study: StudyDocument, series: Series) -> dict[str, Any] | None:
     return {
         "verdict": verdict(study),
         "next": next_steps(study),
+        "live": live_words(study),
         "matrix": matrix,
         "parameters": listed,
         "parameter_count": len(_calibrated(study)),
@@ -128,6 +131,37 @@ def next_steps(study: StudyDocument) -> list[str]:
     """
     steps = [*_causes(study), *_bounds(study), *_largest_miss(study), *_weak_parameter(study)]
     return steps[:_STEPS]
+
+
+def live_words(study: StudyDocument) -> Markup | None:
+    """The page in which the calibrated building runs, or why there is none, in one sentence.
+
+    Parameters
+    ----------
+    study : StudyDocument
+        The results.
+    """
+    live = study.live
+    if live.refusal:
+        return Markup("There is no page in which the calibrated building runs: {}").format(live.refusal)
+    if not live.file:
+        return None
+    count, start, end = len(live.sliders), *map(datetime.fromisoformat, live.period)
+    parameters = f"its {count} calibrated parameters" if count > 1 else "its calibrated parameter"
+    if live.fixed:
+        names = ", ".join(parameter_label(study, path) for path in live.fixed)
+        parameters = f"{count} of its {count + len(live.fixed)} calibrated parameters (not {names})"
+    return Markup(
+        'Run it here: <a href="{}">{}</a>, beside this file, simulates the calibrated building in a browser '
+        "({}){}, with {} for {}."
+    ).format(
+        quote(live.file),
+        live.file,
+        text.span_of(start, end),
+        " beside the measured values" if live.measured else "",
+        "sliders" if count > 1 else "a slider",
+        parameters,
+    )
 
 
 def _causes(study: StudyDocument) -> list[str]:
