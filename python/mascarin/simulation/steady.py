@@ -220,9 +220,9 @@ def _at_a_moment(
     grid, length = climate.grid, seconds_of(step)
     end = grid.start + length
     if moment is not None:
-        at = seconds_at(with_year(moment, grid.zone, grid.start), grid.zone, "moment")
+        stated = seconds_at(with_year(moment, grid.zone, grid.start), grid.zone, "moment")
         # Within the first step it is the end of that; before the weather the period is refused.
-        end = at if at < grid.start else max(at, end)
+        end = stated if stated < grid.start else max(stated, end)
     start, last = (pd.Timestamp(seconds, unit="s", tz="UTC") for seconds in (end - length, end))
     return _OneStep(
         building,
