@@ -106,3 +106,53 @@ def test_the_command_prints_it(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_a_path_that_does_not_exist_is_refused() -> None:
     with pytest.raises(InputError):
         mc.steady(leaky(), weather(1), vary=["zones.z9.volume"])
+
+
+def test_a_moment_before_the_weather_is_refused() -> None:
+    with pytest.raises(InputError, match="outside the data"):
+        mc.steady(leaky(), weather(1), moment="1999-01-01")
+
+
+def test_the_end_of_the_weather_is_a_moment() -> None:
+    """The step that ends there is one of the weather."""
+    state = mc.steady(leaky(), weather(1, air=-5.0), moment="2001-01-02 00:00")
+    assert state.moment == "2001-01-02 00:00"
+    assert state["z0.air_temperature"] == pytest.approx(-5.0, abs=1e-9)
+
+
+def test_a_law_that_does_not_hold_is_said_where_it_ends() -> None:
+    """The air begins at 20 degC, 25 K above the outdoors, and comes to 300 W over all conductances."""
+    rise = 300.0 / conductance()
+    lamp = {"lamp": {"power": 300}}
+    for limit, said in ((0.9 * rise, True), (1.1 * rise, False)):
+        law = {"formula": "0.6 + 0*dT", "valid": f"abs(dT) < {limit:.6f}"}
+        state = mc.steady(leaky(infiltration=law, gains=lamp), weather(1, air=-5.0))
+        assert state["z0.air_temperature"] == pytest.approx(-5.0 + rise, abs=1e-9)
+        assert any("in the steady state" in line for line in state.warnings) is said
+
+
+def test_minimum_times_of_a_control_may_be_longer_than_the_step() -> None:
+    d = leaky(gains={"lamp": {"power": 300}}).to_dict()
+    d["controls"] = {"warm": {"zone": "z0", "indoor": {"open": 24, "close": 18}, "minimum_open_time": 600}}
+    d["openings"] = {"pane": {"zone": "z0", "area": 0.2, "height": 1, "control": "warm"}}
+    state = mc.steady(Building.from_dict(d), weather(1, air=18.0))
+    assert state.imbalance < 1e-9
+
+
+def test_the_command_warns_as_a_run_does(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "cell.yaml"
+    d = cell(None)
+    d["site"] |= {"latitude": 39.74, "longitude": -105.18, "altitude": 1829, "timezone": "UTC-7"}
+    d["zones"]["z0"]["volume"] = 5e4
+    file.write_text(json.dumps(d))
+    period = ["--start", "2001-01-15", "--end", "2001-01-16", "--initial", "20"]
+    run = ["run", str(file), "--weather", "shipped:golden"]
+    assert main([*run, *period]) == 0
+    of_run = [line for line in capsys.readouterr().err.splitlines() if "z0: " in line]
+    assert main([*run, "--steady", *period[:2]]) == 0
+    of_state = capsys.readouterr().err
+    assert of_run
+    assert all(line in of_state for line in of_run)
+    assert "assumed values" in of_state
+    assert main([*run, "--steady", "--scheme", "linearly-implicit"]) != 0
+    assert "--scheme: found it beside --steady" in capsys.readouterr().err

@@ -124,8 +124,9 @@ def run(
         source = (measurements or weather, described, timezone, stamps, shift)
         if steady:
             _require_alone(
-                out=out, report=report, end=end, interval=interval, initial=initial, compare=compared
-            )
+                out=out, report=report, end=end, interval=interval, initial=initial, compare=compared,
+                scheme=None if scheme == "sdirk2" else scheme,
+            )  # fmt: skip
             return _steady(
                 described, climate, measured, moment=start, step=step, outputs=outputs, as_json=as_json
             )
@@ -186,7 +187,7 @@ def _steady(
         building, climate, moment=moment, step=seconds(step), measurements=measured,
         outputs=matching_outputs(building, outputs),
     )  # fmt: skip
-    _print_lines(state.warnings)
+    _print_warnings(building, seconds(step), state.warnings)
     if as_json:
         print_json(state.to_dict())
         return 0
@@ -254,7 +255,7 @@ def _compiled(
         chosen = [output.name for output in chosen_outputs(building, names)]
         names = list(dict.fromkeys([*chosen, *needed(building)]))
     simulation = Simulation(building, climate, step=seconds(step), outputs=names, **options)
-    _print_warnings(building, simulation)
+    _print_warnings(building, simulation.step_seconds, simulation.building_warnings)
     _print_cost(building, simulation)
     return simulation
 
@@ -339,13 +340,13 @@ def _progress() -> Iterator[Report]:
         yield report
 
 
-def _print_warnings(building: Building, simulation: Simulation) -> None:
+def _print_warnings(building: Building, step: float, more: Sequence[str]) -> None:
     """Print warnings about the building, and how many values were assumed."""
     from mascarin.building import check
 
-    lines = check(building, simulation.step_seconds)
+    lines = check(building, step)
     warnings = [line for line in lines if line.startswith("warning: ")]
-    warnings += [f"warning: {line}" for line in simulation.building_warnings]
+    warnings += [f"warning: {line}" for line in more]
     for line in dict.fromkeys(warnings):
         print(line, file=sys.stderr)
     assumed = sum(line.startswith("assumed: ") for line in lines)

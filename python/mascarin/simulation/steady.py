@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -55,7 +55,7 @@ class SteadyState:
     slopes : mapping of str to mapping of str to float
         Derivatives of outputs by parameters, by the paths of these. [unit of both]
     warnings : tuple of str
-        Warnings about the building.
+        Warnings about the building, and laws that do not hold in the steady state.
 
     Examples
     --------
@@ -174,6 +174,7 @@ def steady(
         return replace(one_step, forcing=np.repeat(row, steps, axis=0), settings=settings, inputs=None)
 
     before = through(_STEPS - 1).run(vector)[1]
+    before_laws = {(law[0], law[1]): law[2] for law in before["out_of_range"]}
     compiled = through(_STEPS)
     records, after = compiled.run(vector)
     flows = {flow: (float(after[flow]) - float(before[flow])) / _STEP for flow in FLOWS}
@@ -197,8 +198,15 @@ def steady(
         imbalance=imbalance,
         moment=clock,
         slopes=slopes,
-        warnings=tuple(simulation.building_warnings),
+        warnings=(*simulation.building_warnings, *_laws_beyond(before_laws, after)),
     )
+
+
+class _OneStep(Simulation):
+    """A run of one step, of which the length counts for nothing: the steps of `steady` last years."""
+
+    def _require_control_times(self, vectors: Array) -> None:
+        """Take minimum times of controls of any length: a step of years is longer."""
 
 
 def _at_a_moment(
@@ -207,13 +215,16 @@ def _at_a_moment(
     """A run of the one step that ends at a moment."""
     import pandas as pd
 
-    from mascarin.simulation.preparation.prepare import span
+    from mascarin.tables.timezones import seconds_at, with_year
 
-    length = seconds_of(step)
-    first, _ = span(climate, None, None)
-    end = first + length if moment is None else max(span(climate, moment, None)[0], first + length)
+    grid, length = climate.grid, seconds_of(step)
+    end = grid.start + length
+    if moment is not None:
+        stated = seconds_at(with_year(moment, grid.zone, grid.start), grid.zone, "moment")
+        # Within the first step it is the end of that; before the weather the period is refused.
+        end = stated if stated < grid.start else max(stated, end)
     start, last = (pd.Timestamp(seconds, unit="s", tz="UTC") for seconds in (end - length, end))
-    return Simulation(
+    return _OneStep(
         building,
         climate,
         start=start,
@@ -223,6 +234,16 @@ def _at_a_moment(
         initial=_BEGIN,
         **options,
     )
+
+
+def _laws_beyond(before: Mapping[tuple[str, str], int], after: Mapping[str, Any]) -> Iterator[str]:
+    """Laws written as text that do not hold in the last step; those of the way there do not count."""
+    for owner, law, steps, _first, _values in after["out_of_range"]:
+        if steps > before.get((owner, law), 0):
+            yield (
+                f"{owner}: its law of {law} is outside of its 'valid' in the steady state. The formula is "
+                "used as it is there: take a law that holds, or widen 'valid' where its source does"
+            )
 
 
 def _require_still(records: Array, names: Sequence[str], imbalance: float) -> None:

@@ -37,7 +37,7 @@ _SAME_SIZE: Final = 0.02
 
 
 @dataclass(frozen=True)
-class Span:
+class ComparedSpan:
     """A month, or all of the period.
 
     Attributes
@@ -63,7 +63,7 @@ class Span:
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparedRow:
     """One quantity of one zone, or of all zones.
 
     Attributes
@@ -72,16 +72,16 @@ class Row:
         Its name in the file, or ``all zones``.
     quantity : str
         ``air``, ``heating``, ``cooling`` or ``sun``.
-    period : Span
+    period : ComparedSpan
         All of the period.
-    months : tuple of Span
+    months : tuple of ComparedSpan
         Its months.
     """
 
     zone: str
     quantity: str
-    period: Span
-    months: tuple[Span, ...]
+    period: ComparedSpan
+    months: tuple[ComparedSpan, ...]
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Comparison:
         The converted model.
     run : PeerRun
         Results of EnergyPlus.
-    rows : tuple of Row
+    rows : tuple of ComparedRow
         Quantities in their order; all zones first, then the zones with the largest differences.
     causes : tuple of str
         What is known to make the programs differ in this model.
@@ -104,7 +104,7 @@ class Comparison:
 
     conversion: Conversion
     run: PeerRun
-    rows: tuple[Row, ...]
+    rows: tuple[ComparedRow, ...]
     causes: tuple[str, ...]
     notes: tuple[str, ...]
 
@@ -147,7 +147,7 @@ def compare(conversion: Conversion, folder: str | Path, weather: str | Path) -> 
             f"{rms(outdoors - run.outdoors):.1f} K; expected the same weather. Name the file of the run with "
             "--weather"
         )
-    rows: list[Row] = []
+    rows: list[ComparedRow] = []
     for quantity in QUANTITIES:
         pairs = {
             zone: (ours[quantity, zone], run.series[quantity, zone.upper()])
@@ -201,7 +201,7 @@ def _outdoors(climate: Climate, stamps: npt.NDArray[np.datetime64]) -> Array:
 
 def _rows_of(
     quantity: str, pairs: dict[str, tuple[Array, Array]], months: npt.NDArray[np.int64]
-) -> list[Row]:
+) -> list[ComparedRow]:
     rows = [_row(zone, quantity, [pair], months) for zone, pair in pairs.items()]
     rows.sort(key=lambda row: -row.period.rms)
     if len(pairs) > 1:
@@ -209,20 +209,22 @@ def _rows_of(
     return rows
 
 
-def _row(zone: str, quantity: str, pairs: list[tuple[Array, Array]], months: npt.NDArray[np.int64]) -> Row:
+def _row(
+    zone: str, quantity: str, pairs: list[tuple[Array, Array]], months: npt.NDArray[np.int64]
+) -> ComparedRow:
     ours, theirs = (np.array(side) for side in zip(*pairs, strict=True))
     spans = [
         _span(quantity, month, ours[:, chosen], theirs[:, chosen])
         for month in dict.fromkeys(months.tolist())
         for chosen in [months == month]
     ]
-    return Row(zone, quantity, _span(quantity, 0, ours, theirs), tuple(spans))
+    return ComparedRow(zone, quantity, _span(quantity, 0, ours, theirs), tuple(spans))
 
 
-def _span(quantity: str, month: int, ours: Array, theirs: Array) -> Span:
+def _span(quantity: str, month: int, ours: Array, theirs: Array) -> ComparedSpan:
     miss = ours - theirs
     size = np.mean if quantity == "air" else lambda values: np.sum(values) / 1000.0
-    return Span(month, rms(miss), float(miss.mean()), float(size(ours)), float(size(theirs)))
+    return ComparedSpan(month, rms(miss), float(miss.mean()), float(size(ours)), float(size(theirs)))
 
 
 def _notes(conversion: Conversion, run: PeerRun, ours: dict[tuple[str, str], Array]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import calendar
 from typing import Any, Final
 
-from mascarin.energyplus.comparison.compared import Comparison, Row, Span
+from mascarin.energyplus.comparison.compared import ComparedRow, ComparedSpan, Comparison
 
 #: Zones of one quantity on the terminal; the others are in JSON and on the page.
 _ZONES: Final = 8
@@ -24,7 +24,7 @@ def header(comparison: Comparison) -> list[str]:
     return ["zone", "", "period", *(calendar.month_abbr[span.month] for span in months)]
 
 
-def cells(row: Row) -> list[list[str]]:
+def cells(row: ComparedRow) -> list[list[str]]:
     """Lines of a row: rms and bias of temperatures; heat of both programs, and their difference."""
     spans = [row.period, *row.months]
     if row.quantity == "air":
@@ -41,7 +41,7 @@ def cells(row: Row) -> list[list[str]]:
     ]
 
 
-def _percent(span: Span) -> str:
+def _percent(span: ComparedSpan) -> str:
     return "-" if span.percent is None else f"{span.percent:+.1f}"
 
 
@@ -95,7 +95,7 @@ def comparison_report(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _as_json(span: Span, quantity: str) -> dict[str, Any]:
+def _as_json(span: ComparedSpan, quantity: str) -> dict[str, Any]:
     sizes = {"rms": span.rms, "bias": span.bias, "here": span.ours, "energyplus": span.theirs}
     month = {"month": span.month} if span.month else {}
     percent = {} if quantity == "air" else {"percent": span.percent}

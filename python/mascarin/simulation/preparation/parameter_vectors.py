@@ -313,8 +313,12 @@ class VectorRuns:
         )  # fmt: skip
         require_laws(self.building, vectors, positions=self._positions)
         if self.building.controls:
-            seconds = self.times.last - self.times.first
-            require_control_times(self.building, vectors, positions=self._positions, seconds=seconds)
+            self._require_control_times(vectors)
+
+    def _require_control_times(self, vectors: Array) -> None:
+        """Refuse minimum times of controls that are longer than the run."""
+        seconds = self.times.last - self.times.first
+        require_control_times(self.building, vectors, positions=self._positions, seconds=seconds)
 
     @cached_property
     def _limits(self) -> ParameterLimits:
