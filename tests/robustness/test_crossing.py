@@ -33,7 +33,7 @@ FORBIDDEN: Final[dict[tuple[str, str], str]] = {
     (
         "boundaries and densities",
         "linear model",
-    ): "heat flux at surface heated (outside) is not linear and constant",
+    ): "infiltration of zone room, that a density, a schedule or a control changes is not linear",
     ("products", "linear model"): "phase change",
     ("own curves", "linear model"): "phase change",
     ("hysteresis", "linear model"): "phase change",

@@ -119,7 +119,7 @@ def test_sweeps_have_the_warnings_of_members_and_of_the_building(
 
 def test_members_that_failed_have_no_step_error() -> None:
     nan = np.nan
-    assert of_members(*np.full((3, 1), nan), step_seconds=900.0) == []
+    assert of_members(*np.full((4, 1), nan), step_seconds=900.0) == []
 
 
 def test_analyses_have_the_warnings(sheet: Building, said: tuple[str, ...]) -> None:

@@ -540,7 +540,11 @@ def everything() -> list[Building]:
     }
     freedom = building.replace(FREEDOM)
     soil = {"kind": "soil", "mean": 12, "amplitude": 8, "depth": 1.5, "coldest_day": 40}
-    on_soil = building.replace({"surfaces.floor.outside": {"imposed": soil}})
+    mats = [
+        {"kind": "water_mat", "indoor": 21, "steepness": 0.5, "limit": 15, "coefficient": 8},
+        {"kind": "heating_mat", "power": 100, "limit": 15, "span": 25},
+    ]
+    imposed = [building.replace({"surfaces.floor.outside": {"imposed": law}}) for law in [soil, *mats]]
     edge = {"psi": 0.1, "length": 5, "excess": {"west": 0.5}}
     converted = building.replace(
         {
@@ -548,5 +552,5 @@ def everything() -> list[Building]:
             "zones.room.thermal_bridges": {"edge": edge},
         }
     )
-    further = [freedom, on_soil, converted]
+    further = [freedom, *imposed, converted]
     return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *further, *melting]

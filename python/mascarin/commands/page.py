@@ -63,7 +63,7 @@ def page(
     shift: Shift = None,
     compared: Compared = None,
 ) -> int:
-    """Write a page in which the model runs, for people without Mascarin.
+    """Write a page in which the model runs.
 
     One HTML file with the engine, the building and its weather: a slider for each chosen parameter, and
     curves, energy balance and comfort that follow it. It needs no installation and no network. Measured

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from mascarin.building import Building, Parameter
     from mascarin.simulation.preparation.options import TimeLike
     from mascarin.weather import Climate, Measurements
+
+
+#: Outputs that repeat the geometry of a side, whether or not anything depends on it.
+_OF_GEOMETRY: Final = (".sky_view_factor", ".ground_view_factor")
 
 
 def inactive_parameters(
@@ -68,7 +72,7 @@ def inactive_parameters(
     trial = Simulation(
         building,
         climate,
-        outputs=[output.name for output in building.outputs()],
+        outputs=[output.name for output in building.outputs() if not output.name.endswith(_OF_GEOMETRY)],
         start=begin,
         end=last,
         step=step,

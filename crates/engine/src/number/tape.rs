@@ -207,8 +207,8 @@ impl Equations<Taped> for EquationTerms {
 
     #[inline(always)]
     fn add(&mut self, equation: usize, number: Taped, factor: f64) {
-        if number.place != NOWHERE && factor != 0.0 {
-            let slope = factor * number.slope;
+        let slope = factor * number.slope;
+        if slope != 0.0 {
             self.terms.push(Term { equation: narrow(equation), of: number.place, slope });
         }
     }
@@ -257,7 +257,7 @@ impl Taped {
 
     /// Adds to the weight on the entry that this depends on.
     pub(crate) fn add_weight(self, weight: f64, weights: &mut [f64]) {
-        if weight != 0.0 {
+        if weight != 0.0 && self.slope != 0.0 {
             weights[self.place as usize] += self.slope * weight;
         }
     }
@@ -279,13 +279,15 @@ impl Taped {
         Self { value, slope: self.slope * slope, place: self.place }
     }
 
-    /// f(self, other) from the value and slopes of f.
+    /// f(self, other) from the value and slopes of f. A number without a slope leaves no trace: it may outlive what it was made of, such as a
+    /// sun of zero that no step makes anew, and its place then belongs to another number.
     #[inline(always)]
     fn join(self, other: Self, value: f64, slope: [f64; 2]) -> Self {
         let slope = [self.slope * slope[0], other.slope * slope[1]];
-        if other.place == NOWHERE {
-            Self { value, slope: slope[0], place: self.place }
-        } else if self.place == NOWHERE {
+        if slope[1] == 0.0 {
+            let place = if slope[0] == 0.0 { NOWHERE } else { self.place };
+            Self { value, slope: slope[0], place }
+        } else if slope[0] == 0.0 {
             Self { value, slope: slope[1], place: other.place }
         } else if self.place == other.place {
             Self { value, slope: slope[0] + slope[1], place: self.place }

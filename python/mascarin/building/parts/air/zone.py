@@ -213,7 +213,7 @@ class SunShares(Part):
     Examples
     --------
     >>> SunShares(shares={"floor": 0.3, "walls": 0.7})
-    SunShares(shares=floor, walls, lost=0)
+    SunShares(shares=floor, walls, masses=none, lost=0)
     """
 
     shares: dict[Name, q.SunShare] = Field(
@@ -232,7 +232,7 @@ class GivenSun(Part):
     Examples
     --------
     >>> GivenSun(shares={"floor": 0.6, "walls": 0.4})
-    GivenSun(shares=floor, walls, lost=0)
+    GivenSun(shares=floor, walls, masses=none, lost=0)
     """
 
     kind: Literal["shares"] = "shares"

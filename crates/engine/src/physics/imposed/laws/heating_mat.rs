@@ -1,4 +1,4 @@
-//! An electric heating mat behind the side, controlled by the outdoor air: `power (limit - T_o)/(limit - design)`, from nothing to all of it.
+//! An electric heating mat behind the side, controlled by the outdoor air: `power (limit - T_o)/span`, from nothing to all of it.
 //!
 //! Range: insulated behind the mat; the control follows the outdoor air alone.
 
@@ -7,7 +7,7 @@ use crate::physics::imposed::prelude::*;
 const POWER: LawParameter = LawParameter::new(
     "power",
     "W/m2",
-    "Power of the mat at the design temperature",
+    "Power of the mat where the outdoor air is the span below the limit",
     LawRange::Percent(5.0, "name plate"),
     100.0,
 )
