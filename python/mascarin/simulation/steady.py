@@ -150,7 +150,7 @@ def steady(
     --------
     >>> import mascarin as mc
     >>> from mascarin.examples import box, box_climate
-    >>> state = mc.steady(box(), box_climate(), moment="2001-01-01 00:00", outputs=["room.air_temperature"])
+    >>> state = mc.steady(box(), box_climate(), moment="2001-07-02 00:00", outputs=["room.air_temperature"])
     >>> round(state["room.air_temperature"], 3) == round(state.values["room.air_temperature"], 3)
     True
     """
