@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import random
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -123,3 +124,11 @@ def page(browser: Browser) -> Iterator[Page]:
     context.set_default_timeout(180_000)  # curves are drawn by the processor, which may be busy
     yield context.new_page()
     context.close()
+
+
+@pytest.fixture(autouse=True)
+def _figures() -> Iterator[None]:
+    """Figures of pyplot that a test has left open are closed: matplotlib warns of more than 20."""
+    yield
+    if (pyplot := sys.modules.get("matplotlib.pyplot")) is not None:
+        pyplot.close("all")

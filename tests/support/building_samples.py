@@ -541,8 +541,8 @@ def everything() -> list[Building]:
     freedom = building.replace(FREEDOM)
     soil = {"kind": "soil", "mean": 12, "amplitude": 8, "depth": 1.5, "coldest_day": 40}
     mats = [
-        {"kind": "water_mat", "indoor": 21, "steepness": 0.5, "limit": 15, "coefficient": 8},
-        {"kind": "heating_mat", "power": 100, "limit": 15, "span": 25},
+        {"kind": "water_mat", "indoor": 12, "steepness": 0.05, "limit": 60, "coefficient": 0.5},
+        {"kind": "heating_mat", "power": 100, "limit": 60, "span": 100},
     ]
     imposed = [building.replace({"surfaces.floor.outside": {"imposed": law}}) for law in [soil, *mats]]
     edge = {"psi": 0.1, "length": 5, "excess": {"west": 0.5}}
