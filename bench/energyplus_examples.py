@@ -43,12 +43,11 @@ def tried(file: Path, climate: mc.Climate) -> dict[str, Any]:
     signal.alarm(LIMIT)
     try:
         conversion = convert(file, weather=WEATHER)
-        left = Counter(one.kind for one in conversion.findings if one.level == "left out")
-        unmeasured = Counter(
-            one.kind for one in conversion.findings if one.level == "left out" and one.kelvin is None
-        )
+        omissions = [finding for finding in conversion.findings if finding.level == "left out"]
+        omitted = Counter(finding.kind for finding in omissions)
+        unmeasured = Counter(finding.kind for finding in omissions if finding.kelvin is None)
         row |= {
-            "left_out": dict(left),
+            "left_out": dict(omitted),
             "unmeasured": dict(unmeasured),
             "zones": len(conversion.building.zones),
         }

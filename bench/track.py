@@ -136,8 +136,8 @@ def measured(days: int, *, times: bool) -> list[Row]:
             ]
             for kind in ("run", "pack") if times else ():
                 seconds, _ = engine_alone.criterion(kind, case.stem)
-                there = f"{name}, {os.cpu_count()} cores"
-                rows.append(Row(commit, date, there, case.stem, kind, "ns", days, round(1e9 * seconds)))
+                host = f"{name}, {os.cpu_count()} cores"
+                rows.append(Row(commit, date, host, case.stem, kind, "ns", days, round(1e9 * seconds)))
     return rows
 
 

@@ -66,9 +66,9 @@ pub extern "C" fn reserve(file: usize, bytes: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 pub extern "C" fn load() -> i32 {
     let files = core::mem::take(&mut state().files);
-    let made = Model::read(&files);
+    let model = Model::read(&files);
     let mut state = state();
-    match made {
+    match model {
         Ok(model) => {
             state.model = Some(model);
             0

@@ -279,8 +279,8 @@ impl Taped {
         Self { value, slope: self.slope * slope, place: self.place }
     }
 
-    /// f(self, other) from the value and slopes of f. A number without a slope leaves no trace: it may outlive what it was made of, such as a
-    /// sun of zero that no step makes anew, and its place then belongs to another number.
+    /// f(self, other) from the value and slopes of f. A number with the slope zero keeps no place: it may be read after the
+    /// tape was shortened, such as a sun of zero that later steps do not evaluate again, and its place then belongs to another number.
     #[inline(always)]
     fn join(self, other: Self, value: f64, slope: [f64; 2]) -> Self {
         let slope = [self.slope * slope[0], other.slope * slope[1]];

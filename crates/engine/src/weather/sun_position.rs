@@ -42,9 +42,9 @@ mod tests {
             ([1e-4, -1.0, 0.0], [0.0, 180.0 - 1e-4_f64.to_degrees()]),
         ];
         for (direction, expected) in cases {
-            let found = position(direction);
-            for (a, b) in found.into_iter().zip(expected) {
-                assert!((a - b).abs() < 1e-6, "{found:?}, expected {expected:?}");
+            let angles = position(direction);
+            for (a, b) in angles.into_iter().zip(expected) {
+                assert!((a - b).abs() < 1e-6, "{angles:?}, expected {expected:?}");
             }
         }
     }

@@ -11,14 +11,14 @@
   const OLD = "This browser cannot run the model: it has no WebAssembly with vectors, or this file may not use it. Open the file in a current Firefox, Chrome, Edge or Safari, or install Mascarin and use 'mascarin explore'.";
   // Five signs are the digits of four bytes, the highest first; the last bytes may be fewer.
   function bytesOf(text) {
-    const digits = new Uint8Array(128), made = new DataView(new ArrayBuffer(4 * Math.ceil(text.length / 5)));
+    const digits = new Uint8Array(128), decoded = new DataView(new ArrayBuffer(4 * Math.ceil(text.length / 5)));
     [...data.alphabet].forEach((sign, digit) => { digits[sign.charCodeAt(0)] = digit; });
     for (let k = 0; k < text.length; k += 5) {
       let sum = 0;
       for (let n = k; n < k + 5; n++) sum = 85 * sum + (n < text.length ? digits[text.charCodeAt(n)] : 84);
-      made.setUint32((4 * k) / 5, sum);
+      decoded.setUint32((4 * k) / 5, sum);
     }
-    return new Uint8Array(made.buffer, 0, Math.floor((4 * text.length) / 5));
+    return new Uint8Array(decoded.buffer, 0, Math.floor((4 * text.length) / 5));
   }
   // `forcing.bin` as the engine reads it: bytes of differences, those of one place together, become numbers.
   function numbersOf(planes) {
@@ -136,17 +136,17 @@
 
   // --- tables -------------------------------------------------------------------------------------------------
   const cell = (tag, words, className) => {
-    const made = document.createElement(tag);
-    if (words !== undefined) made.textContent = words;
-    if (className) made.className = className;
-    return made;
+    const node = document.createElement(tag);
+    if (words !== undefined) node.textContent = words;
+    if (className) node.className = className;
+    return node;
   };
   const number = (v) => (v === null || Number.isNaN(v) ? "–" : Curves.shown(v, Math.abs(v) >= 99.95 ? 0 : 1));
   function line(name, cells) {
-    const made = cell("tr"), head = cell("th", name);
+    const tableRow = cell("tr"), head = cell("th", name);
     head.scope = "row";
-    made.append(head, ...cells.map((words, k) => cell("td", words, k % 2 ? "n" : "n strong")));
-    return made;
+    tableRow.append(head, ...cells.map((words, k) => cell("td", words, k % 2 ? "n" : "n strong")));
+    return tableRow;
   }
   // Time outside of the limits: half of the two intervals beside each record.
   function discomfort(result, zone) {
@@ -174,14 +174,14 @@
     const before = heats(reference), mine = heats(now);
     const most = Math.max(...[...mine, ...before].map(([, heat]) => Math.abs(heat)), 1e-9);
     $("energy").tBodies[0].replaceChildren(...mine.map(([words, heat], k) => [words, heat, before[k][1]]).filter(([, heat, was]) => heat || was).map(([words, heat, was]) => {
-      const made = line(words, [number(heat), number(was)]), bar = cell("span", undefined, "heat-bar"), part = cell("span", undefined, heat < 0 ? "out" : "in"), last = cell("td");
+      const tableRow = line(words, [number(heat), number(was)]), bar = cell("span", undefined, "heat-bar"), part = cell("span", undefined, heat < 0 ? "out" : "in"), last = cell("td");
       const size = (50 * Math.abs(heat)) / most;
       part.style.left = `${heat < 0 ? 50 - size : 50}%`;
       part.style.width = `${size}%`;
       bar.append(part);
       last.append(bar);
-      made.append(last);
-      return made;
+      tableRow.append(last);
+      return tableRow;
     }));
     $("closure").textContent = now ? `The balance ${now.findings.closure <= data.checks.closed ? "closes" : "does not close"}: its residual is ${now.findings.closure.toExponential(1).replace("-", "−")} of all heat exchanged.` : "";
   }

@@ -62,6 +62,16 @@ pub(crate) const COLDEST_DAY: LawParameter = LawParameter::new(
 )
 .limits(Limits { above: None, at_least: Some(-366.0), at_most: Some(366.0) });
 
+/// The outdoor air above which a mat is off.
+pub(crate) const HEATING_LIMIT: LawParameter = LawParameter::new(
+    "limit",
+    "degC",
+    "Outdoor air at which the mat is turned off",
+    LawRange::Within(2.0, "set by hand"),
+    15.0,
+)
+.limits(TEMPERATURES);
+
 /// `amplitude cos(2 pi (day - coldest)/365)` as factors of cosine and sine of the season, for an angle of the coldest day [rad].
 pub(crate) fn swing<S: Real>(amplitude: S, coldest: S) -> [S; 2] {
     [amplitude * coldest.cos(), amplitude * coldest.sin()]

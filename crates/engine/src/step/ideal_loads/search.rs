@@ -45,9 +45,9 @@ impl<S: Real> IdealLoads<S> {
         }
         let controlled = core::mem::take(&mut self.controlled);
         let held = if controlled.is_empty() { air } else { &controlled };
-        let found = self.correct_by_responses(held, loads, (active, all));
+        let corrected = self.correct_by_responses(held, loads, (active, all));
         self.controlled = controlled;
-        found
+        corrected
     }
 
     /// As [`Self::correct`], by the responses, of what the set points hold.

@@ -13,15 +13,6 @@ const POWER: LawParameter = LawParameter::new(
 )
 .at_most(10_000.0);
 
-const LIMIT: LawParameter = LawParameter::new(
-    "limit",
-    "degC",
-    "Outdoor air at which the mat is turned off",
-    LawRange::Within(2.0, "set by hand"),
-    15.0,
-)
-.limits(TEMPERATURES);
-
 const SPAN: LawParameter = LawParameter::new(
     "span",
     "K",
@@ -47,7 +38,7 @@ impl<S: Real> ImposedLaw<S> for HeatingMat<S> {
     )
     .gives_heat()
     .gives_coefficient()
-    .numbers(&[POWER, LIMIT, SPAN]);
+    .numbers(&[POWER, HEATING_LIMIT, SPAN]);
 
     fn new(number: &Numbers<'_, S>) -> Self {
         let per_span = S::one() / number.of("span");

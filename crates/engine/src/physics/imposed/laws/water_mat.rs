@@ -22,15 +22,6 @@ const STEEPNESS: LawParameter = LawParameter::new(
 )
 .at_most(10.0);
 
-const LIMIT: LawParameter = LawParameter::new(
-    "limit",
-    "degC",
-    "Outdoor air at which the mat is turned off",
-    LawRange::Within(2.0, "set by hand"),
-    15.0,
-)
-.limits(TEMPERATURES);
-
 const COEFFICIENT: LawParameter = LawParameter::new(
     "coefficient",
     "W/(m2 K)",
@@ -55,7 +46,7 @@ impl<S: Real> ImposedLaw<S> for WaterMat<S> {
         "a flow so large that the water cools little on its way",
     )
     .gives_coefficient()
-    .numbers(&[INDOOR, STEEPNESS, LIMIT, COEFFICIENT]);
+    .numbers(&[INDOOR, STEEPNESS, HEATING_LIMIT, COEFFICIENT]);
 
     fn new(number: &Numbers<'_, S>) -> Self {
         let [indoor, steepness, limit, coefficient] =
