@@ -51,7 +51,7 @@ def page(
         list[str] | None, Parameter(name=("--parameter", "--parameters"), negative="")
     ] = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
-    band: tuple[float, float] = (20.0, 26.0),
+    band: Annotated[tuple[float, float], Parameter(negative="")] = (20.0, 26.0),
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",
