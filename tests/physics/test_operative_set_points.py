@@ -75,6 +75,24 @@ def test_the_load_of_a_steady_cell_is_the_closed_one(share: float, radiative: fl
     assert run.energy.relative_residual < 1e-10
 
 
+@pytest.mark.parametrize("capacity", [None, 1e9])
+@pytest.mark.parametrize(("plant", "sign"), [("heating", 1.0), ("cooling", -1.0)])
+def test_an_emitter_gives_no_more_than_the_surfaces_emit(plant: str, sign: float, capacity: Any) -> None:
+    """``e A sigma T^4`` at 20 degC, a fourth of T in the mean radiant temperature: 95 % radiation, at 1 min."""
+    d = cell(None)
+    del d["zones"]["z0"]["heating"]
+    d["zones"]["z0"][plant] = {"setpoint": 20.0 + sign * 30.0, "radiative": 0.95}
+    if capacity:
+        d["zones"]["z0"][plant]["capacity"] = capacity
+    outputs = ["z0.net_load", "z0.mean_radiant_temperature", "s0.inside_temperature"]
+    run = mc.simulate(Building.from_dict(d), _cold(), step="1min", outputs=outputs, initial=20.0)
+    load, radiant, surface = run.records.T
+    emitted = EMISSIVITY * AREA * 5.670374419e-8 * 293.15**4
+    assert (sign * load).max() == pytest.approx(emitted / 0.95, rel=1e-9)
+    assert (sign * (radiant - surface)).max() == pytest.approx(293.15 / 4.0, rel=1e-9)
+    assert run.energy.relative_residual < 1e-10
+
+
 def test_without_a_share_the_air_is_held() -> None:
     """The same numbers as in a building that says nothing; with a share of 0 the air is held, too."""
     runs = [mc.simulate(Building.from_dict(cell(share)), _cold(), step="1h") for share in (None, 0.0)]

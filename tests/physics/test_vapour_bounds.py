@@ -331,3 +331,49 @@ def test_vapour_of_rooms_with_plants_at_their_limit_is_conserved(step: int, sche
         assert run.vapour is not None
         assert run.vapour.relative_residual < 1e-12, seed
         assert np.nanmin(run.records) >= 0.0, seed
+
+
+def heated_floors(seed: int) -> dict[str, Any]:
+    """A ventilated room over a floor that is heated and cooled in jumps; its thin layer takes up vapour."""
+    draw = np.random.default_rng(seed)
+    jumps = [{"at": f"{hour:02d}:00", "value": float(draw.uniform(0.0, 40.0))} for hour in range(0, 24, 2)]
+    floor = {
+        "construction": "mat", "area": float(draw.uniform(5.0, 30.0)), "tilt": 180,
+        "outside": {"scheduled": "below"},
+        "inside": {"zone": "room", "convection": "tarp", "emissivity": 0.9},
+    }  # fmt: skip
+    law = str(draw.choice(["concrete", "wood", "gypsum"]))
+    mat = {"like": law, "depth": float(10 ** draw.uniform(-3.5, -2))}
+    plain = building(
+        zones={"room": {"volume": 100.0, "infiltration": float(10 ** draw.uniform(-0.5, 1.0))}},
+        surfaces={**walls("room", 5.0), "floor": floor},
+        schedules={"below": {"kind": "temperature", "days": {"all": jumps}}},
+        humidity={
+            "initial": float(draw.uniform(0.1, 0.9)),
+            "materials": {"mat": mat},
+            "zones": {"room": {"gains": {"people": {"rate": float(10 ** draw.uniform(-4.5, -3))}}}},
+        },
+    )
+    plain["materials"]["mat"] = {"conductivity": 0.04, "density": 30, "specific_heat": 1000}
+    plain["constructions"]["mat"] = {"layers": [{"material": "mat", "thickness": 0.0156}]}
+    return plain
+
+
+@pytest.mark.parametrize("step", [900, 7200])
+@pytest.mark.parametrize("scheme", ["sdirk2", "linearly-implicit", "backward-euler"])
+def test_tangents_of_the_sorption_do_not_lead_to_each_other_for_ever(step: int, scheme: Any) -> None:
+    """Layers that dry and become damp within a step: the balance closes, and air holds what it can.
+
+    Tangents led to each other in 2 to 13 of the first 200 draws: up to 1.4 % of the vapour was unbalanced.
+    """
+    hours = np.arange(48)
+    air = 12.0 + 8.0 * np.sin(hours / 24.0 * 2.0 * np.pi)
+    for seed in range(25, 75):
+        run = mc.simulate(
+            mc.Building.from_dict(heated_floors(seed)), climate(air, air - 1.0, 48), step=step, scheme=scheme,
+            initial=20.0, outputs=["room.humidity_ratio", "room.relative_humidity"],
+        )  # fmt: skip
+        assert run.vapour is not None
+        assert run.vapour.relative_residual < 1e-12, seed
+        assert run.records.min() >= 0.0, seed
+        assert run.records[:, 1].max() <= 1.0 + ROUNDING, seed

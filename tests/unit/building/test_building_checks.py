@@ -217,7 +217,8 @@ def test_unlimited_radiant_loads_are_named() -> None:
     lines = [line for line in check(radiant) if "% of it is radiation" in line]
     assert lines == [
         f"warning: zones.{zone}.cooling: 95 % of it is radiation and it has no capacity: 1 W at the air "
-        "needs 20 W, and surfaces may reach any temperature. Give a capacity [W]"
+        "needs 20 W. It gives at most what surfaces at 20 degC emit, 419 W/m2 of black ones. "
+        "Give a capacity [W]"
     ]
     limited = radiant.replace({f"zones.{zone}.cooling": {"setpoint": 24, "radiative": 0.95, "capacity": 500}})
     assert not [line for line in check(limited) if "% of it is radiation" in line]

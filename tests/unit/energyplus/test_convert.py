@@ -365,6 +365,7 @@ def test_numbers_that_energyplus_refuses(tmp_path: Path, text: str, message: str
         (("Wall,Wall,ROOM", "Wall,Wal,ROOM"), r"found 'Wal'; expected the name of a Construction"),
         (("0.2,0.8,1800", "0.2,zero,1800"), r"box\.idf:7: Material 'Brick': conductivity: found 'zero'"),
         (("Construction,Wall,Brick", "Construction,Wall,Brik"), r"box\.idf:8: Construction 'Wall'.*'Brik'"),
+        (("Construction,Wall,Brick", "Construction,Wall,"), r"box\.idf:8: Construction 'Wall': no layer"),
         (
             ("4,0,0,3,0,0,0,4,0,0,4,0,3", "2,0,0,3,0,0,0"),
             r"South.*vertices: found 2; expected at least 3",

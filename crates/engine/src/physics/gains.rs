@@ -64,6 +64,17 @@ impl<S: Real> Thermostat<S> {
     /// Capacity where none is given [W]: more than any building needs.
     const UNLIMITED: f64 = 1e12;
 
+    /// Limits what is radiated to a power [W], whatever the capacity.
+    #[must_use]
+    pub(crate) fn radiating_at_most(mut self, power: S) -> Self {
+        if let Some(part) = self.radiative {
+            // A part of zero radiates nothing, and sets no limit.
+            let most = S::select(S::zero().lt(part), power / part, S::constant(Self::UNLIMITED));
+            self.capacity = Some(self.capacity.map_or(most, |capacity| capacity.min(most)));
+        }
+        self
+    }
+
     /// Evaluates ideal heating or cooling at a parameter vector.
     #[must_use]
     pub fn new(ideal_load: &description::IdealLoad, values: &Values<'_, S>) -> Self {

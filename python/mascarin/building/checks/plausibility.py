@@ -168,6 +168,6 @@ def _unlimited_radiation(building: Description) -> Iterator[str]:
             watts = 1.0 / max(1.0 - radiative, 1e-3)
             yield (
                 f"zones.{name}.{kind}: {100 * radiative:.0f} % of it is radiation and it has no "
-                f"capacity: 1 W at the air needs {watts:.0f} W, and surfaces may reach any temperature. "
-                "Give a capacity [W]"
+                f"capacity: 1 W at the air needs {watts:.0f} W. It gives at most what surfaces at "
+                "20 degC emit, 419 W/m2 of black ones. Give a capacity [W]"
             )

@@ -63,11 +63,14 @@ def layers_of(context: Context, construction: IdfObject) -> list[IdfObject]:
     Raises
     ------
     InputError
-        A material that does not exist.
+        No layer, or a material that does not exist.
     """
     keys = ["outside_layer", *(f"layer_{k}" for k in range(2, 11))]
     kinds = (*MATERIALS, *WINDOW_MATERIALS)
-    return [context.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
+    layers = [context.model.require(construction, key, *kinds) for key in keys if construction.text(key)]
+    if not layers:
+        raise construction.error("no layer", "a material as Outside Layer", "Name its layers")
+    return layers
 
 
 def plain_layers(context: Context, construction: IdfObject, finite_differences: bool) -> list[Section]:

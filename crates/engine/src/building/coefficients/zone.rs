@@ -8,6 +8,7 @@ use crate::input::forcing::Schedule;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{self, Opening};
+use crate::physics::constants::KELVIN;
 use crate::physics::flow_density::{AirFlow, SiteAir};
 use crate::physics::formula::function::Function;
 use crate::physics::gains::{Gain, Thermostat};
@@ -19,6 +20,10 @@ use super::wall::WallCoefficients;
 
 /// Temperature of a room [degC] about which the emission is linearised for the rise by an emitter.
 const ROOM: f64 = 20.0;
+/// Largest change of the mean radiant temperature by an emitter [K]: that by which the irradiance in a room at 20 degC vanishes, since
+/// `sigma T^4 = 4 sigma T^3 (T/4)`. No cold emitter can take more from surfaces than they emit (419 W/m2 at 20 degC; Planck's law); no
+/// room is heated by as much, which is some five times what a heated floor gives in reach of people (EN 1264-2: 100 W/m2 of floor).
+const LARGEST_RISE: f64 = (ROOM + KELVIN) / 4.0;
 
 /// A zone.
 #[derive(Debug, Clone)]
@@ -107,10 +112,11 @@ impl<S: Real> ZoneCoefficients<S> {
         let changing = density.is_some() || schedule.is_some() || control.is_some();
         let infiltrated =
             || AirFlow::new(air_capacity, *schedule, (density.as_ref(), [index; 2]), values, site);
-        let ([heating, cooling], radiated_loads) = plants(definition, values);
         let absorbing = exchanging.then_some(&emissivities);
+        let rise = || radiant_rise(&areas, absorbing, &emission);
+        let ([heating, cooling], radiated_loads) = plants(definition, values, rise);
         Self {
-            emitter: radiated_loads.as_ref().map(|_| radiant_rise(&areas, absorbing, &emission)),
+            emitter: radiated_loads.as_ref().map(|_| rise()),
             setpoint_radiant_share: definition.setpoint_radiant_share.map(|id| values.get(id)),
             radiated_loads,
             gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
@@ -213,10 +219,18 @@ fn leaks<S: Real>(infiltration: &Infiltration, values: &Values<'_, S>) -> ([S; 3
     (rates, driven)
 }
 
-/// Ideal heating and cooling of a zone, and the parts of them that are radiated; none where all goes to the air.
-fn plants<S: Real>(zone: &Zone, values: &Values<'_, S>) -> ([Option<Thermostat<S>>; 2], Option<[S; 2]>) {
-    let plants = [&zone.heating, &zone.cooling]
-        .map(|plant| plant.as_ref().map(|ideal_load| Thermostat::new(ideal_load, values)));
+/// Ideal heating and cooling of a zone, and the parts of them that are radiated; none where all goes to the air. What is radiated is
+/// limited to [`LARGEST_RISE`] by the rise of the mean radiant temperature with it [K/W].
+fn plants<S: Real>(
+    zone: &Zone,
+    values: &Values<'_, S>,
+    rise: impl Fn() -> S,
+) -> ([Option<Thermostat<S>>; 2], Option<[S; 2]>) {
+    let plants = [&zone.heating, &zone.cooling].map(|plant| {
+        let plant = Thermostat::new(plant.as_ref()?, values);
+        let radiates = plant.radiative.is_some();
+        Some(if radiates { plant.radiating_at_most(S::constant(LARGEST_RISE) / rise()) } else { plant })
+    });
     let parts = plants.each_ref().map(|plant| plant.as_ref().and_then(|plant| plant.radiative));
     let radiated = parts.iter().any(Option::is_some);
     (plants, radiated.then(|| parts.map(|part| part.unwrap_or_else(S::zero))))

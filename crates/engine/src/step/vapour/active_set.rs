@@ -1,4 +1,5 @@
-//! Which plants run and where saturation takes vapour away in a stage: its linear systems, solved until no zone changes its mode.
+//! Which plants run and where saturation takes vapour away in a stage: its linear systems, solved until no zone changes its mode and no
+//! layer its tangent.
 
 use crate::building::coefficients::HumidityCoefficients;
 use crate::number::real::{Mask, Real};
@@ -8,7 +9,9 @@ use super::plants::Mode;
 
 /// Solutions of a stage at most: plants and saturation begin or end in some zones from one to the next, and lines are drawn anew.
 const MAX_SOLUTIONS: usize = 30;
-/// Sweeps over the zones where modes cycle, before the next solutions, and how often this is repeated at most.
+/// Part of the way of a round, by that of the round before.
+const DAMPING: f64 = 0.5;
+/// Sweeps over the zones where modes or tangents cycle, before the next solutions, and how often this is repeated at most.
 const SWEEPS: usize = 40;
 const MAX_ROUNDS: usize = 30;
 
@@ -53,11 +56,13 @@ impl<S: Real> VapourBalances<'_, S> {
         changed
     }
 
-    /// Modes of the lanes in which those of several zones change each other for ever, then solutions from there.
+    /// Modes of the lanes in which those of several zones change each other for ever, or tangents of the sorption, then solutions from there.
     ///
     /// What is taken away bends both ways, so the active-set method may cycle. Zone after zone, each with the solution of its own balance
     /// beside those of the others (nonlinear Gauss-Seidel), the ratios converge from any start: the matrix is an M-matrix, and what is
-    /// taken away never falls with the ratio (Ortega & Rheinboldt 1970, doi:10.1137/1.9780898719468, 13.1).
+    /// taken away never falls with the ratio (Ortega & Rheinboldt 1970, doi:10.1137/1.9780898719468, 13.1). The sorption bends both ways,
+    /// too: two tangents may lead to each other. Drawn on the way to the contents reached, in each round at a smaller part of it, they do not
+    /// (damped Newton method, 14.4 there).
     #[cold]
     #[inline(never)]
     fn leave_cycle(
@@ -69,15 +74,37 @@ impl<S: Real> VapourBalances<'_, S> {
     ) {
         let mut ratios: Vec<S> =
             (0..humidity.zones.len()).map(|z| self.held(start, z, place.ratio)).collect();
+        let mut part = 1.0;
         for _ in 0..MAX_ROUNDS {
+            part = DAMPING * part;
             for _ in 0..SWEEPS {
                 self.solve_zone_by_zone(humidity, place.stage, &mut ratios, open);
+                self.go_toward(humidity, (start, place), &ratios, (part, open));
             }
             open = self.follow_modes(humidity, start, place);
             if !open.any() {
                 return;
             }
         }
+    }
+
+    /// Tangents of the sorption in the open lanes at a part of the way to what layers contain beside some ratios.
+    fn go_toward(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        (start, place): (&[S], Place),
+        ratios: &[S],
+        (part, open): (f64, S::Mask),
+    ) {
+        if humidity.surfaces.is_empty() {
+            return;
+        }
+        for (reached, &ratio) in self.reached.iter_mut().zip(ratios) {
+            *reached = S::select(open, ratio, *reached);
+        }
+        self.finish_stage(humidity, start, place);
+        self.redraw_tangents(humidity, (part, open));
+        self.assemble(humidity, start, place);
     }
 
     /// The balance of each zone beside the ratios of the others, in the open lanes: its ratio and its mode.

@@ -284,6 +284,19 @@ impl<'a, S: Real> VapourBalances<'a, S> {
         any
     }
 
+    /// Draws the tangents of the sorption anew in some lanes, at a part of the way to the contents reached.
+    pub(super) fn redraw_tangents(
+        &mut self,
+        humidity: &HumidityCoefficients<S>,
+        (part, lanes): (f64, S::Mask),
+    ) {
+        let contents = self.reached[humidity.zones.len()..].as_chunks::<2>().0;
+        let surfaces = self.tangents.iter_mut().zip(&humidity.surfaces);
+        for ((tangents, surface), contents) in surfaces.zip(contents) {
+            Tangent::redraw(tangents, &surface.layers, contents, (part, lanes));
+        }
+    }
+
     /// The balances of all zones, layers behind surfaces eliminated.
     #[inline(always)]
     pub(super) fn assemble(

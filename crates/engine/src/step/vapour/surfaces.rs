@@ -1,5 +1,6 @@
 //! Vapour that a surface takes up in a stage, as a straight line of the humidity ratio of the air.
 
+use crate::linear::unknowns::line;
 use crate::number::real::{ByPrecision, Mask, Real};
 use crate::physics::vapour_layers::VapourLayers;
 
@@ -52,6 +53,23 @@ impl<S: Real> Tangent<S> {
             any = any | far;
         }
         any
+    }
+
+    /// Draws those of both layers anew in some lanes, at a part of the way to the contents reached [kg/m2].
+    pub(super) fn redraw(
+        both: &mut [Self; 2],
+        layers: &VapourLayers<S>,
+        contents: &[S],
+        (part, lanes): (f64, S::Mask),
+    ) {
+        let on_the_way = [0, 1].map(|k| line(both[k].content, contents[k], part));
+        let mut drawn = *both;
+        Self::update(&mut drawn, layers, &on_the_way);
+        for (tangent, drawn) in both.iter_mut().zip(drawn) {
+            tangent.content = S::select(lanes, drawn.content, tangent.content);
+            tangent.humidity = S::select(lanes, drawn.humidity, tangent.humidity);
+            tangent.capacity = S::select(lanes, drawn.capacity, tangent.capacity);
+        }
     }
 
     /// What the layer stores per humidity and length of a stage [kg/(m2 s)], and the humidity that the stage starts from [-], with its
