@@ -78,7 +78,7 @@ def test_the_load_of_a_steady_cell_is_the_closed_one(share: float, radiative: fl
 @pytest.mark.parametrize("capacity", [None, 1e9])
 @pytest.mark.parametrize(("plant", "sign"), [("heating", 1.0), ("cooling", -1.0)])
 def test_an_emitter_gives_no_more_than_the_surfaces_emit(plant: str, sign: float, capacity: Any) -> None:
-    """``e A sigma T^4`` at 20 degC, a fourth of T in the mean radiant temperature: 95 % radiation, at 1 min."""
+    """``e A sigma T^4`` at 20 degC, a fourth of T in the mean radiant temperature: 95 % radiation."""
     d = cell(None)
     del d["zones"]["z0"]["heating"]
     d["zones"]["z0"][plant] = {"setpoint": 20.0 + sign * 30.0, "radiative": 0.95}
