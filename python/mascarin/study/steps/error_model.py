@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io.durations import seconds_of
 from mascarin.calibration import SearchOptions
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
-from mascarin.calibration.errors.joint_posterior import ErrorStatement
+from mascarin.calibration.errors.linear_estimation import ErrorStatement
 from mascarin.calibration.errors.sensor_errors import error_columns
 from mascarin.calibration.errors.stated_errors import shared_errors, sizes_of
 from mascarin.measurements.scatter import scatter
