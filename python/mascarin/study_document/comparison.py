@@ -159,9 +159,13 @@ class TransferScores(ResultEntry):
 
 
 class TransferEntry(ResultEntry):
-    """Another house, season or phase."""
+    """Another house, season or phase, or one of the experiments of the study."""
 
     building: str = ""
+    role: str = "validation"
+    """identification: its data were used; validation: nothing of it was identified."""
+    cost: Num | None = None
+    """Minus the log-likelihood of its own data at the estimates, as if errors were independent. [-]"""
     words: list[str] = []
     sensors: dict[str, dict[str, TransferScores]] = {}
     """sensor -> period -> scores."""

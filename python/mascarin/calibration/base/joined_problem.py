@@ -81,9 +81,7 @@ class _Series:
         return slopes
 
 
-def joined(
-    problems: Mapping[str, CalibrationProblem], *, own: Collection[str] = ()
-) -> CalibrationProblem:
+def joined(problems: Mapping[str, CalibrationProblem], *, own: Collection[str] = ()) -> CalibrationProblem:
     """Join the problems of experiments that share parameters.
 
     Parameters
@@ -133,9 +131,7 @@ def joined(
                 parameters[path], first[path] = replace(parameter, path=path), name
             columns.append(list(parameters).index(path))
         length, count = problem.measured.shape
-        shares[name] = Share(
-            problem, tuple(columns), slice(row, row + length), slice(sensor, sensor + count)
-        )
+        shares[name] = Share(problem, tuple(columns), slice(row, row + length), slice(sensor, sensor + count))
         row, sensor = row + length, sensor + count
     series = _Series(tuple(shares.values()), row, sensor)
     model: Model = series
@@ -262,7 +258,7 @@ def of_experiment(fit: Calibration, share: Share, building: Building | None) -> 
 
 
 def _minimum(minimum: Minimum, columns: list[int]) -> Minimum:
-    return replace(minimum, x=minimum.x[columns])
+    return replace(minimum, start=minimum.start[columns], x=minimum.x[columns])
 
 
 def _marginal(information: Floats, columns: list[int]) -> Floats:

@@ -296,12 +296,12 @@ class _Chain:
         day_covariance = np.linalg.inv(
             np.linalg.inv(self.covariances.day) + turned.ones.reshape(-1, self.sensors).T @ weighted_ones
         )
-        return weighted_ones, day_covariance
+        return weighted_ones, np.asarray(day_covariance, dtype=np.float64)
 
     def _days(self, turned: _Turned, residual: Floats) -> Floats:
         """Draw the constants of days (D, S) given what the coefficients leave."""
         weighted_ones, day_covariance = self._constants(turned)
-        spread = root_of(np.asarray(day_covariance, dtype=np.float64))
+        spread = root_of(day_covariance)
         day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
         return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
 

@@ -217,7 +217,7 @@ class DayGaussian:
 
     def projected(self, values: Floats) -> Floats:
         """Multiply values (D, n) with ``U' B^-1``, shape (q,): what they say of the coefficients. [-]"""
-        return np.einsum("dnq,dn->q", self._own[0], values)
+        return np.asarray(np.einsum("dnq,dn->q", self._own[0], values))
 
     @cached_property
     def own_log_determinant(self) -> float:
