@@ -24,7 +24,10 @@ materials:
 constructions:
   shell: {layers: [{material: insulation, thickness: 0.08}, {material: board, thickness: 0.02}]}
 zones:
-  room: {volume: 40, infiltration: {constant: {value: 0.5, range: [0.1, 1.5]}}, gains: {heater: {column: heat, radiative: 0}}}
+  room:
+    volume: 40
+    infiltration: {constant: {value: 0.5, range: [0.1, 1.5]}}
+    gains: {heater: {column: heat, radiative: 0}}
 surfaces:
   shell:
     construction: shell

@@ -167,5 +167,8 @@ class TransferEntry(ResultEntry):
     cost: Num | None = None
     """Minus the log-likelihood of its own data at the estimates, as if errors were independent. [-]"""
     words: list[str] = []
+    """What limits the comparison, warnings of the runs included."""
+    sound: bool = True
+    """Whether the energy balances of its runs close and every temperature has a cause."""
     sensors: dict[str, dict[str, TransferScores]] = {}
     """sensor -> period -> scores."""

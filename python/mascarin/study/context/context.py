@@ -159,11 +159,8 @@ class StudyContext:
         if not self.together:
             return self._own_problem(variant)
         own_paths = {path for context in self.experiments.values() for path in context.inputs.own_paths}
-        with self.places.blame("identification", "parameters"):
-            return joined(
-                {name: context._own_problem(variant) for name, context in self.experiments.items()},
-                own=own_paths,
-            )
+        problems = {name: context._own_problem(variant) for name, context in self.experiments.items()}
+        return joined(problems, own=own_paths)
 
     def _own_problem(self, variant: str | None) -> CalibrationProblem:
         """The calibration problem of this experiment alone."""

@@ -85,12 +85,18 @@ def read_experiments(path: Path) -> list[ExperimentFile]:
         return [
             ExperimentFile("", "identification", _valid(document.plain, path, document.lines), Places(path))
         ]
-    stated = document.plain[_EXPERIMENTS]
+    stated, places = document.plain[_EXPERIMENTS], Places(path)
+    if not stated:
+        with places.blame(_EXPERIMENTS):
+            raise InputError(
+                "found no experiment, expected at least one of role identification: name one, or leave "
+                "experiments out"
+            )
     try:
         entries = _Names.model_validate({_EXPERIMENTS: stated}).experiments
     except ValidationError as error:
         raise explained(error, document.plain, str(path), document.lines) from None
-    _require_consistent(document, entries, Places(path))
+    _require_consistent(document, entries, places)
     first = next(name for name, entry in entries.items() if entry.role == "identification")
     order = [first, *(name for name in entries if name != first)]
     return [_experiment(path, document, name, entries[name].role, name == first) for name in order]

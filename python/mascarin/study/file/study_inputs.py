@@ -84,6 +84,11 @@ class StudyInputs:
         return Places(self.path) if self.experiment else self.places
 
     @property
+    def others(self) -> dict[str, StudyInputs]:
+        """All other experiments of the study, those that are identified first."""
+        return {**self.together, **self.transfer} if self.experiment else {}
+
+    @property
     def measured_columns(self) -> set[str]:
         """Columns of the table of measurements that sensors are compared with, by their names there."""
         columns = {column for sensor in self.plan.sensors.values() for column in sensor.columns}

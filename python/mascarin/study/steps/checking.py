@@ -256,7 +256,7 @@ def _runs(study: StudyContext) -> None:
             with blame("sensors", name):
                 require_comparable(study.observation, study.used[period][:, s], period, [name])
     if file.identification is not None:
-        with blame("identification"):
+        with study.inputs.file_places.blame("identification"):
             _ = study.problem()
     for name, variant in file.variants.items():
         with blame("variants", name):

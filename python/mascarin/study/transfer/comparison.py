@@ -102,12 +102,14 @@ def _identified(study: StudyContext, calibrated: Calibrated) -> TransferEntry:
         if study.building.parameter(p.path).path in own
     ]
     cost = float(fit.of_sensors.sum()) if fit.cost_name == "nll" else None
+    described = nominal(study)
     return TransferEntry(
         building=study.building.name,
         role="identification",
         cost=cost,
-        words=words,
-        sensors=_scores(nominal(study).scores, calibrated.run, held),
+        words=[*words, *_said(described, calibrated.run)],
+        sound=_sound(described, calibrated.run),
+        sensors=_scores(described.scores, calibrated.run, held),
     )
 
 
@@ -126,6 +128,8 @@ def described_entries(study: StudyContext) -> dict[str, TransferEntry]:
         name: TransferEntry(
             building=context.building.name,
             role="validation" if name in others else "identification",
+            words=_said(run),
+            sound=_sound(run),
             sensors=_scores(run.scores, None, {}, run),
         )
         for name, context in {**study.experiments, **others}.items()
@@ -153,9 +157,19 @@ def _compared(other: StudyContext, identified: Mapping[str, float], calibrated: 
     lines = [unknown] if missing else []
     return TransferEntry(
         building=other.building.name,
-        words=[*lines, *(word.text for word in words)],
+        words=[*lines, *(word.text for word in words), *_said(described, run)],
+        sound=_sound(described, run),
         sensors=_scores(described.scores, run, {sensor: entry.held for sensor, entry in entries.items()}),
     )
+
+
+def _said(*runs: ModelRun) -> list[str]:
+    """Warnings of runs, each once."""
+    return list(dict.fromkeys(str(line) for run in runs for line in run.results.warnings))
+
+
+def _sound(*runs: ModelRun) -> bool:
+    return all(run.results.sound for run in runs)
 
 
 def _scores(

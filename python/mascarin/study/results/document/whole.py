@@ -91,9 +91,11 @@ def document(findings: Findings) -> StudyDocument:
         },
     )
     models = {"nominal": findings.nominal, "fitted": findings.fitted}
+    compared = comparison(findings.models, findings.criteria)
+    elsewhere = all(entry.sound for entry in findings.transfer.values())
     return StudyDocument.joined(
         header(study, "study"),
-        comparison(findings.models, findings.criteria),
+        compared.model_copy(update={"sound": compared.sound and elsewhere}),
         estimates(study, fit, stated=findings.prediction_intervals.stated),
         coefficients(study, models, (*fit.problem.paths, *published)),
         profile_entries(findings.profiles),
