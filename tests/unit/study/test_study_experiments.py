@@ -6,14 +6,18 @@ import json
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 import yaml
 
 from experiments_support import AIR, CONDUCTIVITY, STUDY, TALL, TRUTH, cells, experiment, written
+from mascarin.calibration import Cost
 from mascarin.cli import main
 from mascarin.errors import InputError
+from mascarin.genopt.export.compiling import compile_study
 from mascarin.study import Study
+from mascarin.study.file.schema import study_schema
 from mascarin.study.results.results import StudyResults
 
 BOTH = {"wide": experiment("wide"), "tall": experiment("tall")}
@@ -62,8 +66,6 @@ def test_the_log_likelihood_is_the_sum_of_those_of_the_experiments(folder: Path)
     both = Study.from_yaml(written(folder, BOTH)).context
     problem, x = both.problem(), np.array([[0.035, 0.7], [0.03, 0.9]])
     own = [Study.from_yaml(written(folder, {name: entry})).context.problem() for name, entry in BOTH.items()]
-    from mascarin.calibration import Cost
-
     together = Cost(problem, "nll").of_sensors(problem.residuals(x))
     each = [Cost(alone, "nll").of_sensors(alone.residuals(x))[:, 0] for alone in own]
     # Sums over more samples have another order.
@@ -123,7 +125,7 @@ def test_results_are_shown_by_experiment(folder: Path, joint: StudyResults) -> N
 def test_an_experiment_of_the_role_validation_is_predicted(
     folder: Path, alone: dict[str, StudyResults]
 ) -> None:
-    held = {**{"wide": BOTH["wide"]}, "tall": experiment("tall", role="validation")}
+    held = {"wide": BOTH["wide"], "tall": experiment("tall", role="validation")}
     results = results_of(folder, held, folder / "held")
     np.testing.assert_array_equal(results.calibration.x, alone["wide"].calibration.x)
     entry = results.transfer["tall"]
@@ -170,8 +172,9 @@ def test_parameters_of_one_building_alone_are_identified(folder: Path, tmp_path:
     assert list(context.inputs.calibration_plan.parameters) == [CONDUCTIVITY]
 
 
+ITSELF = ["sum", "room.air_temperature"]
 REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
-    ({"wide": experiment("wide", role="validation")}, {}, r"experiments: found role: validation in all of wi"),
+    ({"wide": experiment("wide", role="validation")}, {}, r"experiments: found role: validation in all"),
     ({}, {}, "experiments: found no experiment, expected at least one of role identification"),
     ({"wide": {"building": "wide.yaml"}}, {}, r"experiments\.wide\.role\s+found: nothing"),
     ({"wide": experiment("wide", roles="x")}, {}, r"experiments\.wide\.roles\s+found: the key 'roles'"),
@@ -210,8 +213,8 @@ REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
         r"experiments\.tall: sensors\.room\.column: .*no column 'rom'",
     ),
     (
-        {**BOTH, "tall": experiment("tall", sensors={"sum": {"column": "room", "sum": ["sum"], "offset": 0.1}})},
-        {}, r"experiments\.tall: sensors\.sum\.sum: found 'sum', the sensor itself",
+        {**BOTH, "tall": experiment("tall", sensors={"sum": {"column": "room", "sum": ITSELF}})}, {},
+        r"experiments\.tall: sensors\.sum\.sum: found 'sum', the sensor itself",
     ),
 )  # fmt: skip
 
@@ -249,12 +252,18 @@ def test_other_columns_of_one_table_are_other_data(folder: Path) -> None:
     assert inputs.together["tall"].measured_columns == {"tall_room"}
 
 
+def test_the_schema_knows_what_experiments_may_leave_out(folder: Path) -> None:
+    schema = jsonschema.Draft202012Validator(study_schema())
+    plain = yaml.safe_load(written(folder, BOTH).read_text(encoding="utf-8"))
+    assert list(schema.iter_errors(plain)) == []
+    del plain["experiments"]
+    assert list(schema.iter_errors(plain)) != []
+
+
 def test_entrances_that_know_one_data_set_say_so(folder: Path, tmp_path: Path) -> None:
     study = Study.from_yaml(written(folder, BOTH))
     assert "experiments     wide, tall" in repr(study)
     with pytest.raises(InputError, match=r"experiments: found several data sets.*GenOpt"):
-        from mascarin.genopt.export.compiling import compile_study
-
         compile_study(study)
     with pytest.raises(InputError, match="experiments: found several data sets"):
         study.to_yaml()

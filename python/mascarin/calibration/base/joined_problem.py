@@ -76,19 +76,21 @@ class _Series:
         """Differentiate the series at a parameter vector (P,), shape (T, S, P). [unit of each]"""
         slopes = np.zeros((self.samples, self.sensors, x.size))
         for share in self.shares:
-            own = share.problem.require_slopes()(x[list(share.columns)])
-            slopes[share.rows, share.sensors, list(share.columns)] = own
+            slopes_of_share = share.problem.require_slopes()(x[list(share.columns)])
+            slopes[share.rows, share.sensors, list(share.columns)] = slopes_of_share
         return slopes
 
 
-def joined(problems: Mapping[str, CalibrationProblem], *, own: Collection[str] = ()) -> CalibrationProblem:
+def joined(
+    problems: Mapping[str, CalibrationProblem], *, own_paths: Collection[str] = ()
+) -> CalibrationProblem:
     """Join the problems of experiments that share parameters.
 
     Parameters
     ----------
     problems : mapping of str to CalibrationProblem
         Problem of each experiment by its name. Parameters of one path are one parameter.
-    own : collection of str
+    own_paths : collection of str
         Paths of which every experiment has its own value; their names get that of the experiment.
 
     Returns
@@ -124,7 +126,7 @@ def joined(problems: Mapping[str, CalibrationProblem], *, own: Collection[str] =
     for name, problem in problems.items():
         columns = []
         for parameter in problem.parameters:
-            path = f"{parameter.path} ({name})" if parameter.path in own else parameter.path
+            path = f"{parameter.path} ({name})" if parameter.path in own_paths else parameter.path
             if path in parameters:
                 _require_same(parameters[path], parameter, first[path], name)
             else:
@@ -160,18 +162,18 @@ def _among(sensor: FitSensor, name: str, share: Share, samples: int) -> FitSenso
     return replace(sensor, name=f"{name} {sensor.name}", measured=measured, use=use)
 
 
-def _require_same(known: FitParameter, other: FitParameter, first: str, name: str) -> None:
+def _require_same(shared: FitParameter, other: FitParameter, first: str, name: str) -> None:
     """Refuse a shared parameter of which two experiments say different things."""
-    for what, here, there in (
-        ("the value", known.nominal, other.nominal),
-        ("the range", (known.lower, known.upper), (other.lower, other.upper)),
-        ("the prior", known.prior, other.prior),
-        ("the scale", known.scale, other.scale),
+    for what, first_value, other_value in (
+        ("the value", shared.nominal, other.nominal),
+        ("the range", (shared.lower, shared.upper), (other.lower, other.upper)),
+        ("the prior", shared.prior, other.prior),
+        ("the scale", shared.scale, other.scale),
     ):
-        if here != there:
+        if first_value != other_value:
             raise InputError(
-                f"{other.path}: found {what} {_words(here)} in '{first}' and {_words(there)} in '{name}', "
-                "expected the same in all experiments that share it: state it for all, write per_experiment: "
+                f"{other.path}: found {what} {_words(first_value)} in '{first}' and {_words(other_value)} in "
+                f"'{name}', expected the same in all experiments that share it: state it for all, write per_experiment: "
                 "true so that each has its own, or tie the numbers of a path with * by a factor"
             )
 
@@ -224,20 +226,20 @@ def of_experiment(fit: Calibration, share: Share, building: Building | None) -> 
     paths = {names[k]: p.path for k, p in zip(share.columns, share.problem.parameters, strict=True)}
     columns, sensors = list(share.columns), share.sensors
     square = np.ix_(columns, columns)
-    at, trace = fit.uncertainty, fit.trace
+    joint, trace = fit.uncertainty, fit.trace
     uncertainty = replace(
-        at,
-        low=at.low[columns],
-        high=at.high[columns],
-        sd=at.sd[columns],
-        correlation=at.correlation[square],
-        effective_samples=at.effective_samples[sensors],
-        order=at.order[sensors],
-        quantile=at.quantile[columns],
-        covariance=at.covariance[square],
-        information=_marginal(at.information, columns),
-        error=at.error[sensors],
-        stretch=at.stretch[square],
+        joint,
+        low=joint.low[columns],
+        high=joint.high[columns],
+        sd=joint.sd[columns],
+        correlation=joint.correlation[square],
+        effective_samples=joint.effective_samples[sensors],
+        order=joint.order[sensors],
+        quantile=joint.quantile[columns],
+        covariance=joint.covariance[square],
+        information=_marginal(joint.information, columns),
+        error=joint.error[sensors],
+        stretch=joint.stretch[square],
     )
     return replace(
         fit,

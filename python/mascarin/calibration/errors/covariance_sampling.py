@@ -83,13 +83,13 @@ class CovarianceSample:
         parts = [
             np.eye(data[0].effects.shape[2]),
             *(
-                np.kron(np.eye(own.basis.shape[2]), root_of(each.hour))
-                for own, each in zip(data, covariances, strict=True)
+                np.kron(np.eye(part.basis.shape[2]), root_of(each.hour))
+                for part, each in zip(data, covariances, strict=True)
             ),
             *(root_of(each.alike * each.day) for each in covariances if each.alike),
         ]
         turn = linalg.block_diag(*parts)
-        mean = turn @ gaussian.coefficients([own.error for own in data])
+        mean = turn @ gaussian.coefficients([part.error for part in data])
         return cls((tuple(covariances),), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
 
     @property
@@ -142,12 +142,12 @@ def sample_covariances(
     >>> bool(0.15 < np.sqrt(sample.typical[0].white[0]) < 0.23)
     True
     """
-    rng, places = np.random.default_rng(_SEED), columns_of(data, first)
+    rng, columns = np.random.default_rng(_SEED), columns_of(data, first)
     chains = [_Chain(*each, rng) for each in zip(data, first, sizes, strict=True)]
     covariances, mean, covariance = [], [], []
     for move in range(_BURN_IN + _MOVES):
         now = tuple(chain.covariances for chain in chains)
-        middle, root = _moved(chains, places, rng)
+        middle, root = _moved(chains, columns, rng)
         if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
             covariances.append(now)
             mean.append(middle)
@@ -156,7 +156,7 @@ def sample_covariances(
 
 
 def _moved(
-    chains: Sequence[_Chain], places: Sequence[Indices], rng: np.random.Generator
+    chains: Sequence[_Chain], columns: Sequence[Indices], rng: np.random.Generator
 ) -> tuple[Floats, Floats]:
     """Draw the errors of all experiments, then the sizes.
 
@@ -168,23 +168,23 @@ def _moved(
         A root of their covariance.
     """
     turned = [chain.turned_now() for chain in chains]
-    said = [chain.information(own) for chain, own in zip(chains, turned, strict=True)]
+    said = [chain.information(part) for chain, part in zip(chains, turned, strict=True)]
     precision, right = said[0]
     if len(chains) > 1:
-        size = 1 + max(int(place.max()) for place in places)
+        size = 1 + max(int(column.max()) for column in columns)
         precision, right = np.zeros((size, size)), np.zeros(size)
-        for place, (information, values) in zip(places, said, strict=True):
-            precision[np.ix_(place, place)] += information
-            right[place] += values
-    known = chains[0].effect_count
+        for column, (information, values) in zip(columns, said, strict=True):
+            precision[np.ix_(column, column)] += information
+            right[column] += values
+    effect_count = chains[0].effect_count
     # Each experiment alone has the prior of the common coefficients.
-    precision[:known, :known] -= (len(chains) - 1.0) * np.eye(known)
+    precision[:effect_count, :effect_count] -= (len(chains) - 1.0) * np.eye(effect_count)
     lower = _cholesky(0.5 * (precision + precision.T))
     root = np.asarray(np.linalg.inv(lower).T, dtype=np.float64)
     middle = root @ (root.T @ right)
     shared = middle + root @ rng.standard_normal(middle.size)
-    for chain, own, place in zip(chains, turned, places, strict=True):
-        chain.draw(own, shared[place])
+    for chain, part, column in zip(chains, turned, columns, strict=True):
+        chain.draw(part, shared[column])
     return middle, root
 
 

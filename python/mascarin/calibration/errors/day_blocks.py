@@ -186,7 +186,7 @@ class DayGaussian:
         return np.asarray(inverse[which])
 
     @cached_property
-    def _own(self) -> tuple[Floats, Floats]:
+    def _added(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
         used = np.where(self.present[:, :, None], self.columns, 0.0)
         weighted = product(self._inverse, used)
@@ -195,7 +195,7 @@ class DayGaussian:
     @cached_property
     def _shared(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``I + U' B^-1 U``: the precision of the coefficients after the data."""
-        weighted, added = self._own
+        weighted, added = self._added
         precision = np.eye(len(added)) + added
         if self.elsewhere is not None:
             precision = precision + self.elsewhere
@@ -213,11 +213,11 @@ class DayGaussian:
     @property
     def information(self) -> Floats:
         """What these values add to the precision of the coefficients, shape (q, q). [-]"""
-        return self._own[1]
+        return self._added[1]
 
     def projected(self, values: Floats) -> Floats:
         """Multiply values (D, n) with ``U' B^-1``, shape (q,): what they say of the coefficients. [-]"""
-        return np.asarray(np.einsum("dnq,dn->q", self._own[0], values))
+        return np.asarray(np.einsum("dnq,dn->q", self._added[0], values))
 
     @cached_property
     def own_log_determinant(self) -> float:
@@ -359,25 +359,30 @@ class Experiments:
         """What the values of all other experiments say of the coefficients, for each; None if it is alone."""
         if len(self.parts) == 1:
             return [None]
-        said = [part.projected(own) for part, own in zip(self.parts, values, strict=True)]
+        said = [
+            part.projected(values_of_part) for part, values_of_part in zip(self.parts, values, strict=True)
+        ]
         return [np.sum([*said[:k], *said[k + 1 :]], axis=0) for k in range(len(said))]
 
     def coefficients(self, values: Sequence[Floats]) -> Floats:
         """Return the mean of the coefficients given the values of all experiments, shape (q,). [-]"""
-        said = [part.projected(own) for part, own in zip(self.parts, values, strict=True)]
+        said = [
+            part.projected(values_of_part) for part, values_of_part in zip(self.parts, values, strict=True)
+        ]
         return np.asarray(self.covariance @ np.sum(said, axis=0))
 
     def solve(self, values: Sequence[Floats]) -> list[Floats]:
         """Multiply values with the inverse of the covariance. [1/unit]"""
         each = zip(self.parts, values, self.beside(values), strict=True)
-        return [part.solve(own, beside) for part, own, beside in each]
+        return [part.solve(values_of_part, beside) for part, values_of_part, beside in each]
 
     def log_density(self, values: Sequence[Floats]) -> float:
         """Return the logarithm of the density of the values of all experiments."""
         logdet = sum(part.own_log_determinant for part in self.parts)
         logdet += float(np.linalg.slogdet(self.precision)[1])
         square = sum(
-            float(np.sum(own * solved)) for own, solved in zip(values, self.solve(values), strict=True)
+            float(np.sum(values_of_part * solved))
+            for values_of_part, solved in zip(values, self.solve(values), strict=True)
         )
         count = sum(int(part.present.sum()) for part in self.parts)
         return -0.5 * (square + logdet + count * math.log(2.0 * math.pi))

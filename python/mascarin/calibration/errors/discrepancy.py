@@ -226,15 +226,15 @@ def columns_of(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> l
     The known effects are common to all; then come the errors that repeat, experiment by experiment, and the
     levels of all days, where they have one.
     """
-    known = data[0].effects.shape[2]
-    repeating = [own.basis.shape[2] * own.sensors for own in data]
-    levels = [own.sensors if each.alike else 0 for own, each in zip(data, covariances, strict=True)]
-    ends = np.cumsum([known, *repeating, *levels])
+    effect_count = data[0].effects.shape[2]
+    repeating = [part.basis.shape[2] * part.sensors for part in data]
+    levels = [part.sensors if each.alike else 0 for part, each in zip(data, covariances, strict=True)]
+    ends = np.cumsum([effect_count, *repeating, *levels])
     count = len(data)
     return [
         np.concatenate(
             [
-                np.arange(known),
+                np.arange(effect_count),
                 np.arange(ends[k], ends[k + 1]),
                 np.arange(ends[count + k], ends[count + k + 1]),
             ]
@@ -253,15 +253,15 @@ def together(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> Exp
     covariances : sequence of Discrepancy
         Of each.
     """
-    alone = [own.gaussian(each) for own, each in zip(data, covariances, strict=True)]
+    alone = [part.gaussian(each) for part, each in zip(data, covariances, strict=True)]
     if len(alone) == 1:
         return Experiments(alone)
-    places = columns_of(data, covariances)
-    size = 1 + max(int(place.max()) for place in places)
+    columns_by_part = columns_of(data, covariances)
+    size = 1 + max(int(part_columns.max()) for part_columns in columns_by_part)
     wide = []
-    for gaussian, place in zip(alone, places, strict=True):
+    for gaussian, part_columns in zip(alone, columns_by_part, strict=True):
         columns = np.zeros((*gaussian.columns.shape[:2], size))
-        columns[:, :, place] = gaussian.columns
+        columns[:, :, part_columns] = gaussian.columns
         wide.append(replace(gaussian, columns=columns))
     return Experiments(wide)
 
@@ -317,8 +317,8 @@ def estimate_discrepancy(
         That with the largest density over the correlation times `CORRELATION_HOURS`.
     """
     sizes = SizeLimits(scale, limit, least)
-    known = None if first is None else [first]
-    return estimate_together([data], [sizes], persistence=persistence, first=known)[0]
+    beginning = None if first is None else [first]
+    return estimate_together([data], [sizes], persistence=persistence, first=beginning)[0]
 
 
 def estimate_together(
@@ -347,7 +347,7 @@ def estimate_together(
     if first is not None:
         return _maximized(data, first, sizes, _MAX_ITERATIONS)
     best, density = None, -np.inf
-    errors = [own.error for own in data]
+    errors = [part.error for part in data]
     for hours in CORRELATION_HOURS:
         start = [
             Discrepancy(
@@ -355,11 +355,11 @@ def estimate_together(
                 np.diag(each.scale**2),
                 np.diag(each.scale**2),
                 each.scale**2,
-                own.within,
+                part.within,
                 hours,
-                alike_days(own.grid.days, persistence),
+                alike_days(part.grid.days, persistence),
             )
-            for own, each in zip(data, sizes, strict=True)
+            for part, each in zip(data, sizes, strict=True)
         ]
         candidate = _maximized(data, start, sizes, _TRIAL_ITERATIONS)
         reached = together(data, candidate).log_density(errors)
@@ -376,13 +376,13 @@ def _maximized(
     iterations: int,
 ) -> list[Discrepancy]:
     """Improve all sizes together, step by step, until none changes."""
-    now, errors = list(covariances), [own.error for own in data]
+    now, errors = list(covariances), [part.error for part in data]
     for _ in range(iterations):
         gaussian = together(data, now)
         weighted = gaussian.solve(errors)
         steps = [
-            _improved(own, part, solved, before, each)
-            for own, part, solved, before, each in zip(
+            _improved(data_of_part, part, solved, before, each)
+            for data_of_part, part, solved, before, each in zip(
                 data, gaussian.parts, weighted, now, sizes, strict=True
             )
         ]

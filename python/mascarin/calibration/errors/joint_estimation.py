@@ -92,8 +92,8 @@ def estimate_jointly(
     SolverError
         The model cannot be simulated near the estimates.
     """
-    found, joints = estimate_experiments(fit, [stated], options, further, keep=keep)
-    return found, joints[0]
+    estimates, joints = estimate_experiments(fit, [stated], options, further, keep=keep)
+    return estimates, joints[0]
 
 
 def estimate_experiments(

@@ -18,7 +18,7 @@ Gelman A. et al. (2013), Bayesian Data Analysis, chapter 14 (linear models with 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -31,6 +31,7 @@ from mascarin.calibration.errors.covariance_sampling import CovarianceSample, sa
 from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, hour_basis
 from mascarin.calibration.errors.linear_estimation import (
     ErrorStatement,
+    Estimated,
     Linear,
     columns_of_sensors,
     estimated,
@@ -110,12 +111,12 @@ class JointPosterior:
     def of_parameters(self, columns: Sequence[int]) -> JointPosterior:
         """The same distribution of some of the parameters, with all errors of the experiment."""
         chosen = np.asarray(columns, dtype=np.int64)
-        place = np.concatenate([chosen, np.arange(self.z.size, self.mean.size)])
+        coefficient = np.concatenate([chosen, np.arange(self.z.size, self.mean.size)])
         return replace(
             self,
             z=self.z[chosen],
-            mean=self.mean[place],
-            covariance=self.covariance[np.ix_(place, place)],
+            mean=self.mean[coefficient],
+            covariance=self.covariance[np.ix_(coefficient, coefficient)],
             sample=self.sample[:, chosen],
             prior=self.prior[chosen],
             beyond=self.beyond[chosen],
@@ -257,8 +258,8 @@ def joint_posterior(
     -------
     JointPosterior
     """
-    known = None if covariances is None else [covariances]
-    return joint_posteriors(problem, linear, [stated], known, simulate=simulate, lengths=lengths)[0]
+    sizes = None if covariances is None else [covariances]
+    return joint_posteriors(problem, linear, [stated], sizes, simulate=simulate, lengths=lengths)[0]
 
 
 def joint_posteriors(
@@ -286,15 +287,17 @@ def joint_posteriors(
     tuple of JointPosterior
         The one distribution, as each experiment has it: all parameters, and its own errors.
     """
-    at = estimated(problem, linear, stated, covariances)
+    after = estimated(problem, linear, stated, covariances)
     if covariances is None:
         sizes = [sizes_of(problem, each) for each in stated]
-        draws = sample_covariances(at.data, at.covariances, sizes)
+        draws = sample_covariances(after.data, after.covariances, sizes)
     else:
-        draws = CovarianceSample.of_covariances(at.data, covariances)
-    scale, priors = at.scale, priors_of(problem)
-    count, stated_count = len(problem.parameters), at.known
-    shared_count = stated_count + sum(own.basis.shape[2] * own.sensors for own in at.data)
+        draws = CovarianceSample.of_covariances(after.data, covariances)
+    scale, priors = after.scale, priors_of(problem)
+    count, stated_count = len(problem.parameters), after.effect_count
+    shared_count = stated_count + sum(
+        part_data.basis.shape[2] * part_data.sensors for part_data in after.data
+    )
     # The level that the days of the identification have in common says nothing of other days.
     mean, covariance = draws.mean[:, :shared_count].copy(), draws.covariance[:, :shared_count, :shared_count]
     mean[:, :count] *= scale[:count]
@@ -309,7 +312,7 @@ def joint_posteriors(
     chains = None
     if simulate is not None:
         chains = chains_of(
-            problem, at.data[0], [each[0] for each in draws.covariances], bounded_sample,
+            problem, after.data[0], [each[0] for each in draws.covariances], bounded_sample,
             (low[limited], high[limited]), priors, names[0], _departure(linear, simulate),
             lengths or ChainLengths(),
         )  # fmt: skip
@@ -318,39 +321,54 @@ def joint_posteriors(
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
     bounded_mean, bounded = moments_within(middle, together, bounded_sample)
-    precision = at.gaussian.precision / np.outer(scale, scale)
-    z, beyond, unlimited = best_within(precision, at.mean, low, high, count)
-    further, density = (
-        numbered(linear.further.shape[2], stated[0].further),
-        at.gaussian.log_density(at.errors),
-    )
-    days = sum(own.grid.days for own in at.data)
-    places = _places(count, names, at.data, stated_count)
-    parts = zip(at.gaussian.parts, at.data, at.gaussian.beside(at.errors), places, strict=True)
-    return tuple(
-        JointPosterior(
-            z, bounded_mean[place], bounded[np.ix_(place, place)], bounded_sample[:, :count], sizes_of_part,
-            (*own_names, *further), part.left_out(own.error, beside), density, scale[:count], beyond,
-            unlimited[place[count : count + len(own_names)] - count],
-            part.whitened(own.error, beside).reshape(own.grid.days, own.grid.slots, own.sensors),
-            *part.days_left_out(own.error, own.sensors, beside), chains=chains,
-            other_days=days - own.grid.days,
-        )
-        for (part, own, beside, place), own_names, sizes_of_part in zip(
-            parts, names, draws.typical, strict=True
-        )
+    precision = after.gaussian.precision / np.outer(scale, scale)
+    z, beyond, unlimited = best_within(precision, after.mean, low, high, count)
+    further, none = numbered(linear.further.shape[2], stated[0].further), np.zeros(0)
+    of_all = JointPosterior(
+        z, bounded_mean, bounded, bounded_sample[:, :count], draws.typical[0], further, none,
+        after.gaussian.log_density(after.errors), scale[:count], beyond, unlimited, none, none, none,
+        chains=chains,
     )  # fmt: skip
+    return tuple(_by_experiment(of_all, after, names, draws.typical))
 
 
-def _places(
-    count: int, names: Sequence[tuple[str, ...]], data: Sequence[DayData], known: int
+def _by_experiment(
+    of_all: JointPosterior,
+    after: Estimated,
+    names: Sequence[tuple[str, ...]],
+    sizes: Sequence[Discrepancy],
+) -> Iterator[JointPosterior]:
+    """The distribution as each experiment has it, with its errors of sensors by name and of the model."""
+    count, days = of_all.z.size, sum(data.grid.days for data in after.data)
+    beside = after.gaussian.beside(after.errors)
+    columns = _coefficients(count, names, after.data, after.effect_count)
+    for k, (part, data) in enumerate(zip(after.gaussian.parts, after.data, strict=True)):
+        shape = (data.grid.days, data.grid.slots, data.sensors)
+        left_out, left_out_sd = part.days_left_out(data.error, data.sensors, beside[k])
+        yield replace(
+            of_all,
+            mean=of_all.mean[columns[k]],
+            covariance=of_all.covariance[np.ix_(columns[k], columns[k])],
+            error_covariances=sizes[k],
+            names=(*names[k], *of_all.names),
+            by_day=part.left_out(data.error, beside[k]),
+            unlimited=of_all.unlimited[columns[k][count : count + len(names[k])] - count],
+            whitened=part.whitened(data.error, beside[k]).reshape(shape),
+            left_out=left_out,
+            left_out_sd=left_out_sd,
+            other_days=days - data.grid.days,
+        )
+
+
+def _coefficients(
+    count: int, names: Sequence[tuple[str, ...]], data: Sequence[DayData], effect_count: int
 ) -> list[NDArray[np.int64]]:
     """Coefficients of each experiment: positions, its errors of sensors, further ones, those that repeat."""
-    of_sensors, places = count, []
-    further, repeating = np.arange(count + sum(map(len, names)), known), known
-    for own_names, own in zip(names, data, strict=True):
-        own_count = own.basis.shape[2] * own.sensors
-        places.append(
+    of_sensors, coefficients = count, []
+    further, repeating = np.arange(count + sum(map(len, names)), effect_count), effect_count
+    for own_names, part_data in zip(names, data, strict=True):
+        own_count = part_data.basis.shape[2] * part_data.sensors
+        coefficients.append(
             np.concatenate(
                 [
                     np.arange(count),
@@ -361,7 +379,7 @@ def _places(
             )
         )
         of_sensors, repeating = of_sensors + len(own_names), repeating + own_count
-    return places
+    return coefficients
 
 
 def _departure(linear: Linear, simulate: Simulate) -> Simulate:

@@ -108,7 +108,7 @@ def columns_of_sensors(
     list of tuple of str
         Names of its own errors.
     """
-    own = [
+    effects_of_errors = [
         error_columns(
             each.names or [sensor.name for sensor in problem.sensors[each.columns]],
             each.sensors,
@@ -117,14 +117,14 @@ def columns_of_sensors(
         )
         for each in stated
     ]
-    count, first = sum(len(names) for _, names in own), 0
+    count, first = sum(len(names) for _, names in effects_of_errors), 0
     wide = []
-    for columns, names in own:
-        every = np.zeros((*columns.shape[:2], count))
-        every[:, :, first : first + len(names)] = columns
+    for columns, names in effects_of_errors:
+        all_columns = np.zeros((*columns.shape[:2], count))
+        all_columns[:, :, first : first + len(names)] = columns
         first += len(names)
-        wide.append(every)
-    return wide, [names for _, names in own]
+        wide.append(all_columns)
+    return wide, [names for _, names in effects_of_errors]
 
 
 def best_positions(
@@ -149,11 +149,11 @@ def best_positions(
     list of Discrepancy
         Sizes of the errors of the model of each experiment.
     """
-    at = estimated(problem, linear, stated, None, first)
+    after = estimated(problem, linear, stated, None, first)
     count = len(problem.parameters)
-    low, high = ends_of(count, at.known - linear.further.shape[2] - count, at.mean.size)
-    precision = at.gaussian.precision / np.outer(at.scale, at.scale)
-    return best_within(precision, at.mean, low, high, count)[0], at.covariances
+    low, high = ends_of(count, after.effect_count - linear.further.shape[2] - count, after.mean.size)
+    precision = after.gaussian.precision / np.outer(after.scale, after.scale)
+    return best_within(precision, after.mean, low, high, count)[0], after.covariances
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,14 +179,14 @@ class Estimated:
     covariances: list[Discrepancy]
 
     @property
-    def known(self) -> int:
+    def effect_count(self) -> int:
         """Number of effects that are known."""
         return int(self.data[0].effects.shape[2])
 
     @property
     def errors(self) -> list[Floats]:
         """Measured minus simulated values of each experiment. [unit]"""
-        return [own.error for own in self.data]
+        return [part.error for part in self.data]
 
 
 def estimated(
@@ -215,11 +215,11 @@ def estimated(
     data = _data(problem, linear, stated, center, spread)
     if covariances is None:
         sizes = [
-            replace(each, scale=0.25 * each.scale) for each in (sizes_of(problem, own) for own in stated)
+            replace(each, scale=0.25 * each.scale) for each in (sizes_of(problem, part) for part in stated)
         ]
         covariances = estimate_together(data, sizes, persistence=stated[0].persistence, first=first)
     gaussian = together(data, covariances)
-    unit = gaussian.coefficients([own.error for own in data])
+    unit = gaussian.coefficients([part.error for part in data])
     scale = np.ones(unit.size)
     scale[: center.size] = spread
     mean = unit * scale
@@ -249,7 +249,7 @@ def objective(
     empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
     data = _data(problem, empty, stated, center[:0], spread[:0])
     prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
-    gaussian, errors = together(data, covariances), [own.error for own in data]
+    gaussian, errors = together(data, covariances), [part.error for part in data]
     mean = gaussian.coefficients(errors)
     ends = ends_of(0, data[0].effects.shape[2] - linear.further.shape[2], mean.size)
     _, deviance = within(gaussian.precision, mean, *ends)

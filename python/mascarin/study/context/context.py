@@ -160,7 +160,7 @@ class StudyContext:
             return self._own_problem(variant)
         own_paths = {path for context in self.experiments.values() for path in context.inputs.own_paths}
         problems = {name: context._own_problem(variant) for name, context in self.experiments.items()}
-        return joined(problems, own=own_paths)
+        return joined(problems, own_paths=own_paths)
 
     def _own_problem(self, variant: str | None) -> CalibrationProblem:
         """The calibration problem of this experiment alone."""
