@@ -122,6 +122,28 @@ def test_results_are_shown_by_experiment(folder: Path, joint: StudyResults) -> N
     assert "Tall cell" in report
 
 
+def test_without_errors_of_sensors_the_posterior_is_joint_too(folder: Path, tmp_path: Path) -> None:
+    scatter = {"room": {"column": "room", "output": "room.air_temperature", "offset": 0, "uncertainty": 0.1}}
+    results = results_of(folder, BOTH, tmp_path / "out", sensors=scatter)
+    fit = results.calibration
+    assert results.combination is None
+    assert np.all((fit.low < list(TRUTH.values())) & (list(TRUTH.values()) < fit.high))
+    assert np.all(fit.high - fit.low < 0.1 * np.array(list(TRUTH.values())))
+    assert list(results.transfer) == ["wide", "tall"]
+    assert all((scores.held or 0.0) > 0.85 for scores in results.transfer["tall"].sensors["room"].values())
+
+
+def test_a_study_continues_from_what_its_steps_have_computed(
+    folder: Path, joint: StudyResults, tmp_path: Path
+) -> None:
+    path = written(folder, BOTH)
+    for _ in range(2):
+        main(["calibrate", str(path), "-o", str(tmp_path / "out")])
+        results = Study.from_yaml(path).run(tmp_path / "out", figures=False, page="none")
+        np.testing.assert_array_equal(results.calibration.x, joint.calibration.x)
+        assert results.transfer == joint.transfer
+
+
 def test_an_experiment_of_the_role_validation_is_predicted(
     folder: Path, alone: dict[str, StudyResults]
 ) -> None:
@@ -258,6 +280,16 @@ def test_the_schema_knows_what_experiments_may_leave_out(folder: Path) -> None:
     assert list(schema.iter_errors(plain)) == []
     del plain["experiments"]
     assert list(schema.iter_errors(plain)) != []
+
+
+def test_a_study_that_extends_one_may_have_a_single_data_set(folder: Path) -> None:
+    written(folder, BOTH)
+    own = {key: value for key, value in experiment("tall").items() if key != "role"}
+    path = folder / "single.yaml"
+    path.write_text(yaml.safe_dump({"extends": "study.yaml", "experiments": None, **own}), encoding="utf-8")
+    study = Study.from_yaml(path)
+    assert study.building.name == "Tall cell"
+    assert study.context.inputs.others == {}
 
 
 def test_entrances_that_know_one_data_set_say_so(folder: Path, tmp_path: Path) -> None:

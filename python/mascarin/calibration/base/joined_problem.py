@@ -173,8 +173,9 @@ def _require_same(shared: FitParameter, other: FitParameter, first: str, name: s
         if first_value != other_value:
             raise InputError(
                 f"{other.path}: found {what} {_words(first_value)} in '{first}' and {_words(other_value)} in "
-                f"'{name}', expected the same in all experiments that share it: state it for all, write per_experiment: "
-                "true so that each has its own, or tie the numbers of a path with * by a factor"
+                f"'{name}', expected the same in all experiments that share it: state it for all, write "
+                "per_experiment: true so that each has its own, or tie the numbers of a path with * by a "
+                "factor"
             )
 
 

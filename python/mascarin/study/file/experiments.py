@@ -81,6 +81,9 @@ def read_experiments(path: Path) -> list[ExperimentFile]:
         File, line, path, what was found, what was expected, what to do.
     """
     document = merged(path, "a study", blanks=True, file_keys=FILE_KEYS)
+    # Without a value it removes those of a study that this one extends.
+    if document.plain.get(_EXPERIMENTS, {}) is None:
+        document.plain.pop(_EXPERIMENTS)
     if _EXPERIMENTS not in document.plain:
         return [
             ExperimentFile("", "identification", _valid(document.plain, path, document.lines), Places(path))

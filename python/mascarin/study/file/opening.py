@@ -229,7 +229,7 @@ def with_measurements(inputs: StudyInputs, measurements: Measurements) -> StudyI
     InputError
         The study has several experiments.
     """
-    inputs.require_alone("other measurements replace those of one data set")
+    inputs.require_alone("other measurements replace those of one data set", validated=False)
     plan = inputs.plan
     quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))
     compared = _masked(measurements, plan, quality)

@@ -64,15 +64,22 @@ class StudyInputs:
     experiment: str = ""
     together: Mapping[str, StudyInputs] = field(default_factory=dict)
 
-    def require_alone(self, what: str) -> None:
+    def require_alone(self, what: str, *, validated: bool = True) -> None:
         """Refuse what is made of one data set in a study of several experiments.
+
+        Parameters
+        ----------
+        what : str
+            Why, in words.
+        validated : bool
+            Whether those that are only validated count, too.
 
         Raises
         ------
         InputError
-            The study has experiments.
+            The study has several.
         """
-        if self.experiment:
+        if self.experiment if validated else self.together:
             raise InputError(
                 f"{self.places.file}: experiments: found several data sets, expected a study of one: {what}. "
                 "Write a study file of one experiment, which extends this one or its base"
