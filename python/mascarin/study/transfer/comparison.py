@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -34,7 +35,10 @@ _OF_EXPERIMENTS = (
     "identification together; of those of the role validation nothing was identified. All other parts of "
     "this report are about the first one."
 )
-_INSIDE = " Inside: part of the measured values in the bands of the calibration. [%]"
+_INSIDE = (
+    " Bias in %: of the mean of powers and flows. Inside: part of the measured values in the bands of the "
+    "calibration. [%]"
+)
 
 
 def transferred(study: StudyContext, calibrated: Calibrated) -> dict[str, TransferEntry]:
@@ -225,6 +229,8 @@ def transfer_table(study: StudyContext, transfer: Mapping[str, TransferEntry]) -
                         after.rmse,
                         before.bias,
                         after.bias,
+                        _relative(before),
+                        _relative(after),
                         None if held is None else 100.0 * held,
                     ]
                 )
@@ -241,12 +247,20 @@ def transfer_table(study: StudyContext, transfer: Mapping[str, TransferEntry]) -
             "rmse calibrated",
             "bias described",
             "bias calibrated",
+            "bias described [%]",
+            "bias calibrated [%]",
             "inside [%]",
         ],
         rows=rows,
         section="comparison",
         significant=["rmse described", "rmse calibrated", "bias described", "bias calibrated"],
     )
+
+
+def _relative(metrics: MetricValues) -> float | None:
+    """Bias over the mean of what was measured, of powers and flows; None for temperatures. [%]"""
+    value = (metrics.model_extra or {}).get("nmbe")
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
 
 
 def title_of(study: StudyContext) -> str:
