@@ -6,9 +6,22 @@ from pathlib import Path
 
 from mascarin.building.base.error_texts import explained
 from mascarin.building.building import Building
-from mascarin.building.files.yaml_document import files_of, lines, parse_as, plain, read
+from mascarin.building.files.inheritance import Inherited, over
+from mascarin.building.files.yaml_document import files_of, lines, merged, parse_as, plain, read
 
-__all__ = ["explained", "files_of", "lines", "load", "parse", "parse_as", "plain", "read"]
+__all__ = [
+    "Inherited",
+    "explained",
+    "files_of",
+    "lines",
+    "load",
+    "merged",
+    "over",
+    "parse",
+    "parse_as",
+    "plain",
+    "read",
+]
 
 
 def load(path: str | Path) -> Building:

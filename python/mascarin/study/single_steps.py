@@ -35,7 +35,9 @@ from mascarin.study.steps.model_runs import ModelRuns, judged, nominal
 from mascarin.study.steps.prediction_intervals import interval_entries, interval_table, interval_words
 from mascarin.study.steps.predictive_checks import statements
 from mascarin.study.transfer.bands import bands_of
-from mascarin.study_document.analysis import NoteEntry
+from mascarin.study.transfer.comparison import described_entries, identified_entries, transfer_table
+from mascarin.study_document.analysis import NoteEntry, TableEntry
+from mascarin.study_document.comparison import TransferEntry
 from mascarin.study_document.document import StudyDocument
 
 if TYPE_CHECKING:
@@ -131,7 +133,12 @@ def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = Tr
             StudyDocument(
                 contradictions=contradictions(found.contradictions),
                 band=interval_entries(study, intervals),
-                tables=[interval_table(study, intervals), *error_tables(study, found.combination)],
+                tables=[
+                    interval_table(study, intervals),
+                    *error_tables(study, found.combination),
+                    *_experiments(study, identified_entries(study, found)),
+                ],
+                transfer=identified_entries(study, found),
                 notes=[NoteEntry(title=ESTIMATES, text=text) for text in notes],
             ),
         )
@@ -183,10 +190,15 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
         "quality": quality_table(study.quality),
     }
     bands, words = bands_of(study, run)
+    described = described_entries(study)
     content = StudyDocument.joined(
         header(study, "validate"),
         comparison({"nominal": run}, verdicts),
-        StudyDocument(contradictions=contradictions((*words, *statements(study)))),
+        StudyDocument(
+            contradictions=contradictions((*words, *statements(study))),
+            transfer=described,
+            tables=_experiments(study, described),
+        ),
     )
     series = validation_series(study, run)
     if bands is not None:
@@ -195,6 +207,11 @@ def _validated(study: StudyContext) -> tuple[Validation, dict[str, pd.DataFrame]
         content = StudyDocument.joined(content, StudyDocument(band=entries))
         series = bands.beside(series, study.observation.names, units)
     return Validation(content, series), tables
+
+
+def _experiments(study: StudyContext, entries: Mapping[str, TransferEntry]) -> list[TableEntry]:
+    """The table of the experiments, where the study has any."""
+    return [transfer_table(study, entries)] if entries else []
 
 
 def _write(

@@ -145,6 +145,11 @@ class Study:
                 )
             inputs = opening.from_file(Path(path), allow_outside=allow_outside)
         else:
+            if "experiments" in options:
+                raise InputError(
+                    "study: found experiments in a study of objects, expected them in a study file, which "
+                    "names a building and tables for each: write one, and open it with Study.from_yaml"
+                )
             plan = {"sensors": sensors, "periods": periods, "criteria": criteria, "aims": aims, **options}
             if parameters or identification:
                 plan["identification"] = opening.identified(parameters, identification or {})
@@ -373,6 +378,9 @@ class Study:
         ]
         if self.plan.identification is not None:
             rows.insert(2, ("parameters", ", ".join(self.plan.identification.parameters)))
+        others = self.context.inputs.others
+        if others:
+            rows.append(("experiments", ", ".join((self.context.inputs.experiment, *others))))
         if self.plan.variants:
             rows.append(("variants", ", ".join(self.plan.variants)))
         return rows

@@ -159,9 +159,16 @@ class TransferScores(ResultEntry):
 
 
 class TransferEntry(ResultEntry):
-    """Another house, season or phase."""
+    """Another house, season or phase, or one of the experiments of the study."""
 
     building: str = ""
+    role: str = "validation"
+    """identification: its data were used; validation: nothing of it was identified."""
+    cost: Num | None = None
+    """Minus the log-likelihood of its own data at the estimates, as if errors were independent. [-]"""
     words: list[str] = []
+    """What limits the comparison, warnings of the runs included."""
+    sound: bool = True
+    """Whether the energy balances of its runs close and every temperature has a cause."""
     sensors: dict[str, dict[str, TransferScores]] = {}
     """sensor -> period -> scores."""

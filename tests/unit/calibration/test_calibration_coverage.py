@@ -27,7 +27,8 @@ from mascarin.calibration.errors.discrepancy import (
     hour_basis,
     root_of,
 )
-from mascarin.calibration.errors.joint_posterior import LEAST_ERROR, ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.joint_posterior import joint_posterior
+from mascarin.calibration.errors.linear_estimation import LEAST_ERROR, ErrorStatement, Linear
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
 
 Floats = NDArray[np.float64]

@@ -13,18 +13,15 @@ from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
 from mascarin.calibration.errors.discrepancy import (
     DayData,
     Discrepancy,
+    SizeLimits,
     alike_days,
     drift_kernel,
     estimate_discrepancy,
     hour_basis,
 )
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
-from mascarin.calibration.errors.joint_posterior import (
-    ErrorStatement,
-    JointPosterior,
-    Linear,
-    joint_posterior,
-)
+from mascarin.calibration.errors.joint_posterior import JointPosterior, joint_posterior
+from mascarin.calibration.errors.linear_estimation import ErrorStatement, Linear
 from mascarin.calibration.errors.nearness import nearness
 from mascarin.calibration.errors.pseudo_bma_weights import pseudo_bma_weights, used_form, weighted_quantiles
 from mascarin.calibration.errors.sensor_errors import SensorError, error_columns
@@ -372,8 +369,9 @@ def test_sensors_that_err_alike_do_not_stop_the_sampling() -> None:
     small = 1e-4 * np.eye(sensors)
     first = Discrepancy(small, small, small, np.full(sensors, 1e-4), np.zeros(sensors), 4.0, 2.0)
     limit = np.full(sensors, 6.0)
-    drawn = sample_covariances(data, first, scale=np.full(sensors, 0.05), limit=limit)
-    for part in (drawn.typical.hour, drawn.typical.day, drawn.typical.drift):
+    drawn = sample_covariances([data], [first], [SizeLimits(np.full(sensors, 0.05), limit)])
+    typical = drawn.typical[0]
+    for part in (typical.hour, typical.day, typical.drift):
         correlation = part / np.sqrt(np.outer(np.diag(part), np.diag(part)))
         assert np.linalg.eigvalsh(correlation)[0] > 0.9e-6
         assert np.all(np.sqrt(np.diag(part)) <= 6.0 * (1.0 + 1e-6))

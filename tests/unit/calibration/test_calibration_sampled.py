@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, SearchOptions
 from mascarin.calibration.errors.discrepancy import Discrepancy
-from mascarin.calibration.errors.joint_posterior import ErrorStatement, Linear, joint_posterior
+from mascarin.calibration.errors.joint_posterior import joint_posterior
+from mascarin.calibration.errors.linear_estimation import ErrorStatement, Linear
 from mascarin.calibration.errors.sampled_posterior import ChainLengths
 from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.calibration.sampling.convergence import bulk_size, r_hat, tail_size

@@ -14,7 +14,7 @@ from mascarin.building.geometry import Polygon, view_factors, volume
 from mascarin.examples import STUDIES
 from mascarin.study import Study
 from mascarin.study.context.storage import Workspace
-from mascarin.study.file.description import read_study
+from mascarin.study.file.experiments import read_study
 from mascarin.study.steps.model_runs import ModelRuns, judged
 
 FOLDER = STUDIES["lgi"].parent

@@ -104,6 +104,37 @@ def inherited(
     return Inherited(merged, where, (file, *above.files), remaining | values)
 
 
+def over(
+    base: Mapping[str, Any],
+    stated: Mapping[str, Any],
+    lines: Mapping[KeyPath, int],
+    stated_lines: Mapping[KeyPath, int],
+) -> tuple[dict[str, Any], dict[KeyPath, int]]:
+    """Merge a mapping over another one of the same file, as an extending file over its base.
+
+    Parameters
+    ----------
+    base, stated : mapping
+        What is extended, and what differs.
+    lines, stated_lines : mapping of place to int
+        Line of each key and value of the two.
+
+    Returns
+    -------
+    dict
+        The merged mapping.
+    dict of place to int
+        Its lines.
+
+    Examples
+    --------
+    >>> over({"a": {"b": 1, "c": 2}}, {"a": {"b": 3}}, {}, {("a",): 5, ("a", "b"): 5})[0]
+    {'a': {'b': 3, 'c': 2}}
+    """
+    where = dict(lines)
+    return _merged(base, stated, (), where, stated_lines, remove=False), where
+
+
 def _line_text(lines: Mapping[KeyPath, int], path: KeyPath) -> str:
     line = lines.get(path, 0)
     return f"{getattr(line, 'file', '')}:{line}"

@@ -19,7 +19,7 @@ Gelman A. (2006), Prior distributions for variance parameters in hierarchical mo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -30,9 +30,13 @@ from mascarin.calibration.errors.discrepancy import (
     CORRELATION_HOURS,
     DayData,
     Discrepancy,
+    Indices,
+    SizeLimits,
     at_least,
+    columns_of,
     drift_kernel,
     root_of,
+    together,
 )
 
 Floats = NDArray[np.float64]
@@ -57,65 +61,65 @@ class CovarianceSample:
 
     Attributes
     ----------
-    covariances : tuple of Discrepancy, length K
-        Drawn sizes.
+    covariances : tuple of tuple of Discrepancy, length K
+        Drawn sizes, of each experiment.
     mean : ndarray, shape (K, q)
         Mean of the coefficients given them: known effects in standard deviations of their priors [-], then
-        the errors that repeat, by function and sensor [unit of the sensor].
+        the errors that repeat, by experiment, function and sensor [unit of the sensor].
     covariance : ndarray, shape (K, q, q)
         Their covariance.
     """
 
-    covariances: tuple[Discrepancy, ...]
+    covariances: tuple[tuple[Discrepancy, ...], ...]
     mean: Floats
     covariance: Floats
 
     @classmethod
-    def of_covariances(cls, data: DayData, covariances: Discrepancy) -> CovarianceSample:
-        """Sizes that are known."""
+    def of_covariances(cls, data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> CovarianceSample:
+        """Sizes that are known, of each experiment."""
         from scipy import linalg
 
-        gaussian = data.gaussian(covariances)
+        gaussian = together(data, covariances)
         parts = [
-            np.eye(data.effects.shape[2]),
-            np.kron(np.eye(data.basis.shape[2]), root_of(covariances.hour)),
+            np.eye(data[0].effects.shape[2]),
+            *(
+                np.kron(np.eye(part.basis.shape[2]), root_of(each.hour))
+                for part, each in zip(data, covariances, strict=True)
+            ),
+            *(root_of(each.alike * each.day) for each in covariances if each.alike),
         ]
-        if covariances.alike:
-            parts.append(root_of(covariances.alike * covariances.day))
         turn = linalg.block_diag(*parts)
-        mean = turn @ gaussian.coefficients(data.error)
-        return cls((covariances,), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
+        mean = turn @ gaussian.coefficients([part.error for part in data])
+        return cls((tuple(covariances),), mean[None], (turn @ gaussian.covariance @ turn.T)[None])
 
     @property
-    def typical(self) -> Discrepancy:
-        """Sizes with the mean of every variance."""
-        mean_of = {
-            name: np.mean([getattr(draw, name) for draw in self.covariances], axis=0) for name in _PARTS
-        }
-        hours = [draw.correlation_hours for draw in self.covariances]
-        return replace(self.covariances[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
+    def typical(self) -> tuple[Discrepancy, ...]:
+        """Sizes with the mean of every variance, of each experiment."""
+        return tuple(_typical(draws) for draws in zip(*self.covariances, strict=True))
+
+
+def _typical(draws: Sequence[Discrepancy]) -> Discrepancy:
+    mean_of = {name: np.mean([getattr(draw, name) for draw in draws], axis=0) for name in _PARTS}
+    hours = [draw.correlation_hours for draw in draws]
+    return replace(draws[0], **mean_of, correlation_hours=max(set(hours), key=hours.count))
 
 
 _PARTS: Final = ("hour", "day", "drift", "white")
 
 
 def sample_covariances(
-    data: DayData, first: Discrepancy, *, scale: Floats, limit: Floats, least: Floats | float = 0.0
+    data: Sequence[DayData], first: Sequence[Discrepancy], sizes: Sequence[SizeLimits]
 ) -> CovarianceSample:
     """Draw sizes of the errors, the same numbers in every call.
 
     Parameters
     ----------
-    data : DayData
-        Errors and known effects.
-    first : Discrepancy
+    data : sequence of DayData
+        Errors and known effects of each experiment; the effects have common coefficients.
+    first : sequence of Discrepancy
         Where to begin, such as the most probable sizes.
-    scale : ndarray, shape (S,)
-        Scale of the half-t prior of each standard deviation. [unit]
-    limit : ndarray, shape (S,)
-        Largest standard deviation of each part. [unit]
-    least : float or ndarray, shape (S,)
-        Smallest standard deviation of the error that is correlated within a day. [unit]
+    sizes : sequence of SizeLimits
+        Their scale is that of the half-t prior of each standard deviation.
 
     Returns
     -------
@@ -134,15 +138,16 @@ def sample_covariances(
     >>> small = 1e-4 * np.eye(1)
     >>> first = Discrepancy(small, small, small, np.array([0.04]), np.zeros(1), 4.0)
     >>> one = np.ones(1)
-    >>> sample = sample_covariances(data, first, scale=0.1 * one, limit=one)
-    >>> bool(0.15 < np.sqrt(sample.typical.white[0]) < 0.23)
+    >>> sample = sample_covariances([data], [first], [SizeLimits(0.1 * one, one)])
+    >>> bool(0.15 < np.sqrt(sample.typical[0].white[0]) < 0.23)
     True
     """
-    chain = _Chain(data, first, scale, limit, least)
+    rng, columns = np.random.default_rng(_SEED), columns_of(data, first)
+    chains = [_Chain(*each, rng) for each in zip(data, first, sizes, strict=True)]
     covariances, mean, covariance = [], [], []
     for move in range(_BURN_IN + _MOVES):
-        now = chain.covariances
-        middle, root = chain.move()
+        now = tuple(chain.covariances for chain in chains)
+        middle, root = _moved(chains, columns, rng)
         if move >= _BURN_IN and (move - _BURN_IN) % _THINNING == 0:
             covariances.append(now)
             mean.append(middle)
@@ -150,17 +155,67 @@ def sample_covariances(
     return CovarianceSample(tuple(covariances), np.array(mean), np.array(covariance))
 
 
+def _moved(
+    chains: Sequence[_Chain], columns: Sequence[Indices], rng: np.random.Generator
+) -> tuple[Floats, Floats]:
+    """Draw the errors of all experiments, then the sizes.
+
+    Returns
+    -------
+    ndarray, shape (q,)
+        Mean of the coefficients given the sizes before.
+    ndarray, shape (q, q)
+        A root of their covariance.
+    """
+    turned = [chain.turned_now() for chain in chains]
+    said = [chain.information(part) for chain, part in zip(chains, turned, strict=True)]
+    precision, right = said[0]
+    if len(chains) > 1:
+        size = 1 + max(int(column.max()) for column in columns)
+        precision, right = np.zeros((size, size)), np.zeros(size)
+        for column, (information, values) in zip(columns, said, strict=True):
+            precision[np.ix_(column, column)] += information
+            right[column] += values
+    effect_count = chains[0].effect_count
+    # Each experiment alone has the prior of the common coefficients.
+    precision[:effect_count, :effect_count] -= (len(chains) - 1.0) * np.eye(effect_count)
+    lower = _cholesky(0.5 * (precision + precision.T))
+    root = np.asarray(np.linalg.inv(lower).T, dtype=np.float64)
+    middle = root @ (root.T @ right)
+    shared = middle + root @ rng.standard_normal(middle.size)
+    for chain, part, column in zip(chains, turned, columns, strict=True):
+        chain.draw(part, shared[column])
+    return middle, root
+
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """Columns and values of an experiment in coordinates in which they are independent.
+
+    `columns` (D, H, S, q), `values` (D, H, S), `ones` (H, S, S): a constant of a day; `weight` (H, S): the
+    precision; `slow_part` (H, S): variance of the slow part; `turn` (S, S), `noise` (S,): back to sensors.
+    """
+
+    columns: Floats
+    values: Floats
+    ones: Floats
+    weight: Floats
+    slow_part: Floats
+    turn: Floats
+    noise: Floats
+
+
 class _Chain:
-    """State of the sampling: sizes, and the values that are not there.
+    """State of the sampling of one experiment: sizes, and the values that are not there.
 
     Arrays of values have the shape (D, H, S): days, slots of a day, sensors.
     """
 
     def __init__(
-        self, data: DayData, first: Discrepancy, scale: Floats, limit: Floats, least: Floats | float
+        self, data: DayData, first: Discrepancy, sizes: SizeLimits, rng: np.random.Generator
     ) -> None:
-        self.covariances, self.scale, self.limit, self.least = first, scale, limit, least
-        self.rng = np.random.default_rng(_SEED)
+        self.covariances, self.scale, self.limit, self.least = first, sizes.scale, sizes.limit, sizes.least
+        self.rng = rng
         grid, self.sensors = data.grid, data.sensors
         self.shape = (grid.days, grid.slots, self.sensors)
         self.there = data.present.reshape(self.shape)
@@ -178,51 +233,40 @@ class _Chain:
         self.spectra = {h: np.linalg.eigh(kernel) for h, kernel in self.kernels.items()}
         self.turned = {h: _along_slots(vector.T, self.columns) for h, (_, vector) in self.spectra.items()}
 
-    def move(self) -> tuple[Floats, Floats]:
-        """Draw the errors, then the sizes.
-
-        Returns
-        -------
-        ndarray, shape (q,)
-            Mean of the coefficients given the sizes before.
-        ndarray, shape (q, q)
-            A root of their covariance.
-        """
+    def turned_now(self) -> _Turned:
+        """Columns and values with the sizes as they are."""
         covariances = self.covariances
         value, vector = self.spectra[covariances.correlation_hours]
         noise = np.sqrt(covariances.white)
         strength, turn = np.linalg.eigh(covariances.drift / np.outer(noise, noise))
         to_sensor = turn.T / noise  # from sensors to values of variance 1 + the product of the eigenvalues
         slow_part = np.outer(value, np.maximum(strength, 0.0))  # (H, S)
-        weight = 1.0 / (1.0 + slow_part)
         columns = np.einsum(
             "js,dhsq->dhjq", to_sensor, self.turned[covariances.correlation_hours], optimize=True
         )
         values = _along_slots(vector.T, self.value) @ to_sensor.T
         ones = vector.T.sum(axis=1)[:, None, None] * to_sensor[None]  # (H, S, S): a constant of a day
-        middle, root, days = self._shared(covariances, columns, values, ones, weight)
-        shared = middle + root @ self.rng.standard_normal(middle.size)
-        remaining = values - columns @ shared
-        of_day = days(remaining)
-        remaining = remaining - np.einsum("hjs,ds->dhj", ones, of_day, optimize=True)
+        return _Turned(columns, values, ones, 1.0 / (1.0 + slow_part), slow_part, turn, noise)
+
+    def draw(self, turned: _Turned, shared: Floats) -> None:
+        """Draw the errors given the coefficients (q,) of this experiment, then its sizes."""
+        vector = self.spectra[self.covariances.correlation_hours][1]
+        noise, slow_part, weight = turned.noise, turned.slow_part, turned.weight
+        remaining = turned.values - turned.columns @ shared
+        of_day = self._days(turned, remaining)
+        remaining = remaining - np.einsum("hjs,ds->dhj", turned.ones, of_day, optimize=True)
         noise_of_slow = self.rng.standard_normal(remaining.shape) * np.sqrt(slow_part * weight)
         slow = slow_part * weight * remaining + noise_of_slow
-        back = turn * noise[:, None]
+        back = turned.turn * noise[:, None]
         slow = _along_slots(vector, slow) @ back.T
         remaining = _along_slots(vector, remaining) @ back.T
         white = np.where(self.there, remaining - slow, self.rng.standard_normal(remaining.shape) * noise)
         self.value = np.where(self.there, self.value, self.value - remaining + slow + white)
         self._draw_sizes(shared, of_day, slow, white)
-        return middle, root
 
-    def _shared(
-        self, covariances: Discrepancy, columns: Floats, values: Floats, ones: Floats, weight: Floats
-    ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
-        """Mean and root of the covariance of the coefficients, and a function that draws errors of days.
-
-        Columns, values and the constants of a day are turned, so that values are independent with the
-        precision `weight` (H, S).
-        """
+    def information(self, turned: _Turned) -> tuple[Floats, Floats]:
+        """Precision of the coefficients (q, q) with their prior, and what it makes of their mean (q,)."""
+        covariances, columns, weight = self.covariances, turned.columns, turned.weight
         precision = np.zeros((columns.shape[3],) * 2)
         end = self.effect_count + self.functions * self.sensors
         precision[: self.effect_count, : self.effect_count] = np.eye(self.effect_count)
@@ -234,30 +278,32 @@ class _Chain:
         flat = columns.reshape(-1, columns.shape[3])
         heavy = (columns * weight[None, :, :, None]).reshape(flat.shape)
         precision += flat.T @ heavy
-        right = heavy.T @ values.ravel()
-        # Constants of days: their own precision is the same on all days.
-        weighted_ones = (ones * weight[:, :, None]).reshape(-1, self.sensors)
-        day_covariance = np.linalg.inv(
-            np.linalg.inv(covariances.day) + ones.reshape(-1, self.sensors).T @ weighted_ones
-        )
+        right = heavy.T @ turned.values.ravel()
+        weighted_ones, day_covariance = self._constants(turned)
         with_columns = (
             np.swapaxes(columns.reshape(len(columns), -1, columns.shape[3]), 1, 2) @ weighted_ones
         )  # (D, q, S)
-        with_values = values.reshape(len(values), -1) @ weighted_ones
+        with_values = turned.values.reshape(len(columns), -1) @ weighted_ones
         tall = np.swapaxes(with_columns, 1, 2).reshape(-1, columns.shape[3])  # (D * S, q)
         lifted = (day_covariance @ np.swapaxes(with_columns, 1, 2)).reshape(tall.shape)
         precision -= tall.T @ lifted
         right -= lifted.T @ with_values.ravel()
-        lower = _cholesky(0.5 * (precision + precision.T))
-        root = np.asarray(np.linalg.inv(lower).T, dtype=np.float64)
-        middle = root @ (root.T @ right)
-        spread = root_of(np.asarray(day_covariance, dtype=np.float64))
+        return precision, right
 
-        def days(residual: Floats) -> Floats:
-            day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
-            return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
+    def _constants(self, turned: _Turned) -> tuple[Floats, Floats]:
+        """Weighted constants of a day (H * S, S), and their covariance (S, S), the same on all days."""
+        weighted_ones = (turned.ones * turned.weight[:, :, None]).reshape(-1, self.sensors)
+        day_covariance = np.linalg.inv(
+            np.linalg.inv(self.covariances.day) + turned.ones.reshape(-1, self.sensors).T @ weighted_ones
+        )
+        return weighted_ones, np.asarray(day_covariance, dtype=np.float64)
 
-        return middle, root, days
+    def _days(self, turned: _Turned, residual: Floats) -> Floats:
+        """Draw the constants of days (D, S) given what the coefficients leave."""
+        weighted_ones, day_covariance = self._constants(turned)
+        spread = root_of(day_covariance)
+        day_means = residual.reshape(len(residual), -1) @ weighted_ones @ day_covariance
+        return np.asarray(day_means + self.rng.standard_normal(day_means.shape) @ spread.T)
 
     def _draw_sizes(self, shared: Floats, of_day: Floats, slow: Floats, white: Floats) -> None:
         covariances, end = self.covariances, self.effect_count + self.functions * self.sensors

@@ -19,7 +19,8 @@ inverse of the covariance). https://doi.org/10.1162/08997660151134343
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -143,6 +144,8 @@ class DayGaussian:
         Shared effects for a coefficient of one standard deviation. [unit]
     present : ndarray of bool, shape (D, n)
         Values that are there; the others count as if they did not exist.
+    elsewhere : ndarray, shape (q, q), optional
+        Precision of the coefficients from the values of other experiments, see `Experiments`. [-]
 
     Examples
     --------
@@ -156,6 +159,7 @@ class DayGaussian:
     blocks: Floats
     columns: Floats
     present: Flags
+    elsewhere: Floats | None = None
 
     @cached_property
     def _alike(self) -> tuple[Floats, Flags, NDArray[np.int64]]:
@@ -182,12 +186,44 @@ class DayGaussian:
         return np.asarray(inverse[which])
 
     @cached_property
-    def _shared(self) -> tuple[Floats, Floats]:
-        """``B^-1 U``, and ``I + U' B^-1 U``: the precision of the coefficients after the data."""
+    def _added(self) -> tuple[Floats, Floats]:
+        """``B^-1 U``, and ``U' B^-1 U``: what these values add to the precision of the coefficients."""
         used = np.where(self.present[:, :, None], self.columns, 0.0)
         weighted = product(self._inverse, used)
-        precision = np.eye(used.shape[2]) + product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
+        return weighted, product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
+
+    @cached_property
+    def _shared(self) -> tuple[Floats, Floats]:
+        """``B^-1 U``, and ``I + U' B^-1 U``: the precision of the coefficients after the data."""
+        weighted, added = self._added
+        precision = np.eye(len(added)) + added
+        if self.elsewhere is not None:
+            precision = precision + self.elsewhere
         return weighted, 0.5 * (precision + precision.T)
+
+    def with_elsewhere(self, elsewhere: Floats) -> DayGaussian:
+        """The same distribution with the precision (q, q) that other experiments add. [-]"""
+        other = replace(self, elsewhere=elsewhere)
+        # Nothing of these depends on the other experiments.
+        other.__dict__.update(
+            {name: self.__dict__[name] for name in ("_alike", "_inverse", "_own") if name in self.__dict__}
+        )
+        return other
+
+    @property
+    def information(self) -> Floats:
+        """What these values add to the precision of the coefficients, shape (q, q). [-]"""
+        return self._added[1]
+
+    def projected(self, values: Floats) -> Floats:
+        """Multiply values (D, n) with ``U' B^-1``, shape (q,): what they say of the coefficients. [-]"""
+        return np.asarray(np.einsum("dnq,dn->q", self._added[0], values))
+
+    @cached_property
+    def own_log_determinant(self) -> float:
+        """Logarithm of the determinant of the blocks alone. [-]"""
+        blocks, _, which = self._alike
+        return float(np.linalg.slogdet(blocks)[1][which].sum())
 
     @cached_property
     def covariance(self) -> Floats:
@@ -202,13 +238,18 @@ class DayGaussian:
 
     def coefficients(self, values: Floats) -> Floats:
         """Return the mean of the coefficients given values (D, n), shape (q,). [-]"""
-        return np.asarray(self.covariance @ np.einsum("dnq,dn->q", self._shared[0], values))
+        return np.asarray(self.covariance @ self.projected(values))
 
-    def solve(self, values: Floats) -> Floats:
-        """Multiply values (D, n) or (D, n, k) with the inverse of the covariance. [1/unit]"""
+    def solve(self, values: Floats, beside: Floats | None = None) -> Floats:
+        """Multiply values (D, n) or (D, n, k) with the inverse of the covariance. [1/unit]
+
+        Values of other experiments are zero, unless `beside` (q,) is what they say of the coefficients.
+        """
         wide = values if values.ndim == 3 else values[:, :, None]
         weighted = self._shared[0]
         inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
+        if beside is not None:
+            inner = inner + beside[:, None]
         solution = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
         return np.asarray(solution if values.ndim == 3 else solution[:, :, 0])
 
@@ -221,16 +262,15 @@ class DayGaussian:
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
-        blocks, _, which = self._alike
-        logdet = float(np.linalg.slogdet(blocks)[1][which].sum() + np.linalg.slogdet(self._shared[1])[1])
+        logdet = self.own_log_determinant + float(np.linalg.slogdet(self._shared[1])[1])
         square = float(np.sum(values * self.solve(values)))
         return -0.5 * (square + logdet + int(self.present.sum()) * math.log(2.0 * math.pi))
 
-    def left_out(self, values: Floats) -> Floats:
+    def left_out(self, values: Floats, beside: Floats | None = None) -> Floats:
         """Return the log density of each day given all other days, shape (D,), from values (D, n)."""
-        return self._of_days_left_out(values)[0]
+        return self._of_days_left_out(values, beside)[0]
 
-    def whitened(self, values: Floats) -> Floats:
+    def whitened(self, values: Floats, beside: Floats | None = None) -> Floats:
         """Return what each day differs from its prediction by all other days, from values (D, n).
 
         Returns
@@ -238,9 +278,11 @@ class DayGaussian:
         ndarray, shape (D, n)
             Independent and of variance 1 if the distribution is right; NaN where nothing is there. [-]
         """
-        return self._of_days_left_out(values)[1]
+        return self._of_days_left_out(values, beside)[1]
 
-    def days_left_out(self, values: Floats, sensors: int) -> tuple[Floats, Floats]:
+    def days_left_out(
+        self, values: Floats, sensors: int, beside: Floats | None = None
+    ) -> tuple[Floats, Floats]:
         """Return how far each day is from its prediction by all others, and the standard deviation of that.
 
         Returns
@@ -248,7 +290,7 @@ class DayGaussian:
         tuple of ndarray, shape (D, n / sensors, sensors)
             NaN where nothing is there. [unit]
         """
-        weighted = self.solve(values)
+        weighted = self.solve(values, beside)
         away, spread = np.full(values.shape, np.nan), np.full(values.shape, np.nan)
         for d, present in enumerate(self.present):
             rows = np.flatnonzero(present)
@@ -257,8 +299,8 @@ class DayGaussian:
         shape = (len(values), -1, sensors)
         return away.reshape(shape), spread.reshape(shape)
 
-    def _of_days_left_out(self, values: Floats) -> tuple[Floats, Floats]:
-        weighted, density = self.solve(values), np.zeros(len(values))
+    def _of_days_left_out(self, values: Floats, beside: Floats | None) -> tuple[Floats, Floats]:
+        weighted, density = self.solve(values, beside), np.zeros(len(values))
         whitened = np.full(values.shape, np.nan)
         for d, present in enumerate(self.present):
             rows = np.flatnonzero(present)
@@ -268,6 +310,82 @@ class DayGaussian:
             density[d] = -0.5 * (white @ white - logdet + rows.size * math.log(2.0 * math.pi))
             whitened[d, rows] = white
         return density, whitened
+
+
+@dataclass(frozen=True, eq=False)
+class Experiments:
+    """Normal distributions of the values of several experiments, whose effects share their coefficients.
+
+    Parameters
+    ----------
+    alone : sequence of DayGaussian
+        Each with the columns of all coefficients.
+
+    Attributes
+    ----------
+    parts : tuple of DayGaussian
+        Each beside the other ones.
+
+    Examples
+    --------
+    Two records of a bias of 1 that both share are as one with the days of both:
+
+    >>> day = DayGaussian(np.ones((1, 1, 1)), np.ones((1, 1, 1)), np.ones((1, 1), dtype=bool))
+    >>> round(Experiments([day, day]).log_density([np.zeros((1, 1))] * 2), 3)
+    -2.387
+    """
+
+    alone: Sequence[DayGaussian]
+    parts: tuple[DayGaussian, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        parts = tuple(self.alone)
+        if len(parts) > 1:
+            total = np.sum([part.information for part in parts], axis=0)
+            parts = tuple(part.with_elsewhere(total - part.information) for part in parts)
+        object.__setattr__(self, "parts", parts)
+
+    @property
+    def covariance(self) -> Floats:
+        """Covariance of the coefficients after all data, shape (q, q). [-]"""
+        return self.parts[0].covariance
+
+    @property
+    def precision(self) -> Floats:
+        """Inverse of `covariance`, shape (q, q). [-]"""
+        return self.parts[0].precision
+
+    def beside(self, values: Sequence[Floats]) -> list[Floats | None]:
+        """What the values of all other experiments say of the coefficients, for each; None if it is alone."""
+        if len(self.parts) == 1:
+            return [None]
+        said = [
+            part.projected(values_of_part) for part, values_of_part in zip(self.parts, values, strict=True)
+        ]
+        return [np.sum([*said[:k], *said[k + 1 :]], axis=0) for k in range(len(said))]
+
+    def coefficients(self, values: Sequence[Floats]) -> Floats:
+        """Return the mean of the coefficients given the values of all experiments, shape (q,). [-]"""
+        said = [
+            part.projected(values_of_part) for part, values_of_part in zip(self.parts, values, strict=True)
+        ]
+        return np.asarray(self.covariance @ np.sum(said, axis=0))
+
+    def solve(self, values: Sequence[Floats]) -> list[Floats]:
+        """Multiply values with the inverse of the covariance. [1/unit]"""
+        each = zip(self.parts, values, self.beside(values), strict=True)
+        return [part.solve(values_of_part, beside) for part, values_of_part, beside in each]
+
+    def log_density(self, values: Sequence[Floats]) -> float:
+        """Return the logarithm of the density of the values of all experiments."""
+        logdet = sum(part.own_log_determinant for part in self.parts)
+        logdet += float(np.linalg.slogdet(self.precision)[1])
+        square = sum(
+            float(np.sum(values_of_part * solved))
+            for values_of_part, solved in zip(values, self.solve(values), strict=True)
+        )
+        count = sum(int(part.present.sum()) for part in self.parts)
+        return -0.5 * (square + logdet + count * math.log(2.0 * math.pi))
 
 
 def product(first: Floats, second: Floats) -> Floats:

@@ -24,16 +24,18 @@ Stat. 28, 350. https://doi.org/10.1080/10618600.2018.1529601
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, product
+from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid, Experiments, product
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 CORRELATION_HOURS: Final = (1.5, 4.0, 10.0)
 """Correlation times of the error within a day that are compared. [h]"""
@@ -218,6 +220,71 @@ class DayData:
         return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
 
 
+def columns_of(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> list[Indices]:
+    """Positions of the coefficients of each experiment among those of all, each shape (q of it,).
+
+    The known effects are common to all; then come the errors that repeat, experiment by experiment, and the
+    levels of all days, where they have one.
+    """
+    effect_count = data[0].effects.shape[2]
+    repeating = [part.basis.shape[2] * part.sensors for part in data]
+    levels = [part.sensors if each.alike else 0 for part, each in zip(data, covariances, strict=True)]
+    ends = np.cumsum([effect_count, *repeating, *levels])
+    count = len(data)
+    return [
+        np.concatenate(
+            [
+                np.arange(effect_count),
+                np.arange(ends[k], ends[k + 1]),
+                np.arange(ends[count + k], ends[count + k + 1]),
+            ]
+        )
+        for k in range(count)
+    ]
+
+
+def together(data: Sequence[DayData], covariances: Sequence[Discrepancy]) -> Experiments:
+    """Return the distribution of the errors of experiments that share their known effects.
+
+    Parameters
+    ----------
+    data : sequence of DayData
+        Of each experiment; all have the same known effects, zero where an experiment has none of it.
+    covariances : sequence of Discrepancy
+        Of each.
+    """
+    alone = [part.gaussian(each) for part, each in zip(data, covariances, strict=True)]
+    if len(alone) == 1:
+        return Experiments(alone)
+    columns_by_part = columns_of(data, covariances)
+    size = 1 + max(int(part_columns.max()) for part_columns in columns_by_part)
+    wide = []
+    for gaussian, part_columns in zip(alone, columns_by_part, strict=True):
+        columns = np.zeros((*gaussian.columns.shape[:2], size))
+        columns[:, :, part_columns] = gaussian.columns
+        wide.append(replace(gaussian, columns=columns))
+    return Experiments(wide)
+
+
+@dataclass(frozen=True, eq=False)
+class SizeLimits:
+    """What is known of the sizes of the errors of the model of an experiment.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (S,)
+        Standard deviation of each part about which its weak prior is. [unit]
+    limit : ndarray, shape (S,)
+        Largest standard deviation of each part. [unit]
+    least : float or ndarray, shape (S,)
+        Smallest standard deviation of the error that is correlated within a day. [unit]
+    """
+
+    scale: Floats
+    limit: Floats
+    least: Floats | float = 0.0
+
+
 def estimate_discrepancy(
     data: DayData,
     *,
@@ -249,70 +316,119 @@ def estimate_discrepancy(
     Discrepancy
         That with the largest density over the correlation times `CORRELATION_HOURS`.
     """
+    sizes = SizeLimits(scale, limit, least)
+    beginning = None if first is None else [first]
+    return estimate_together([data], [sizes], persistence=persistence, first=beginning)[0]
+
+
+def estimate_together(
+    data: Sequence[DayData],
+    sizes: Sequence[SizeLimits],
+    *,
+    persistence: float = 0.0,
+    first: Sequence[Discrepancy] | None = None,
+) -> list[Discrepancy]:
+    """Estimate the sizes of the errors of experiments that share their known effects.
+
+    Parameters
+    ----------
+    data, sizes : sequence of DayData, and of SizeLimits
+        Of each experiment.
+    persistence : float
+        Correlation time of the errors of days, see `alike_days`. [d]
+    first : sequence of Discrepancy, optional
+        Estimates from nearly the same errors, see `estimate_discrepancy`.
+
+    Returns
+    -------
+    list of Discrepancy
+        Those with the largest density over the correlation times `CORRELATION_HOURS`, one for all.
+    """
     if first is not None:
-        return _maximized(data, first, scale, limit, least, _MAX_ITERATIONS)
-    prior, alike = np.diag(scale**2), alike_days(data.grid.days, persistence)
+        return _maximized(data, first, sizes, _MAX_ITERATIONS)
     best, density = None, -np.inf
+    errors = [part.error for part in data]
     for hours in CORRELATION_HOURS:
-        start = Discrepancy(prior, prior, prior, scale**2, data.within, hours, alike)
-        candidate = _maximized(data, start, scale, limit, least, _TRIAL_ITERATIONS)
-        reached = data.gaussian(candidate).log_density(data.error)
+        start = [
+            Discrepancy(
+                np.diag(each.scale**2),
+                np.diag(each.scale**2),
+                np.diag(each.scale**2),
+                each.scale**2,
+                part.within,
+                hours,
+                alike_days(part.grid.days, persistence),
+            )
+            for part, each in zip(data, sizes, strict=True)
+        ]
+        candidate = _maximized(data, start, sizes, _TRIAL_ITERATIONS)
+        reached = together(data, candidate).log_density(errors)
         if best is None or reached > density:
             best, density = candidate, reached
     assert best is not None  # noqa: S101 (there are correlation times)
-    return _maximized(data, best, scale, limit, least, _MAX_ITERATIONS)
+    return _maximized(data, best, sizes, _MAX_ITERATIONS)
 
 
 def _maximized(
-    data: DayData,
-    covariances: Discrepancy,
-    scale: Floats,
-    limit: Floats,
-    least: Floats | float,
+    data: Sequence[DayData],
+    covariances: Sequence[Discrepancy],
+    sizes: Sequence[SizeLimits],
     iterations: int,
-) -> Discrepancy:
+) -> list[Discrepancy]:
     """Improve all sizes together, step by step, until none changes."""
-    grid, sensors = data.grid, data.sensors
-    shape = (grid.days, grid.slots, sensors)
+    now, errors = list(covariances), [part.error for part in data]
+    for _ in range(iterations):
+        gaussian = together(data, now)
+        weighted = gaussian.solve(errors)
+        steps = [
+            _improved(data_of_part, part, solved, before, each)
+            for data_of_part, part, solved, before, each in zip(
+                data, gaussian.parts, weighted, now, sizes, strict=True
+            )
+        ]
+        now = [after for after, _ in steps]
+        if max(moved for _, moved in steps) < _MAX_CHANGE:
+            break
+    return now
+
+
+def _improved(
+    data: DayData, now: DayGaussian, solved: Floats, covariances: Discrepancy, sizes: SizeLimits
+) -> tuple[Discrepancy, float]:
+    """Better sizes of one experiment, and how far they moved, in scales. [-]"""
+    grid, sensors, scale, limit = data.grid, data.sensors, sizes.scale, sizes.limit
     drift = drift_kernel(grid, covariances.correlation_hours)
     kernels = {"day": np.ones_like(drift), "drift": drift}
     prior = _PRIOR_WEIGHT * np.diag(scale**2)
     functions = data.repeating(np.eye(sensors))
-    for _ in range(iterations):
-        now = data.gaussian(covariances)
-        weighted = now.solve(data.error).reshape(shape)
-        inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
-        improved: dict[str, Any] = {}
-        of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
-        spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
-        for name, kernel in kernels.items():
-            square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
-            trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
-            if name == "day" and covariances.alike:
-                # The first function of the error by hour is a constant, that of the common level.
-                level = covariances.alike / _SPECTRUM[0]
-                square = square + level * np.outer(of_hour[0], of_hour[0])
-                trace = trace + level * spread[:sensors, :sensors]
-            improved[name] = _step(getattr(covariances, name), square, trace, prior, limit)
-        improved["drift"] = at_least(improved["drift"], least)
-        count = of_hour.shape[0]
-        trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
-        improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
-        curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
-        squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
-        improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
-        moved = max(
-            float(
-                np.max(
-                    np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(covariances, name)))) / scale
-                )
-            )
-            for name, value in improved.items()
+    weighted = solved.reshape(grid.days, grid.slots, sensors)
+    inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
+    improved: dict[str, Any] = {}
+    of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
+    spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
+    for name, kernel in kernels.items():
+        square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
+        trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
+        if name == "day" and covariances.alike:
+            # The first function of the error by hour is a constant, that of the common level.
+            level = covariances.alike / _SPECTRUM[0]
+            square = square + level * np.outer(of_hour[0], of_hour[0])
+            trace = trace + level * spread[:sensors, :sensors]
+        improved[name] = _step(getattr(covariances, name), square, trace, prior, limit)
+    improved["drift"] = at_least(improved["drift"], sizes.least)
+    count = of_hour.shape[0]
+    trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
+    improved["hour"] = _step(covariances.hour, of_hour.T @ of_hour, trace, prior, limit)
+    curvature = np.einsum("dhshs->s", inverse) + _PRIOR_WEIGHT / covariances.white
+    squares = np.sum(weighted**2, axis=(0, 1)) + _PRIOR_WEIGHT * scale**2 / covariances.white**2
+    improved["white"] = np.minimum(covariances.white * np.sqrt(squares / curvature), limit**2)
+    moved = max(
+        float(
+            np.max(np.abs(np.sqrt(_diagonal(value)) - np.sqrt(_diagonal(getattr(covariances, name)))) / scale)
         )
-        covariances = replace(covariances, **improved)
-        if moved < _MAX_CHANGE:
-            break
-    return covariances
+        for name, value in improved.items()
+    )
+    return replace(covariances, **improved), moved
 
 
 def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limit: Floats) -> Floats:

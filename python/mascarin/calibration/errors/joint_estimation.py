@@ -5,7 +5,7 @@ The method: `mascarin.calibration.errors.joint_posterior`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -19,16 +19,16 @@ from mascarin.calibration.base.result import Calibration
 from mascarin.calibration.base.search_options import SearchOptions
 from mascarin.calibration.base.uncertainty import AT_BOUND
 from mascarin.calibration.base.warnings import on_bounds, warnings
-from mascarin.calibration.errors.joint_posterior import (
+from mascarin.calibration.errors.discrepancy import Discrepancy
+from mascarin.calibration.errors.joint_posterior import JointPosterior, joint_posteriors
+from mascarin.calibration.errors.linear_estimation import (
     ErrorStatement,
-    JointPosterior,
     Linear,
     best_positions,
-    joint_posterior,
+    columns_of_sensors,
     objective,
 )
 from mascarin.calibration.errors.sampled_posterior import ChainLengths
-from mascarin.calibration.errors.sensor_errors import sensor_columns
 from mascarin.calibration.methods.least_squares import residuals_and_derivatives
 
 Floats = NDArray[np.float64]
@@ -92,6 +92,39 @@ def estimate_jointly(
     SolverError
         The model cannot be simulated near the estimates.
     """
+    estimates, joints = estimate_experiments(fit, [stated], options, further, keep=keep)
+    return estimates, joints[0]
+
+
+def estimate_experiments(
+    fit: Calibration,
+    stated: Sequence[ErrorStatement],
+    options: SearchOptions,
+    further: Further | None = None,
+    *,
+    keep: Keep | None = None,
+) -> tuple[Calibration, tuple[JointPosterior, ...]]:
+    """Estimate the parameters of several experiments again, together with the errors of each.
+
+    Parameters
+    ----------
+    fit, options, further, keep
+        As for `estimate_jointly`.
+    stated : sequence of ErrorStatement
+        What is known of the errors of each experiment.
+
+    Returns
+    -------
+    Calibration
+        With the estimates and intervals of the joint distribution.
+    tuple of JointPosterior
+        The joint distribution, as each experiment has it.
+
+    Raises
+    ------
+    SolverError
+        The model cannot be simulated near the estimates.
+    """
     problem = fit.problem
     evaluator = Evaluator(Cost(problem, fit.cost_name))
     compute: Keep = keep or (lambda key, make: make())
@@ -104,7 +137,9 @@ def estimate_jointly(
         return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
 
     # The estimates are those of the model as it will be used, with all other numbers as described.
-    linearization = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
+    linearization = _searched(
+        problem, linear, [replace(each, further=()) for each in stated], problem.positions(fit.x)
+    )
     if further is not None:
         linearization = replace(linearization, further=further(problem.values(linearization.z[None])[0]))
 
@@ -115,17 +150,21 @@ def estimate_jointly(
     lengths = None
     if options.posterior == "sampled":
         lengths = ChainLengths(options.chains, options.draws, options.warmup, fit.seed)
-    distribution = joint_posterior(
+    joints = joint_posteriors(
         problem, linearization, stated, simulate=simulate if lengths else None, lengths=lengths
     )
-    return _reported(fit, problem, linearization, distribution, stated), distribution
+    return _reported(fit, problem, linearization, joints, stated), joints
 
 
 def _searched(
-    problem: CalibrationProblem, linear: Callable[[Floats], Linear], stated: ErrorStatement, first: Floats
+    problem: CalibrationProblem,
+    linear: Callable[[Floats], Linear],
+    stated: Sequence[ErrorStatement],
+    first: Floats,
 ) -> Linear:
     """Linearize about better and better estimates, until the density no longer rises."""
-    linearization, covariances = linear(first), None
+    linearization = linear(first)
+    covariances: list[Discrepancy] | None = None
     for _ in range(_MAX_STEPS):
         goal, covariances = best_positions(problem, linearization, stated, covariances)
         before = objective(problem, linearization, stated, covariances)
@@ -146,10 +185,11 @@ def _reported(
     fit: Calibration,
     problem: CalibrationProblem,
     linearization: Linear,
-    distribution: JointPosterior,
-    stated: ErrorStatement,
+    joints: tuple[JointPosterior, ...],
+    stated: Sequence[ErrorStatement],
 ) -> Calibration:
     """The calibration with the estimates of the joint distribution."""
+    distribution = joints[0]  # parameters are those of all
     z = np.where(
         linearization.z < AT_BOUND, 0.0, np.where(linearization.z > 1.0 - AT_BOUND, 1.0, linearization.z)
     )
@@ -167,12 +207,18 @@ def _reported(
     )
     uncertainty = replace(
         fit.uncertainty, low=low, high=high, sd=sd, correlation=correlation, covariance=covariance,
-        error=tuple(distribution.error_covariances.spread.tolist()),
+        error=tuple(size for joint in joints for size in joint.error_covariances.spread.tolist()),
     )  # fmt: skip
-    of_sensors = sensor_columns(problem, stated.sensors, linearization.simulated, stated.step)[0]
-    error_columns = np.concatenate([of_sensors, linearization.further], axis=2)
-    columns = distribution.effects(linearization.jacobian, error_columns, stated.hours)
-    expected, _ = distribution.predicted(columns, linearization.z)
+    expected = np.zeros(residuals.shape)
+    of_sensors = columns_of_sensors(problem, linearization.simulated, stated)[0]
+    first = 0
+    for joint, own_errors, wide in zip(joints, stated, of_sensors, strict=True):
+        part = (own_errors.rows, own_errors.columns)
+        count = len(joint.names) - linearization.further.shape[2]
+        effects, first = wide[:, :, first : first + count], first + count
+        error_columns = np.concatenate([effects, linearization.further[part]], axis=2)
+        columns = joint.effects(linearization.jacobian[part], error_columns, own_errors.hours)
+        expected[part] = joint.predicted(columns, linearization.z)[0]
     remaining = np.where(problem.mask, residuals + expected, 0.0)
     chains, said = (
         distribution.chains,

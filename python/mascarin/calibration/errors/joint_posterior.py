@@ -18,94 +18,35 @@ Gelman A. et al. (2013), Bayesian Data Analysis, chapter 14 (linear models with 
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.base.problem import CalibrationProblem
-from mascarin.calibration.errors.bounded_coefficients import best_within, ends_of, moments_within, within
+from mascarin.calibration.errors.bounded_coefficients import best_within, ends_of, moments_within
 from mascarin.calibration.errors.covariance_sampling import CovarianceSample, sample_covariances
-from mascarin.calibration.errors.day_blocks import DayGaussian, DayGrid
-from mascarin.calibration.errors.discrepancy import (
-    DayData,
-    Discrepancy,
-    estimate_discrepancy,
-    hour_basis,
+from mascarin.calibration.errors.discrepancy import DayData, Discrepancy, hour_basis
+from mascarin.calibration.errors.linear_estimation import (
+    ErrorStatement,
+    Estimated,
+    Linear,
+    columns_of_sensors,
+    estimated,
+    priors_of,
+    sizes_of,
 )
 from mascarin.calibration.errors.sampled_posterior import ChainLengths, Simulate, chains_of, coefficients_of
-from mascarin.calibration.errors.sensor_errors import SensorError, sensor_columns
 from mascarin.calibration.sampling.posterior_sample import PosteriorSample
 from mascarin.calibration.sampling.truncated_normal import within_bounds
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-LEAST_ERROR: Final = 0.5
-"""Smallest error of the model that is correlated within a day, in standard uncertainties of the sensor. [-]
-
-A likelihood without it gives any weight to a sensor that the model follows nearly exactly, and gives up the
-others.
-"""
-
 #: Smallest and largest factor by which days left out change the bands. [-]
 _CROSS_VALIDATED: Final = (0.6, 1.5)
-#: Part of a stated uncertainty that is scatter at least.
-_LEAST_SCATTER: Final = 0.2
-#: Variance of a position that is equally likely anywhere in its range.
-_UNIFORM: Final = 1.0 / 12.0
-
-
-@dataclass(frozen=True, eq=False)
-class Linear:
-    """A calibration problem linearized at positions z0.
-
-    Attributes
-    ----------
-    z : ndarray, shape (P,)
-        Positions of the parameters in their ranges. [-]
-    simulated : ndarray, shape (T, S)
-        Series of the model there. [unit]
-    jacobian : ndarray, shape (T, S, P)
-        Derivative by z. [unit]
-    further : ndarray, shape (T, S, K)
-        Derivative by other quantities of a sensor, such as its depth, for one standard uncertainty. [unit]
-    """
-
-    z: Floats
-    simulated: Floats
-    jacobian: Floats
-    further: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class ErrorStatement:
-    """What is known of the errors before the calibration.
-
-    Attributes
-    ----------
-    sensors : tuple of SensorError, length S
-        Stated uncertainties.
-    hours : ndarray, shape (T,)
-        Local time of each sample, from any midnight. [h]
-    step : float
-        Time between samples. [s]
-    limit : ndarray, shape (S,)
-        Largest standard deviation of each part of the error of the model. [unit]
-    persistence : float
-        Correlation time of the errors of days. [d]
-    further : tuple of str
-        Names of other unknown quantities, K of them; numbered when empty, see `Linear`.
-    """
-
-    sensors: tuple[SensorError, ...]
-    hours: Floats
-    step: float
-    limit: Floats
-    persistence: float = 5.0
-    further: tuple[str, ...] = field(default=())
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +87,8 @@ class JointPosterior:
         The same difference, and its standard deviation given the sizes of the errors. [unit]
     chains : PosteriorSample, optional
         Chains of the parameters and errors of sensors, where the model itself was sampled.
+    other_days : int
+        Days of other experiments that have the same parameters. [-]
     """
 
     z: Floats
@@ -163,16 +106,32 @@ class JointPosterior:
     left_out: Floats
     left_out_sd: Floats
     chains: PosteriorSample | None = None
+    other_days: int = 0
 
-    def quantile(self, confidence: float) -> float:
+    def of_parameters(self, columns: Sequence[int]) -> JointPosterior:
+        """The same distribution of some of the parameters, with all errors of the experiment."""
+        chosen = np.asarray(columns, dtype=np.int64)
+        coefficient = np.concatenate([chosen, np.arange(self.z.size, self.mean.size)])
+        return replace(
+            self,
+            z=self.z[chosen],
+            mean=self.mean[coefficient],
+            covariance=self.covariance[np.ix_(coefficient, coefficient)],
+            sample=self.sample[:, chosen],
+            prior=self.prior[chosen],
+            beyond=self.beyond[chosen],
+        )
+
+    def quantile(self, confidence: float, *, other_days: int = 0) -> float:
         """Half-width of an interval on other days, in standard deviations: Student's.
 
         If the errors are as assumed, the quantile is that of the normal distribution. That they are is known
-        from a few days of similar weather only, one fewer than which are the degrees of freedom.
+        from a few days of similar weather only, one fewer than which are the degrees of freedom; parameters
+        that other experiments share are known from their days, too.
         """
         from scipy import stats
 
-        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size - 1, 2)))
+        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size + other_days - 1, 2)))
 
     def days_left_out(self, confidence: float, nearness: Floats | float = 0.0) -> Floats:
         """Factor of the bands of a sensor that days left out of the identification require. [-]
@@ -212,7 +171,9 @@ class JointPosterior:
         """
         from scipy import stats
 
-        factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
+        factor = self.quantile(confidence, other_days=self.other_days) / float(
+            stats.norm.ppf(0.5 + 0.5 * confidence)
+        )
         count = self.sample.shape[1]
         # An estimate on its bound has no variance.
         curvature = 1.0 / np.maximum(np.diag(self.covariance)[:count], np.finfo(np.float64).tiny)
@@ -297,51 +258,128 @@ def joint_posterior(
     -------
     JointPosterior
     """
-    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, covariances)
+    sizes = None if covariances is None else [covariances]
+    return joint_posteriors(problem, linear, [stated], sizes, simulate=simulate, lengths=lengths)[0]
+
+
+def joint_posteriors(
+    problem: CalibrationProblem,
+    linear: Linear,
+    stated: Sequence[ErrorStatement],
+    covariances: Sequence[Discrepancy] | None = None,
+    *,
+    simulate: Simulate | None = None,
+    lengths: ChainLengths | None = None,
+) -> tuple[JointPosterior, ...]:
+    """Estimate the parameters of several experiments and the errors of each together.
+
+    Parameters
+    ----------
+    problem, linear, simulate, lengths
+        As for `joint_posterior`; one experiment alone can be sampled with the model itself.
+    stated : sequence of ErrorStatement
+        What is known of the errors of each experiment.
+    covariances : sequence of Discrepancy, optional
+        As for `joint_posterior`, of each.
+
+    Returns
+    -------
+    tuple of JointPosterior
+        The one distribution, as each experiment has it: all parameters, and its own errors.
+    """
+    after = estimated(problem, linear, stated, covariances)
     if covariances is None:
-        draws = sample_covariances(
-            data,
-            most_probable,
-            scale=_scale(problem, stated),
-            limit=stated.limit,
-            least=_least(problem, stated),
-        )
+        sizes = [sizes_of(problem, each) for each in stated]
+        draws = sample_covariances(after.data, after.covariances, sizes)
     else:
-        draws = CovarianceSample.of_covariances(data, covariances)
-    count, stated_count = len(problem.parameters), data.effects.shape[2]
-    shared_count = stated_count + data.basis.shape[2] * data.sensors
+        draws = CovarianceSample.of_covariances(after.data, covariances)
+    scale, priors = after.scale, priors_of(problem)
+    count, stated_count = len(problem.parameters), after.effect_count
+    shared_count = stated_count + sum(
+        part_data.basis.shape[2] * part_data.sensors for part_data in after.data
+    )
     # The level that the days of the identification have in common says nothing of other days.
     mean, covariance = draws.mean[:, :shared_count].copy(), draws.covariance[:, :shared_count, :shared_count]
     mean[:, :count] *= scale[:count]
-    mean[:, :count] += _priors(problem)[0]
+    mean[:, :count] += priors[0]
     covariance = covariance * np.outer(scale[:shared_count], scale[:shared_count])
     low, high = ends_of(count, stated_count - linear.further.shape[2] - count, stated_count)
-    bounded_count = int(np.isfinite(high).sum())
-    limited = slice(bounded_count)
+    limited = slice(int(np.isfinite(high).sum()))
     bounded_sample = within_bounds(
         mean[:, limited], covariance[:, limited, limited], low[limited], high[limited]
     )
-    of_sensors = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1]
-    names = (*of_sensors, *numbered(linear.further.shape[2], stated.further))
+    names = columns_of_sensors(problem, linear.simulated, stated)[1]
     chains = None
     if simulate is not None:
         chains = chains_of(
-            problem, data, draws.covariances, bounded_sample, (low[limited], high[limited]), _priors(problem),
-            of_sensors, _departure(linear, simulate), lengths or ChainLengths(),
+            problem, after.data[0], [each[0] for each in draws.covariances], bounded_sample,
+            (low[limited], high[limited]), priors, names[0], _departure(linear, simulate),
+            lengths or ChainLengths(),
         )  # fmt: skip
         bounded_sample = coefficients_of(problem, chains)
     middle = mean.mean(axis=0)
     away = mean - middle
     together = covariance.mean(axis=0) + away.T @ away / len(mean)
     bounded_mean, bounded = moments_within(middle, together, bounded_sample)
-    sample = bounded_sample[:, :count]
-    z, beyond, unlimited = best_within(gaussian.precision / np.outer(scale, scale), likely, low, high, count)
-    whitened = gaussian.whitened(data.error).reshape(data.grid.days, data.grid.slots, data.sensors)
-    return JointPosterior(
-        z, bounded_mean, bounded, sample, draws.typical, names, gaussian.left_out(data.error),
-        gaussian.log_density(data.error), scale[:count], beyond, unlimited, whitened,
-        *gaussian.days_left_out(data.error, data.sensors), chains=chains,
+    precision = after.gaussian.precision / np.outer(scale, scale)
+    z, beyond, unlimited = best_within(precision, after.mean, low, high, count)
+    further, none = numbered(linear.further.shape[2], stated[0].further), np.zeros(0)
+    of_all = JointPosterior(
+        z, bounded_mean, bounded, bounded_sample[:, :count], draws.typical[0], further, none,
+        after.gaussian.log_density(after.errors), scale[:count], beyond, unlimited, none, none, none,
+        chains=chains,
     )  # fmt: skip
+    return tuple(_by_experiment(of_all, after, names, draws.typical))
+
+
+def _by_experiment(
+    of_all: JointPosterior,
+    after: Estimated,
+    names: Sequence[tuple[str, ...]],
+    sizes: Sequence[Discrepancy],
+) -> Iterator[JointPosterior]:
+    """The distribution as each experiment has it, with its errors of sensors by name and of the model."""
+    count, days = of_all.z.size, sum(data.grid.days for data in after.data)
+    beside = after.gaussian.beside(after.errors)
+    columns = _coefficients(count, names, after.data, after.effect_count)
+    for k, (part, data) in enumerate(zip(after.gaussian.parts, after.data, strict=True)):
+        shape = (data.grid.days, data.grid.slots, data.sensors)
+        left_out, left_out_sd = part.days_left_out(data.error, data.sensors, beside[k])
+        yield replace(
+            of_all,
+            mean=of_all.mean[columns[k]],
+            covariance=of_all.covariance[np.ix_(columns[k], columns[k])],
+            error_covariances=sizes[k],
+            names=(*names[k], *of_all.names),
+            by_day=part.left_out(data.error, beside[k]),
+            unlimited=of_all.unlimited[columns[k][count : count + len(names[k])] - count],
+            whitened=part.whitened(data.error, beside[k]).reshape(shape),
+            left_out=left_out,
+            left_out_sd=left_out_sd,
+            other_days=days - data.grid.days,
+        )
+
+
+def _coefficients(
+    count: int, names: Sequence[tuple[str, ...]], data: Sequence[DayData], effect_count: int
+) -> list[NDArray[np.int64]]:
+    """Coefficients of each experiment: positions, its errors of sensors, further ones, those that repeat."""
+    of_sensors, coefficients = count, []
+    further, repeating = np.arange(count + sum(map(len, names)), effect_count), effect_count
+    for own_names, part_data in zip(names, data, strict=True):
+        own_count = part_data.basis.shape[2] * part_data.sensors
+        coefficients.append(
+            np.concatenate(
+                [
+                    np.arange(count),
+                    np.arange(of_sensors, of_sensors + len(own_names)),
+                    further,
+                    np.arange(repeating, repeating + own_count),
+                ]
+            )
+        )
+        of_sensors, repeating = of_sensors + len(own_names), repeating + own_count
+    return coefficients
 
 
 def _departure(linear: Linear, simulate: Simulate) -> Simulate:
@@ -363,135 +401,3 @@ def numbered(count: int, names: tuple[str, ...]) -> tuple[str, ...]:
     ('numbers that are not estimated, 1', 'numbers that are not estimated, 2')
     """
     return names or tuple(f"numbers that are not estimated, {k + 1}" for k in range(count))
-
-
-def best_positions(
-    problem: CalibrationProblem,
-    linear: Linear,
-    stated: ErrorStatement,
-    first: Discrepancy | None = None,
-) -> tuple[Floats, Discrepancy]:
-    """Find the most probable positions alone, with the covariances of the errors.
-
-    Parameters
-    ----------
-    problem, linear, stated
-        As for `joint_posterior`.
-    first : Discrepancy, optional
-        Covariances of a linearization near by, to begin with.
-
-    Returns
-    -------
-    ndarray, shape (P,)
-        Within the ranges. [-]
-    Discrepancy
-        Sizes of the errors of the model.
-    """
-    gaussian, data, mean, scale, covariances = _estimated(problem, linear, stated, None, first)
-    count = len(problem.parameters)
-    low, high = ends_of(count, data.effects.shape[2] - linear.further.shape[2] - count, mean.size)
-    precision = gaussian.precision / np.outer(scale, scale)
-    return best_within(precision, mean, low, high, count)[0], covariances
-
-
-def _estimated(
-    problem: CalibrationProblem,
-    linear: Linear,
-    stated: ErrorStatement,
-    covariances: Discrepancy | None,
-    first: Discrepancy | None = None,
-) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
-    """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
-    center, spread = _priors(problem)
-    data = _data(problem, linear, stated, center, spread)
-    if covariances is None:
-        covariances = estimate_discrepancy(
-            data,
-            scale=0.25 * _scale(problem, stated),
-            limit=stated.limit,
-            least=_least(problem, stated),
-            persistence=stated.persistence,
-            first=first,
-        )
-    gaussian = data.gaussian(covariances)
-    unit = gaussian.coefficients(data.error)
-    scale = np.ones(unit.size)
-    scale[: center.size] = spread
-    mean = unit * scale
-    mean[: center.size] += center
-    return gaussian, data, mean, scale, covariances
-
-
-def objective(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, covariances: Discrepancy
-) -> float:
-    """Compute minus the log density of parameters and measurements at the positions of a linearization.
-
-    Parameters
-    ----------
-    problem, linear, stated, covariances
-        As for `joint_posterior`; only the series of the linearization is used.
-
-    Returns
-    -------
-    float
-        Up to a constant. [-]
-    """
-    center, spread = _priors(problem)
-    empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
-    data = _data(problem, empty, stated, center[:0], spread[:0])
-    prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
-    gaussian = data.gaussian(covariances)
-    mean = gaussian.coefficients(data.error)
-    ends = ends_of(0, data.effects.shape[2] - linear.further.shape[2], mean.size)
-    _, deviance = within(gaussian.precision, mean, *ends)
-    return prior - gaussian.log_density(data.error) + 0.5 * deviance
-
-
-def _data(
-    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, center: Floats, spread: Floats
-) -> DayData:
-    mask, parameter_count = problem.mask, center.size
-    error = np.where(mask, problem.measured, 0.0) - np.where(mask, linear.simulated, 0.0)
-    shift = linear.jacobian @ (linear.z[:parameter_count] - center) if parameter_count else 0.0
-    of_sensors, _ = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)
-    stated_columns = np.concatenate([linear.jacobian * spread, of_sensors, linear.further], axis=2)
-    grid = DayGrid.of(stated.hours, interval=stated.step / 3600.0, sensors=mask.shape[1])
-    basis = np.repeat(hour_basis(stated.hours)[:, None, :], mask.shape[1], axis=1)
-    mean, count_of_slot = grid.means(error + shift, mask)
-    return DayData(
-        grid,
-        mean,
-        grid.means(stated_columns, mask)[0],
-        grid.means(basis, mask)[0],
-        count_of_slot > 0,
-        grid.within(error, mask),
-    )
-
-
-def _priors(problem: CalibrationProblem) -> tuple[Floats, Floats]:
-    """Mean and standard deviation of each position before the data, both (P,). [-]"""
-    center, spread = np.full(len(problem.parameters), 0.5), np.full(len(problem.parameters), _UNIFORM**0.5)
-    for i, p in enumerate(problem.parameters):
-        if p.prior is not None:
-            mean = min(max(p.prior[0], p.lower), p.upper)
-            center[i] = p.position(mean)
-            spread[i] = p.prior[1] / p.rate(center[i])
-    return center, spread
-
-
-def _least(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
-    """Smallest standard deviation of the error of the model within a day (S,), see `LEAST_ERROR`. [unit]"""
-    total = np.array([math.sqrt(float(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
-    return np.asarray(np.minimum(LEAST_ERROR * total, stated.limit))
-
-
-def _scale(problem: CalibrationProblem, stated: ErrorStatement) -> Floats:
-    """Scale of the errors of the model of each sensor (S,): its stated uncertainty less its offset. [unit]
-
-    An offset is an error of its own: were the scale the whole uncertainty, the errors of the model would have
-    it once more, on every day and at every hour.
-    """
-    total = np.array([float(np.mean(s.sigma[s.mask] ** 2)) for s in problem.sensors])
-    shared = np.array([error.offset**2 + error.common**2 for error in stated.sensors])
-    return np.asarray(np.sqrt(np.maximum(total - shared, _LEAST_SCATTER**2 * total)))

@@ -233,7 +233,7 @@ def _order(joint: JointPosterior, sensors: Sequence[str]) -> list[Contradiction]
     """Sensors whose errors follow each other for longer than assumed.
 
     A negative correlation is none: errors are assumed that are larger than the data have, because the error
-    within a day has a smallest size (`mascarin.calibration.errors.joint_posterior.LEAST_ERROR`).
+    within a day has a smallest size (`mascarin.calibration.errors.linear_estimation.LEAST_ERROR`).
     """
     from scipy import stats
 

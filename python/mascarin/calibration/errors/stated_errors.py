@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mascarin._io.durations import seconds_of
 from mascarin.calibration.errors.joint_estimation import estimate_jointly
-from mascarin.calibration.errors.joint_posterior import ErrorStatement
+from mascarin.calibration.errors.linear_estimation import ErrorStatement
 from mascarin.calibration.errors.posterior_checks import judged
 from mascarin.calibration.errors.sensor_errors import SensorError
 from mascarin.errors import InputError

@@ -17,6 +17,7 @@ from mascarin.commands.options.output import number, print_json, print_table
 if TYPE_CHECKING:
     from mascarin.simulation.checks.warning_kinds import RunWarning
     from mascarin.study import Study, StudyResults
+    from mascarin.study.file.study_inputs import StudyInputs
     from mascarin.study_document.analysis import ContradictionEntry
     from mascarin.study_document.comparison import CriterionEntry
     from mascarin.study_document.document import StudyDocument
@@ -68,7 +69,7 @@ def study(
     _print_warnings([*(contradiction.text for contradiction in results.contradictions), *lines])
     _print_summary(opened, results, out)
     verdicts = [criterion_entry(verdict, "fitted") for verdict in results.criteria["fitted"]]
-    return _exit_code(verdicts, lines)
+    return _exit_code(verdicts, lines, sound=all(entry.sound for entry in results.transfer.values()))
 
 
 def sensitivity(
@@ -156,7 +157,7 @@ def calibrate(
         _print_scores(content)
         for note in content.notes:
             print(f"note: {note.text}", file=sys.stderr)
-    return _exit_code(_verdicts(content, "fitted"), _of_the_runs(content), sound=content.sound)
+    return _exit_code(_verdicts(content, "fitted"), _of_the_runs(content), sound=_sound(content))
 
 
 def validate(
@@ -189,7 +190,7 @@ def validate(
         print_json(content.to_dict())
     else:
         _print_scores(content)
-    return _exit_code(_verdicts(content, "nominal"), _of_the_runs(content), sound=content.sound)
+    return _exit_code(_verdicts(content, "nominal"), _of_the_runs(content), sound=_sound(content))
 
 
 def _open(file: str, allow_outside: bool) -> Study:
@@ -200,23 +201,25 @@ def _open(file: str, allow_outside: bool) -> Study:
     from mascarin.study import Study
 
     opened = Study.from_yaml(locate(file), allow_outside=allow_outside)
-    sensors = {name for entry in opened.plan.sensors.values() for name in entry.columns}
-    show_columns(opened.climate, opened.measurements, sensors | set(measured_columns(opened.building)))
-    said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
-    lines = [note for note in said if ": warning: " in note]
-    if opened.quality:
-        lines.append("suspicious periods in the measurements:")
-        lines += [f"  {line}" for line in _suspicious(opened)]
-    if lines:
-        print("\n".join(lines), file=sys.stderr)
+    for inputs in (opened.context.inputs, *opened.context.inputs.others.values()):
+        sensors = {name for entry in inputs.plan.sensors.values() for name in entry.columns}
+        show_columns(inputs.climate, inputs.measurements, sensors | set(measured_columns(inputs.building)))
+        said = dict.fromkeys((*inputs.climate.provenance, *inputs.measurements.provenance))
+        lines = [note for note in said if ": warning: " in note]
+        if inputs.quality:
+            of_experiment = f" of {inputs.experiment}" if inputs.experiment else ""
+            lines.append(f"suspicious periods in the measurements{of_experiment}:")
+            lines += [f"  {line}" for line in _suspicious(inputs)]
+        if lines:
+            print("\n".join(lines), file=sys.stderr)
     return opened
 
 
-def _suspicious(opened: Study) -> Iterator[str]:
+def _suspicious(inputs: StudyInputs) -> Iterator[str]:
     """Suspicious periods in words: one line for those of one column and kind."""
     groups: dict[tuple[str, str, bool], list[Stretch]] = {}
-    for stretch in opened.quality:
-        left_out = opened.context.inputs.leaves_out(stretch)
+    for stretch in inputs.quality:
+        left_out = inputs.leaves_out(stretch)
         groups.setdefault((stretch.channel, stretch.kind, left_out), []).append(stretch)
     for (channel, kind, left_out), stretches in groups.items():
         first, end = stretches[0], "; left out of all comparisons" if left_out else ""
@@ -265,10 +268,26 @@ def _print_scores(content: StudyDocument) -> None:
         for model, m in scores.models.items()
     ]
     print_table(("sensor", "period", "model", "rmse", "sd", "bias", "max"), rows)
+    experiments = [
+        (name, sensor, period, model, *(_rounded(value) for value in (m.rmse, m.sd, m.bias, m.max_error)))
+        for name, entry in content.transfer.items()
+        for sensor, periods in entry.sensors.items()
+        for period, both in periods.items()
+        for model, m in (("described", both.described), ("calibrated", both.calibrated))
+        if m.n
+    ]
+    if experiments:
+        print()
+        print_table(("experiment", "sensor", "period", "model", "rmse", "sd", "bias", "max"), experiments)
 
 
 def _rounded(value: float | None) -> str | float:
     return "" if value is None else round(value, 3)
+
+
+def _sound(content: StudyDocument) -> bool:
+    """Whether all runs are sound, those of other experiments included."""
+    return content.sound and all(entry.sound for entry in content.transfer.values())
 
 
 def _verdicts(content: StudyDocument, model: str) -> list[CriterionEntry]:

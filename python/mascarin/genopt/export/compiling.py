@@ -59,6 +59,7 @@ def compile_study(study: Study) -> Case:
         A parameter or a sensor that cannot be used.
     """
     context, inputs = study.context, study.context.inputs
+    inputs.require_alone("a GenOpt project has the model of one", validated=False)
     problem, simulation, observation = (
         context.problem(),
         context.models.for_calibration(),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin import __version__
+from mascarin.calibration.base.joined_problem import joined
 from mascarin.measurements.observation import Observation, observe
 from mascarin.study.context.calibration import problem
 from mascarin.study.context.error_rule import estimates_errors
@@ -73,6 +74,19 @@ class StudyContext:
         self.variants: Variants = Variants(inputs)
         self.models: StudyModels = StudyModels(inputs, self.periods, self.variants)
         self.workspace: Workspace | None = None
+        #: Other experiments that are identified together with this one.
+        self.together: dict[str, StudyContext] = {
+            name: StudyContext(other) for name, other in inputs.together.items()
+        }
+        #: The study that this one is identified together with, if it is not the first of them.
+        self.first: StudyContext | None = None
+        for other in self.together.values():
+            other.first = self
+
+    @property
+    def experiments(self) -> dict[str, StudyContext]:
+        """All experiments that are identified together, this one first."""
+        return {self.inputs.experiment: self, **self.together}
 
     def __getstate__(self) -> dict[str, Any]:
         """The inputs; models and series are made again where they are needed."""
@@ -84,11 +98,14 @@ class StudyContext:
     @contextmanager
     def keeping(self, workspace: Workspace) -> Iterator[None]:
         """Keep results of steps in a folder while something is computed."""
-        self.workspace = workspace
+        contexts = self.experiments.values()
+        for context in contexts:
+            context.workspace = workspace
         try:
             yield
         finally:
-            self.workspace = None
+            for context in contexts:
+                context.workspace = None
 
     @cached_property
     def observation(self) -> Observation:
@@ -129,10 +146,24 @@ class StudyContext:
     @property
     def estimates_errors(self) -> bool:
         """Whether errors of sensors and model are estimated together with the parameters."""
-        return self.plan.identification is not None and estimates_errors(self.plan, self.hours)
+        if self.first is not None:
+            return self.first.estimates_errors
+        hours = sum(context.hours for context in self.experiments.values())
+        return any(
+            context.plan.identification is not None and estimates_errors(context.plan, hours)
+            for context in self.experiments.values()
+        )
 
     def problem(self, variant: str | None = None) -> CalibrationProblem:
-        """The calibration problem of the building as described or of a variant."""
+        """The calibration problem of the building as described or of a variant, of all experiments."""
+        if not self.together:
+            return self._own_problem(variant)
+        own_paths = {path for context in self.experiments.values() for path in context.inputs.own_paths}
+        problems = {name: context._own_problem(variant) for name, context in self.experiments.items()}
+        return joined(problems, own_paths=own_paths)
+
+    def _own_problem(self, variant: str | None) -> CalibrationProblem:
+        """The calibration problem of this experiment alone."""
         return problem(
             self.models.for_calibration(variant),
             self.observation,

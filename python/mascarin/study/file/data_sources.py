@@ -1,4 +1,4 @@
-"""The keys of a study file that say where weather and measurements come from."""
+"""The keys of a study file that say where weather, measurements and further data sets come from."""
 
 from __future__ import annotations
 
@@ -170,3 +170,31 @@ class ClimateSource(Part):
             insist(fault(("shift",), f"{self.shift} beside measured", "the shift of a table under measured",
                          f"Write shift: {self.shift} under measured."))  # fmt: skip
         return self
+
+
+class Transfer(Part):
+    """Another house, season or phase, on which the calibrated building is validated."""
+
+    study: str = Field(
+        description="Study file of it; the estimates are put into its building, nothing of it is identified"
+    )
+
+
+class Experiment(Part):
+    """One data set of several: what differs from the keys of the study."""
+
+    role: Literal["identification", "validation"] = Field(
+        description="identification: its data are identified together with those of all others of this role; "
+        "validation: nothing of it is identified, it is compared as described and calibrated"
+    )
+    building: str | None = Field(None, description="Building file, such as one that extends another one")
+    set: dict[str, Any] = Field(
+        default_factory=dict, description="Path -> value that replaces the one of the building file"
+    )
+    weather: dict[str, Any] | None = Field(None, description="Errors of columns of its weather")
+    climate: dict[str, Any] | None = Field(None, description="Its weather data")
+    measurements: dict[str, Any] | None = Field(None, description="Its table of measurements")
+    sensors: dict[str, Any] = Field(default_factory=dict, description="Sensors that it has beside or others")
+    periods: dict[str, Any] = Field(default_factory=dict, description="Which part of its record is for what")
+    initial: Any = Field(None, description="Initial state of its runs")
+    quality: dict[str, Any] | None = Field(None, description="What to do with suspicious values")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
@@ -19,7 +18,13 @@ from mascarin.measurements.sensor import with_output
 from mascarin.measurements.time_fields import Duration, Hours, Span, Spans, Stretch, Time
 from mascarin.sensitivity.base.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
-from mascarin.study.file.data_sources import FILE_KEYS, ClimateSource, MeasuredTable, with_shared_table
+from mascarin.study.file.data_sources import (
+    ClimateSource,
+    Experiment,
+    MeasuredTable,
+    Transfer,
+    with_shared_table,
+)
 from mascarin.study.file.field_types import Initial, require_bounds
 from mascarin.validation.comparison import METRICS
 from mascarin.validation.criteria import Criterion
@@ -138,6 +143,9 @@ class Free(Part):
         description="Whether all numbers that a path with * matches vary as one: by a common factor (true or "
         "factor; bounds, prior and start are factors, 1 is the building), or by a common value (value); "
         "false: each varies alone",
+    )
+    per_experiment: bool = Field(
+        False, description="Whether each of several `experiments` has its own value; false: one for all"
     )
     at_bound: str | None = Field(None, description="Why an estimate at a bound would be plausible")
     reference: tuple[float, float] | None = Field(
@@ -407,14 +415,6 @@ class StudyPlan(Part):
         return self
 
 
-class Transfer(Part):
-    """Another house, season or phase, on which the calibrated building is validated."""
-
-    study: str = Field(
-        description="Study file of it; the estimates are put into its building, nothing of it is identified"
-    )
-
-
 class StudyFile(StudyPlan):
     """A study as a file: the plan, and the files of the building, the weather and the measurements."""
 
@@ -435,6 +435,12 @@ class StudyFile(StudyPlan):
         description="Name -> study of another house, season or phase, compared as described and calibrated",
     )
 
+    experiments: dict[Name, Experiment] = Field(
+        default_factory=dict,
+        description="Name -> data set that is identified together with others, or validated; keys of the "
+        "study hold for all, and those of an experiment are merged over them as by `extends`",
+    )
+
     @model_validator(mode="before")
     @classmethod
     def _one_table(cls, data: Any) -> Any:
@@ -451,16 +457,3 @@ class StudyFile(StudyPlan):
             remedy = "Run it with 'mascarin design FILE -o FOLDER'."
             insist(fault((), "a design study", "a study: measurements, sensors, periods", remedy))
         return data
-
-
-def read_study(path: str | Path) -> StudyFile:
-    """Read a study file.
-
-    Raises
-    ------
-    InputError
-        File, line, path, what was found, what was expected, what to do.
-    """
-    from mascarin.building.reading import read
-
-    return read(path, StudyFile, "a study", file_keys=FILE_KEYS)

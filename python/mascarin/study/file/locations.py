@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from mascarin.building.base.error_texts import KeyPath
 from mascarin.building.reading import lines
 from mascarin.errors import InputError
 from mascarin.simulation.preparation.initial_state import StartError
@@ -58,11 +59,23 @@ class Places:
     ----------
     path : Path, optional
         A file that has been read before.
+    experiment : str
+        Name of the experiment of which the entries are; empty for those of the study.
+    of_experiment : mapping of place to int, optional
+        Lines of the entries of the experiment, in place of those of the file.
     """
 
-    def __init__(self, path: Path | None = None) -> None:
+    def __init__(
+        self,
+        path: Path | None = None,
+        experiment: str = "",
+        of_experiment: Mapping[KeyPath, int] | None = None,
+    ) -> None:
         self.file = "study" if path is None else str(path)
+        self._experiment = f"experiments.{experiment}: " if experiment else ""
         self._lines, files = ({}, ()) if path is None else lines(path)
+        if of_experiment is not None:
+            self._lines = of_experiment
         self._texts = {str(file): file.read_text(encoding="utf-8") for file in files}
 
     def at(self, *place: str | int) -> str:
@@ -70,7 +83,7 @@ class Places:
         written = next((place[:n] for n in range(len(place), -1, -1) if place[:n] in self._lines and n), ())
         line = self._lines.get(written)
         where = f"{getattr(line, 'file', self.file)}:{line}" if line else self.file
-        return f"{where}: {'.'.join(map(str, place))}"
+        return f"{where}: {self._experiment}{'.'.join(map(str, place))}"
 
     def find(self, key: str, value: str) -> str | None:
         """File and line of the first line that gives a key this value; None if there is none."""

@@ -17,7 +17,8 @@ from mascarin.building import Building, load
 from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
 from mascarin.simulation.preparation.prepare import in_climate, require_inputs
-from mascarin.study.file.description import StudyFile, StudyPlan, read_study
+from mascarin.study.file.description import StudyFile, StudyPlan
+from mascarin.study.file.experiments import ExperimentFile, read_experiments, with_parameters_of
 from mascarin.study.file.inputs import (
     Beside,
     filled,
@@ -68,13 +69,41 @@ def from_file(path: Path, *, allow_outside: bool = False) -> StudyInputs:
 
 
 def _from_file(path: Path, beside: Beside, *, alone: bool = False) -> StudyInputs:
-    file = read_study(path)
-    places, faults = Places(path), Faults()
+    experiments = read_experiments(path)
+    first = experiments[0]
+    if not first.name:
+        return _with_transfer(_opened(first, first.file, path, beside), first, beside, alone=alone)
+    described = [
+        (each.name, _described(each, beside)[1]) for each in experiments if each.role == "identification"
+    ]
+    opened = {}
+    for each in experiments:
+        file = with_parameters_of(each, _described(each, beside)[1], described)
+        opened[each.name] = _opened(each, file, path, beside)
+    roles = {each.name: each.role for each in experiments if each is not first}
+    every = [opened[each.name].hashes for each in experiments]
+    return replace(
+        opened[first.name],
+        hashes={**opened[first.name].hashes, "study": _digest(every)},
+        together={name: opened[name] for name, role in roles.items() if role == "identification"},
+        transfer={name: opened[name] for name, role in roles.items() if role == "validation"},
+    )
+
+
+def _described(experiment: ExperimentFile, beside: Beside) -> tuple[Path, Building]:
+    """The building file of an experiment, and the building with the values that it sets."""
+    file, places = experiment.file, experiment.places
     with places.blame("building"):
         described = find(file.building, beside)
     as_described = load(described)
     with places.blame("set"):
-        building = as_described.replace(file.set)
+        return described, as_described.replace(file.set)
+
+
+def _opened(experiment: ExperimentFile, file: StudyFile, path: Path, beside: Beside) -> StudyInputs:
+    """One experiment with its files."""
+    places, faults = experiment.places, Faults()
+    described, building = _described(experiment, beside)
     building = _with_weather(building, file, places)
     file, building = with_combined_outputs(file, building, places)
     building = tied_building(file, building, places)
@@ -99,16 +128,23 @@ def _from_file(path: Path, beside: Beside, *, alone: bool = False) -> StudyInput
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
-    others: dict[str, StudyInputs] = {}
-    for name, entry in ({} if alone else file.transfer).items():
-        with places.blame("transfer", name, "study"):
+    return StudyInputs(
+        file, building, climate, compared, read, quality, places, hashes, path, experiment=experiment.name
+    )
+
+
+def _with_transfer(inputs: StudyInputs, study: ExperimentFile, beside: Beside, *, alone: bool) -> StudyInputs:
+    """The same with the studies on which the calibrated building is validated."""
+    hashes, others, path = dict(inputs.hashes), {}, inputs.source_file
+    for name, entry in ({} if alone else study.file.transfer).items():
+        with study.places.blame("transfer", name, "study"):
             other = find(entry.study, beside)
         if other.resolve() == path.resolve():
             continue  # one that extends a study has its entries, and may be one of them
         # What another study transfers to is its own affair.
         others[name] = _from_file(other, Beside(other.parent, beside.allow_outside), alone=True)
         hashes["study"] = _digest([hashes["study"], others[name].hashes])
-    return StudyInputs(file, building, climate, compared, read, quality, places, hashes, path, others)
+    return replace(inputs, hashes=hashes, transfer=others)
 
 
 def _with_weather(building: Building, plan: StudyPlan, places: Places) -> Building:
@@ -187,7 +223,13 @@ def with_measurements(inputs: StudyInputs, measurements: Measurements) -> StudyI
     Returns
     -------
     StudyInputs
+
+    Raises
+    ------
+    InputError
+        The study has several experiments.
     """
+    inputs.require_alone("other measurements replace those of one data set", validated=False)
     plan = inputs.plan
     quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))
     compared = _masked(measurements, plan, quality)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any, Final
 
 from mascarin.building.json_schemas import schema_of
-from mascarin.study.file.data_sources import OF_THE_TABLE
+from mascarin.study.file.data_sources import OF_THE_TABLE, Experiment
 from mascarin.study.file.description import StudyFile
 
 #: Classes whose keys `with_shared_table` takes from the weather or the measurements.
 _TABLES: Final = ("MeasuredTable", "MeasuredWeather")
+_EXPERIMENTS: Final[dict[str, Any]] = {"required": ["experiments"]}
 
 
 def study_schema() -> dict[str, Any]:
@@ -18,7 +19,8 @@ def study_schema() -> dict[str, Any]:
     Returns
     -------
     dict
-        Keys of a table are required once, in the weather or in the measurements.
+        Keys of a table are required once, in the weather or in the measurements. What every experiment may
+        state for itself is required of a study without experiments alone.
 
     Examples
     --------
@@ -35,7 +37,12 @@ def study_schema() -> dict[str, Any]:
     schema["properties"]["measurements"] = {"anyOf": [held, {"type": "null"}], **measurements}
     whole = schema["anyOf"][0]
     whole["required"].remove("measurements")
-    whole["allOf"] = [_once(key) for key in shared]
+    own = [key for key in Experiment.model_fields if key in whole["required"]]
+    whole["required"] = [key for key in whole["required"] if key not in own]
+    whole["allOf"] = [
+        {"anyOf": [_EXPERIMENTS, {"required": own}]},
+        *({"anyOf": [_EXPERIMENTS, *_once(key)["anyOf"]]} for key in shared),
+    ]
     keys = parts["Sensor"]["properties"]
     for name, usual in (
         ("uncertainty", "expanded_uncertainty"),

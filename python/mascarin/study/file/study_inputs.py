@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
 from mascarin.study.file.description import StudyFile
+from mascarin.study.file.locations import Places
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.study.file.description import IdentificationPlan, StudyPlan
-    from mascarin.study.file.locations import Places
     from mascarin.tables.quality import Stretch
     from mascarin.weather import Climate, Measurements
 
@@ -45,6 +45,10 @@ class StudyInputs:
         The study file; None for a study made of objects.
     transfer : mapping of str to StudyInputs
         Other houses, seasons and phases, on which the calibrated building is validated.
+    experiment : str
+        Name of the experiment; empty where the study has no experiments.
+    together : mapping of str to StudyInputs
+        Other experiments that are identified together with this one.
     """
 
     plan: StudyPlan
@@ -57,6 +61,58 @@ class StudyInputs:
     hashes: dict[str, str]
     path: Path | None = None
     transfer: Mapping[str, StudyInputs] = field(default_factory=dict)
+    experiment: str = ""
+    together: Mapping[str, StudyInputs] = field(default_factory=dict)
+
+    def require_alone(self, what: str, *, validated: bool = True) -> None:
+        """Refuse what is made of one data set in a study of several experiments.
+
+        Parameters
+        ----------
+        what : str
+            Why, in words.
+        validated : bool
+            Whether those that are only validated count, too.
+
+        Raises
+        ------
+        InputError
+            The study has several.
+        """
+        if self.experiment if validated else self.together:
+            raise InputError(
+                f"{self.places.file}: experiments: found several data sets, expected a study of one: {what}. "
+                "Write a study file of one experiment, which extends this one or its base"
+            )
+
+    @property
+    def file_places(self) -> Places:
+        """Lines of the whole study file, those of its experiments included."""
+        return Places(self.path) if self.experiment else self.places
+
+    @property
+    def others(self) -> dict[str, StudyInputs]:
+        """All other experiments of the study, those that are identified first."""
+        return {**self.together, **self.transfer} if self.experiment else {}
+
+    @property
+    def measured_columns(self) -> set[str]:
+        """Columns of the table of measurements that sensors are compared with, by their names there."""
+        columns = {column for sensor in self.plan.sensors.values() for column in sensor.columns}
+        if not isinstance(self.plan, StudyFile):
+            return columns
+        entries = (self.plan.measurements.column_of(column) for column in columns)
+        return {entry if isinstance(entry, str) else str(entry.get("column", "")) for entry in entries}
+
+    @property
+    def own_paths(self) -> set[str]:
+        """Parameters of which every experiment has its own value, by their paths in the building."""
+        plan = self.plan.identification
+        return {
+            self.building.parameter(path).path
+            for path, free in ({} if plan is None else plan.parameters).items()
+            if free is not None and free.per_experiment
+        }
 
     @property
     def source_file(self) -> Path:

@@ -83,6 +83,7 @@ def write_study(inputs: StudyInputs, path: Path) -> str:
 
 def _content(inputs: StudyInputs) -> dict[str, Any]:
     """The keys of the study file."""
+    inputs.require_alone("what is written would be the study of the first one; copy the file instead")
     plan = inputs.plan.model_dump(mode="json", exclude_unset=True)
     for name, sensor in inputs.plan.sensors.items():
         if sensor.combined is not None:

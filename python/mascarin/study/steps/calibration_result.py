@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin.calibration.errors.posterior_checks import widening, with_wider_intervals
 from mascarin.linear_algebra import one_thread
 from mascarin.study.carried.bands import daily_means, day_numbers
 from mascarin.study.carried.calibrated_building import OtherNumbers, SensorRecord, with_posterior
@@ -19,6 +20,8 @@ from mascarin.study.steps.residuals import DRIVERS
 from mascarin.study.steps.sky_error import sky_effect
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from mascarin.building import Building
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.errors.posterior_checks import Contradiction
@@ -45,6 +48,8 @@ class Calibrated:
         Forms of the model, where errors of sensors and model are estimated.
     contradictions : list of Contradiction
         By what the model contradicts its own data or what is known.
+    together : dict of str to Calibrated
+        The other experiments that were identified together with this one.
     """
 
     run: ModelRun
@@ -53,6 +58,7 @@ class Calibrated:
     profiles: list[Profile]
     combination: Combination | None
     contradictions: list[Contradiction]
+    together: dict[str, Calibrated] = field(default_factory=dict)
 
     @staticmethod
     def judged(
@@ -62,11 +68,27 @@ class Calibrated:
         intervals: PredictionIntervals,
         profiles: list[Profile],
         combination: Combination | None,
+        together: Mapping[str, Calibrated] | None = None,
     ) -> Calibrated:
-        """The calibrated model, its intervals as wide as what contradicts it requires."""
+        """The calibrated model, its intervals as wide as what contradicts it requires.
+
+        What contradicts it in another experiment makes the intervals of the parameters wider, too.
+        """
         found = contradictions(study, run, fit, intervals, combination)
-        fit, intervals = with_doubt(study, run, fit, intervals, found)
-        return Calibrated(replace(run, fit=fit), fit, intervals, profiles, combination, found)
+        _, intervals = with_doubt(study, run, fit, intervals, found)
+        known = {one.text for one in found}
+        for name, other in (together or {}).items():
+            found += [
+                replace(one, text=f"{name}: {one.text}")
+                for one in other.contradictions
+                if one.text not in known
+            ]
+        factor = widening(found)
+        if factor > 1.0:
+            fit = with_wider_intervals(fit, factor)
+        return Calibrated(
+            replace(run, fit=fit), fit, intervals, profiles, combination, found, dict(together or {})
+        )
 
 
 @one_thread()
@@ -81,13 +103,31 @@ def calibrated(study: StudyContext, runs: ModelRuns) -> Calibrated:
         Its models.
     """
     if not study.estimates_errors:
+        others = {}
+        for name, (run, fit) in runs.together().items():
+            context = study.together[name]
+            intervals = prediction_intervals(context, run, fit, slopes(context, run, fit))
+            others[name] = Calibrated.judged(context, run, fit, intervals, [], None)
         run, fit = runs.fitted()
         intervals = prediction_intervals(study, run, fit, slopes(study, run, fit))
-        return Calibrated.judged(study, run, fit, intervals, runs.profiled(fit), None)
+        return Calibrated.judged(study, run, fit, intervals, runs.profiled(fit), None, others)
     found = runs.combination()
+    others = {name: _combined(study.together[name], found.of_experiment(name), []) for name in study.together}
+    return _combined(study, found, runs.profiled(runs.plain()), others)
+
+
+def _combined(
+    study: StudyContext,
+    found: Combination,
+    profiles: list[Profile],
+    together: Mapping[str, Calibrated] | None = None,
+) -> Calibrated:
+    """The calibrated model of an experiment from its forms."""
     best = found.forms[0]
     known = (best.fit.problem, best.fit.trace, best.fit.nominal_building)
-    key = [(form.label, form.fit.x.tolist()) for form in found.forms]
+    key: list[object] = [(form.label, form.fit.x.tolist()) for form in found.forms]
+    if study.first is not None:
+        key.append(study.inputs.experiment)
     fit = kept(study.workspace, ("estimates", key), lambda: estimates_of(study, found), known)
     intervals = kept(study.workspace, ("intervals", key), lambda: combined_intervals(study, found))
     note = "after the calibration; its parameters are the same on all other days"
@@ -95,7 +135,7 @@ def calibrated(study: StudyContext, runs: ModelRuns) -> Calibrated:
         note += f"; of {len(found.forms)} forms '{best.label}' is used, "
         note += f"with {100.0 * found.weights[0]:.0f} % of the weight by days left out of the identification"
     run = replace(best.run, label="fitted", fit=fit, note=note)
-    return Calibrated.judged(study, run, fit, intervals, runs.profiled(runs.plain()), found)
+    return Calibrated.judged(study, run, fit, intervals, profiles, found, together)
 
 
 def building_with_posterior(

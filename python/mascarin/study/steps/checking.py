@@ -45,6 +45,8 @@ def check(study: StudyContext) -> None:
     InputError
         File, line and entry of the study, what was found, what was expected, what to do.
     """
+    for other in study.together.values():
+        check(other)
     _periods(study)
     with study.places.blame("periods"):
         _ = study.models.nominal
@@ -58,24 +60,36 @@ def check(study: StudyContext) -> None:
 
 
 def _elsewhere(study: StudyContext) -> None:
-    """Refuse to validate on what is identified, or twice on the same: one table and common times."""
-    records = [("this study", study)]
-    for name, inputs in study.inputs.transfer.items():
-        other = type(study)(inputs)
-        with study.places.blame("transfer", name, "study"):
+    """Refuse to use the same data twice: one table, common columns and common times."""
+    records = [(f"'{study.inputs.experiment}'" if study.inputs.experiment else "this study", study)]
+    key = "experiments" if study.inputs.experiment else "transfer"
+    for name, inputs in {**study.inputs.together, **study.inputs.transfer}.items():
+        other = study.together.get(name) or type(study)(inputs)
+        place = (name,) if key == "experiments" else (name, "study")
+        if name not in study.together and key == "experiments":
             check(other)
+        with study.inputs.file_places.blame(key, *place):
+            if key == "transfer":
+                check(other)
             for before, earlier in records:
-                if earlier.inputs.hashes["measurements"] != inputs.hashes["measurements"]:
-                    continue
-                for span in _compared(other):
-                    for known in _compared(earlier):
-                        if span.overlaps(known):
-                            raise InputError(
-                                f"found {span.words} of the table that {before} compares from "
-                                f"{known.words}, expected another table, or times that the two do not share: "
-                                "correct 'measurements' or 'periods' of one of them"
-                            )
+                _apart_from(before, earlier, other)
         records.append((f"'{name}'", other))
+
+
+def _apart_from(before: str, earlier: StudyContext, other: StudyContext) -> None:
+    """Refuse a record that another one has already: of the same columns of a table at the same time."""
+    known_inputs, inputs = earlier.inputs, other.inputs
+    if known_inputs.hashes["measurements"] != inputs.hashes["measurements"]:
+        return
+    common = known_inputs.measured_columns & inputs.measured_columns
+    for span in _compared(other) if common else ():
+        for known in _compared(earlier):
+            if span.overlaps(known):
+                raise InputError(
+                    f"found {span.words} of the table that {before} compares from {known.words} (column "
+                    f"{min(common)}), expected another table, other columns, or times that the two do not "
+                    "share: correct 'measurements' or 'periods' of one of them"
+                )
 
 
 def _compared(study: StudyContext) -> list[PeriodSpan]:
@@ -242,7 +256,7 @@ def _runs(study: StudyContext) -> None:
             with blame("sensors", name):
                 require_comparable(study.observation, study.used[period][:, s], period, [name])
     if file.identification is not None:
-        with blame("identification"):
+        with study.inputs.file_places.blame("identification"):
             _ = study.problem()
     for name, variant in file.variants.items():
         with blame("variants", name):

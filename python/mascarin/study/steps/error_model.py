@@ -10,8 +10,9 @@ import numpy as np
 
 from mascarin._io.durations import seconds_of
 from mascarin.calibration import SearchOptions
-from mascarin.calibration.errors.joint_estimation import estimate_jointly
-from mascarin.calibration.errors.joint_posterior import ErrorStatement
+from mascarin.calibration.base.joined_problem import shares_of
+from mascarin.calibration.errors.joint_estimation import estimate_experiments
+from mascarin.calibration.errors.linear_estimation import ErrorStatement
 from mascarin.calibration.errors.sensor_errors import error_columns
 from mascarin.calibration.errors.stated_errors import shared_errors, sizes_of
 from mascarin.measurements.scatter import scatter
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration
+    from mascarin.calibration.base.joined_problem import Share
     from mascarin.calibration.errors.joint_posterior import JointPosterior
     from mascarin.calibration.errors.sensor_errors import SensorError
     from mascarin.measurements.observation import Observation
@@ -107,12 +109,11 @@ def local_hours(study: StudyContext) -> Array:
     return np.asarray((local - local[0].normalize()).total_seconds() / 3600.0, dtype=np.float64)
 
 
-def unknowns(study: StudyContext, simulation: Simulation, fit: Calibration) -> list[Unknown]:
+def unknowns(study: StudyContext, simulation: Simulation, known: set[str]) -> list[Unknown]:
     """Numbers that are not estimated: all others with a range, and the depths of sensors.
 
     A range contains a number with a probability of 95 %, so that its quarter is the standard uncertainty.
     """
-    known = set(fit.problem.paths)
     depth: dict[str, float] = {}
     for name in used_sensors(study):
         sensor = study.plan.sensors[name]
@@ -133,22 +134,50 @@ def persistence_of(study: StudyContext) -> float:
     return seconds_of(plan.persistence) / 86400.0
 
 
-def statement(study: StudyContext, fit: Calibration) -> ErrorStatement:
-    """What is known of the errors before the calibration."""
+def statement(study: StudyContext, share: Share) -> ErrorStatement:
+    """What is known of the errors of an experiment before the calibration."""
     plan = study.inputs.calibration_plan.discrepancy or DiscrepancyPlan()
-    rows = study.rows
+    rows, sensors = study.rows, share.problem.sensors
+    names = tuple(sensor.name for sensor in sensors)
     return ErrorStatement(
-        sensor_errors(study, [sensor.name for sensor in fit.problem.sensors]),
+        sensor_errors(study, list(names)),
         local_hours(study)[rows],
         study.observation.interval,
-        np.array([max(plan.limit * sensor.span, 1e-9) for sensor in fit.problem.sensors]),
+        np.array([max(plan.limit * sensor.span, 1e-9) for sensor in sensors]),
         persistence_of(study),
+        rows=share.rows,
+        columns=share.sensors,
+        names=names,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Experiment:
+    """One experiment of a calibration: its part of the problem, its model, and what is not known of it."""
+
+    study: StudyContext
+    share: Share
+    simulation: Simulation
+    unknown: tuple[Unknown, ...]
+
+    def effects(self, values: Array) -> Array:
+        """Effects of the unknown numbers on its used sensors, from the values of all parameters (P,)."""
+        study, sensors = self.study, self.study.plan.sensors
+        columns = [s for s, name in enumerate(study.observation.names) if sensors[name].use]
+        own = values[list(self.share.columns)].tolist()
+        base = self.simulation.vector(dict(zip(self.share.problem.paths, own, strict=True)))
+        seen = _part(study.observation, study.rows)
+        return effects_of_unknowns(study, seen, self.simulation, base, self.unknown)[:, columns]
+
+    def names(self, own: str) -> list[str]:
+        """Names of the unknown numbers: a depth of a sensor is of the experiment, all others are shared."""
+        paths = (number.path for number in self.unknown)
+        return [f"{own} {path}" if path.startswith("sensors.") else path for path in paths]
 
 
 def with_errors(
     study: StudyContext, variant: str | None, fit: Calibration
-) -> tuple[Calibration, JointPosterior, Unknowns]:
+) -> tuple[Calibration, tuple[JointPosterior, ...], tuple[Unknowns, ...]]:
     """Estimate the parameters of a calibration again, together with the errors.
 
     Parameters
@@ -158,38 +187,49 @@ def with_errors(
     variant : str or None
         Which model.
     fit : Calibration
-        Its calibration without errors.
+        Its calibration without errors, of all experiments.
 
     Returns
     -------
     Calibration
         With estimates and intervals that account for the errors.
-    JointPosterior
-        Parameters and errors together.
-    Unknowns
-        Numbers that are not estimated; their directions are the last effects of sensors of the joint
+    tuple of JointPosterior
+        Parameters and errors together, as each experiment has them.
+    tuple of Unknowns
+        Numbers of each that are not estimated; their directions are the last effects of sensors of the joint
         distribution.
     """
-    short, rows = study.models.for_calibration(variant), study.rows
-    columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
-    all_unknowns = unknowns(study, short, fit)
+    experiments = []
+    for context, share in zip(study.experiments.values(), shares_of(fit.problem), strict=True):
+        short = context.models.for_calibration(variant)
+        unknown = unknowns(context, short, set(share.problem.paths))
+        experiments.append(_Experiment(context, share, short, tuple(unknown)))
+    named = [each.names(name) for name, each in zip(study.experiments, experiments, strict=True)]
+    every = list(dict.fromkeys(name for names in named for name in names))
+    places = [[every.index(name) for name in names] for names in named]
     basis: list[Array] = []
 
     def further(values: Array) -> Array:
-        base = short.vector(dict(zip(fit.problem.paths, values.tolist(), strict=True)))
-        effects = effects_of_unknowns(study, _part(study.observation, rows), short, base, all_unknowns)[
-            :, columns
-        ]
+        effects = np.zeros((*fit.problem.measured.shape, len(every)))
+        for each, place in zip(experiments, places, strict=True):
+            effects[each.share.rows, each.share.sensors, place] = each.effects(values)
         basis[:] = [_directions(effects, fit.problem.sigma, fit.problem.mask)]
         return np.asarray(effects @ basis[0])
 
+    identities = [each.simulation.identity for each in experiments]
+    identity = identities[0] if len(identities) == 1 else identities
+
     def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
-        return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
+        return kept(study.workspace, ("linear", identity, fit.problem.fingerprint(), key), make)
 
     plan = study.inputs.calibration_plan
     rules = SearchOptions(slopes=plan.slopes, posterior=plan.posterior, draws=plan.draws)
-    found, joint = estimate_jointly(fit, statement(study, fit), rules, further, keep=keep)
-    return found, joint, Unknowns(tuple(all_unknowns), basis[0])
+    stated = [statement(each.study, each.share) for each in experiments]
+    found, joints = estimate_experiments(fit, stated, rules, further, keep=keep)
+    told = tuple(
+        Unknowns(each.unknown, basis[0][place]) for each, place in zip(experiments, places, strict=True)
+    )
+    return found, joints, told
 
 
 def _directions(effects: Array, sigma: Array, mask: npt.NDArray[np.bool_]) -> Array:

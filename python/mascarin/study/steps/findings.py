@@ -83,6 +83,8 @@ class FormFit:
         Parameters and errors together.
     unknown : Unknowns
         Numbers that are not estimated.
+    together : mapping of str to FormFit
+        Other experiments that were identified together with this one.
     """
 
     choice: Choice
@@ -90,6 +92,7 @@ class FormFit:
     fit: Calibration
     joint: JointPosterior
     unknown: Unknowns
+    together: Mapping[str, FormFit] = field(default_factory=dict)
 
     @property
     def label(self) -> str:
@@ -116,6 +119,10 @@ class Combination:
 
     forms: tuple[FormFit, ...]
     weights: Array
+
+    def of_experiment(self, name: str) -> Combination:
+        """The same for another experiment that was identified together with this one."""
+        return Combination(tuple(form.together[name] for form in self.forms), self.weights)
 
     @staticmethod
     def of(forms: list[FormFit]) -> Combination:

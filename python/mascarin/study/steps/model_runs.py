@@ -13,6 +13,7 @@ import numpy as np
 from mascarin._io.sealed import own_files
 from mascarin.calibration import profiles
 from mascarin.calibration.base.evaluations import ForeignRecordError
+from mascarin.calibration.base.joined_problem import of_experiment, shares_of
 from mascarin.progress import Progress, reporting
 from mascarin.simulation.nominal import of_nominal
 from mascarin.simulation.run_warnings import of_base
@@ -27,6 +28,7 @@ from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, CalibrationProblem, Profile
+    from mascarin.calibration.base.joined_problem import Share
     from mascarin.progress import ProgressOption, Report
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.simulation import Simulation
@@ -158,15 +160,29 @@ class ModelRuns:
             # The problem holds the model, and the trace all evaluations: both are there already.
             key = ("form", label(choice), plain.x.tolist(), plain.cost)
             known = (plain.problem, plain.trace, plain.nominal_building)
-            fit, joint, unknown = kept(setup.workspace, key, lambda: with_errors(setup, name, plain), known)
-        whole = setup.models.over_record(name)
+            fit, joints, unknown = kept(setup.workspace, key, lambda: with_errors(setup, name, plain), known)
         note = "the building as described" if name is None else label(choice)
-        run = compared(setup, label(choice), whole, whole.vector(fit.values), fit, note)
-        return FormFit(choice, run, fit, joint, unknown)
+        experiments = setup.experiments.items()
+        own = {}
+        for (each, context), share, joint, told in zip(
+            experiments, shares_of(fit.problem), joints, unknown, strict=True
+        ):
+            run, fit_of_it = _of_experiment(context, fit, share, name, label(choice), note)
+            own[each] = FormFit(choice, run, fit_of_it, joint.of_parameters(share.columns), told)
+        return replace(own[setup.inputs.experiment], together={n: own[n] for n in setup.together})
 
     def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
-        fit, whole = self._plain(variant), self._setup.models.over_record(variant)
-        return compared(self._setup, label, whole, whole.vector(fit.values), fit, note), fit
+        fit = self._plain(variant)
+        return _of_experiment(self._setup, fit, shares_of(fit.problem)[0], variant, label, note)
+
+    def together(self) -> dict[str, tuple[ModelRun, Calibration]]:
+        """The calibrated building in the other experiments, without errors of sensors and model."""
+        fit, setup, note = self._plain(None), self._setup, "after the calibration of all experiments"
+        shares = shares_of(fit.problem)[1:]
+        return {
+            name: _of_experiment(context, fit, share, None, "fitted", note)
+            for (name, context), share in zip(setup.together.items(), shares, strict=True)
+        }
 
     def plain(self) -> Calibration:
         """The calibration of the building as described, without errors of sensors and model."""
@@ -217,6 +233,15 @@ class ModelRuns:
             return self.candidate(name)[0]
         simulation = self._setup.models.over_record(name)
         return compared(self._setup, name, simulation, simulation.values, None, self._note(name))
+
+
+def _of_experiment(
+    context: StudyContext, fit: Calibration, share: Share, variant: str | None, label: str, note: str
+) -> tuple[ModelRun, Calibration]:
+    """The run of an experiment with the estimates of all, and the calibration as it has it."""
+    whole = context.models.over_record(variant)
+    own = of_experiment(fit, share, context.variants.building_of(variant))
+    return compared(context, label, whole, whole.vector(own.values), own, note), own
 
 
 def _starting(problem: CalibrationProblem, first: Calibration) -> CalibrationProblem:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.units import difference
+from mascarin.calibration.base.joined_problem import shares_of
 from mascarin.calibration.errors.pseudo_bma_weights import LARGEST_LOSS, SMALL_ON_A_DAY
 from mascarin.study.steps.error_model import stated_sizes, statement
 from mascarin.study_document.analysis import TableEntry
@@ -126,7 +127,7 @@ _PARTS: Final = {
 
 def _of_model(study: StudyContext, combination: Combination) -> dict[str, ModelErrorEntry]:
     best = combination.forms[0]
-    sizes, limit = best.joint.error_covariances, statement(study, best.fit).limit
+    sizes, limit = best.joint.error_covariances, statement(study, shares_of(best.fit.problem)[0]).limit
     columns = {
         "repeating": np.sqrt(np.diag(sizes.hour)),
         "day": np.sqrt(np.diag(sizes.day)),

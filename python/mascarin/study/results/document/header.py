@@ -48,7 +48,7 @@ def header(study: StudyContext, command: str) -> StudyDocument:
     return StudyDocument(
         mascarin_version=__version__,
         title=file.name,
-        intro=[part.strip() for part in file.about.split("\n\n") if part.strip()],
+        intro=[*(part.strip() for part in file.about.split("\n\n") if part.strip()), *_experiments(study)],
         observed=ObservedEntry(label=file.observed, note=file.observed_note),
         seed=_seed(file),
         timezone=study.climate.timezone,
@@ -63,6 +63,19 @@ def header(study: StudyContext, command: str) -> StudyDocument:
         quality=_quality(study),
         **reference,
     )
+
+
+def _experiments(study: StudyContext) -> list[str]:
+    """Which experiments the study has, and about which all is that names none."""
+    inputs = study.inputs
+    if not inputs.others:
+        return []
+    identified = ", ".join((inputs.experiment, *inputs.together))
+    validated = f" Validated: {', '.join(inputs.transfer)}." if inputs.transfer else ""
+    return [
+        f"Experiments that are identified: {identified}.{validated} What names no experiment is about "
+        f"{inputs.experiment}."
+    ]
 
 
 def _reference(reference: Publication) -> ReferenceEntry:

@@ -22,8 +22,7 @@ from mascarin.study.results.document.sensitivity import importance
 from mascarin.study.steps.days import day_words, days_table
 from mascarin.study.steps.derived_quantities import conductance_table, derived_table
 from mascarin.study.steps.prediction_intervals import interval_entries, interval_table
-from mascarin.study.transfer.comparison import TITLE as TRANSFER
-from mascarin.study.transfer.comparison import transfer_notes, transfer_table
+from mascarin.study.transfer.comparison import title_of, transfer_notes, transfer_table
 from mascarin.study_document.analysis import (
     ContradictionEntry,
     DaysEntry,
@@ -92,9 +91,11 @@ def document(findings: Findings) -> StudyDocument:
         },
     )
     models = {"nominal": findings.nominal, "fitted": findings.fitted}
+    compared = comparison(findings.models, findings.criteria)
+    elsewhere = all(entry.sound for entry in findings.transfer.values())
     return StudyDocument.joined(
         header(study, "study"),
-        comparison(findings.models, findings.criteria),
+        compared.model_copy(update={"sound": compared.sound and elsewhere}),
         estimates(study, fit, stated=findings.prediction_intervals.stated),
         coefficients(study, models, (*fit.problem.paths, *published)),
         profile_entries(findings.profiles),
@@ -195,6 +196,6 @@ def _notes(findings: Findings) -> list[NoteEntry]:
         ("Residuals", findings.notes),
         ("Choice of days", day_words(findings.days)),
         ("Aims that are not met", missed),
-        (TRANSFER, transfer_notes(findings.transfer)),
+        (title_of(findings.context), transfer_notes(findings.transfer)),
     )
     return [NoteEntry(title=title, text=text) for title, texts in titled for text in texts]
