@@ -15,9 +15,10 @@ def add(draw: Draw, tree: Json) -> None:
         return
     layered = [name for name, part in sorted(tree["surfaces"].items()) if len(_layers(tree, part)) > 1]
     zones = sorted(tree["zones"])
-    schedules = [
-        name for name, part in sorted(tree.get("schedules", {}).items()) if part["kind"] == "fraction"
-    ]
+    schedules, warm = (
+        [name for name, part in sorted(tree.get("schedules", {}).items()) if part["kind"] == kind]
+        for kind in ("fraction", "temperature")
+    )
     sources: Json = {}
     for name in layered[: draw.of(1, 1, 2, 4)]:
         layers = [layer.get("name", layer["material"]) for layer in _layers(tree, tree["surfaces"][name])]
@@ -25,7 +26,7 @@ def add(draw: Draw, tree: Json) -> None:
         if draw.chance(0.5):
             source["electric"] = _driven(draw, "power", draw.log(1.0, 150.0), schedules)
         else:
-            source["water"] = _water(draw, schedules)
+            source["water"] = _water(draw, schedules, warm)
         if draw.chance(0.5):
             source["thermostat"] = {
                 "zone": draw.one(zones),
@@ -54,10 +55,11 @@ def _driven(draw: Draw, key: str, value: float, schedules: list[str]) -> Any:
     return value
 
 
-def _water(draw: Draw, schedules: list[str]) -> Json:
+def _water(draw: Draw, schedules: list[str], warm: list[str]) -> Json:
+    supplies = [draw.number(10.0, 50.0), {"column": "rain"}, *({"schedule": name} for name in warm)]
     water: Json = {
         "flow": _driven(draw, "flow", draw.log(1e-3, 0.5), schedules),
-        "supply": draw.of(draw.number(10.0, 50.0), {"column": "rain"}),
+        "supply": draw.one(supplies),
     }
     water |= (
         {"conductance": draw.log(0.5, 200.0)}

@@ -182,7 +182,9 @@ impl<S: Real> PhysicalLimits<S> {
         }
         for (source, at) in numbers.heat_sources.iter().zip(&conditions.heat_sources) {
             if let Some(water) = &source.water {
-                rows.iter().for_each(|row| act(water.supply.at(row)));
+                for row in rows {
+                    act(water.supply.at(row));
+                }
                 act(at.supply);
             }
         }

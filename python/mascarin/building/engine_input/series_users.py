@@ -72,9 +72,9 @@ def _of_heat_sources(building: Description) -> Iterator[Use]:
         schedule = getattr(driven, "schedule", None)
         if schedule is not None:
             yield schedule, ("heat_sources", name, *path.split("."), "schedule"), "fraction"
-        for place, temperature in source.temperatures.items():
+        for path_of_temperature, temperature in source.temperatures.items():
             if temperature.schedule is not None:
-                location = ("heat_sources", name, *place.split("."), "schedule")
+                location = ("heat_sources", name, *path_of_temperature.split("."), "schedule")
                 yield temperature.schedule, location, "temperature"
 
 
@@ -142,9 +142,9 @@ def _columns_of_heat_sources(building: Description) -> Iterator[tuple[ColumnCour
         path, driven = source.driven
         if driven.course is not None:
             yield driven.course, ("heat_sources", name, *path.split("."), "column")
-        for place, temperature in source.temperatures.items():
+        for path_of_temperature, temperature in source.temperatures.items():
             if temperature.column is not None:
-                location = ("heat_sources", name, *place.split("."), "column")
+                location = ("heat_sources", name, *path_of_temperature.split("."), "column")
                 yield temperature_course(temperature.column), location
 
 
