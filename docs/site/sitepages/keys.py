@@ -36,7 +36,8 @@ _NAMES: Final = {
     "materials": "MATERIAL", "constructions": "CONSTRUCTION", "schedules": "SCHEDULE", "zones": "ZONE",
     "air_paths": "PATH", "ventilation_units": "UNIT", "openings": "OPENING", "vents": "VENT",
     "controls": "CONTROL", "surfaces": "SURFACE",
-    "glazings": "GLAZING", "windows": "WINDOW", "shades": "SHADE", "sensors": "SENSOR", "heat_sources": "SOURCE", "layers": "LAYER",
+    "glazings": "GLAZING", "windows": "WINDOW", "shades": "SHADE", "sensors": "SENSOR", "layers": "LAYER",
+    "heat_sources": "SOURCE",
 }  # fmt: skip
 
 
