@@ -114,7 +114,12 @@ def test_every_kind_of_output_is_described_as_buildings_have_it() -> None:
     vents = {"flap": {"zone": "back", "area": 0.1, "elevation": 1, "pressure": "none"}}
     controls = {"night": {"zone": "back", "indoor": {"open": 24, "close": 22}}}
     derived = {"doubled": "2*back.air_temperature"}
-    aired = damp.replace({"vents": vents, "controls": controls, "derived_outputs": derived})
+    layers = {name: damp.constructions[wall.construction].layers for name, wall in damp.surfaces.items()}
+    wall = next(name for name, listed in layers.items() if len(listed) > 1)
+    pipes = {"flow": 0.1, "supply": 30, "effectiveness": 0.5}
+    sources = {"pipes": {"surface": wall, "after": layers[wall][0].name, "water": pipes}}
+    more = {"vents": vents, "controls": controls, "derived_outputs": derived, "heat_sources": sources}
+    aired = damp.replace(more)
     for building in [*map(mc.load, files), aired]:
         for output in building.outputs():
             one = KINDS[output.kind]

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from typing import Any, get_args
 
 import random_air
+import random_heat_sources
 import random_laws
 import random_materials
 import random_shells
@@ -84,6 +85,7 @@ class _Maker:
         random_laws.add(Draw(f"laws {seed}"), tree)
         random_air.controlled_flows(tree)
         random_air.operative_set_points(tree)
+        random_heat_sources.add(Draw(f"heat sources {seed}"), tree)
         return tree
 
     def _site(self) -> Json:

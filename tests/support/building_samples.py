@@ -350,6 +350,35 @@ FREEDOM: dict[str, Any] = {
 }
 
 
+#: Heat sources between layers, by path.
+HEAT_SOURCES: dict[str, Any] = {
+    "heat_sources": {
+        "foil": {
+            "surface": "ceiling",
+            "after": "wax",
+            "electric": {"power": 15, "schedule": "day"},
+            "thermostat": {"zone": "room", "setpoint": 24, "range": 8, "mode": "heating"},
+        },
+        "plate": {"surface": "ceiling", "after": "wax", "electric": {"column": "T_out", "factor": 0.2}},
+        "pipes": {
+            "surface": "ceiling",
+            "after": "salt",
+            "water": {"flow": {"flow": 0.005, "schedule": "day"}, "supply": 18, "conductance": 9},
+            "thermostat": {"zone": "attic", "setpoint": {"schedule": "cool"}, "range": 12, "mode": "cooling"},
+        },
+        "tubes": {
+            "surface": "ceiling",
+            "after": "salt",
+            "water": {
+                "flow": {"column": "T_out", "unit": "kg/h", "factor": 0.3},
+                "supply": {"column": "T_out"},
+                "effectiveness": 0.7,
+            },
+        },
+    }
+}
+
+
 #: What a house has beside that: in zones by path, and other sections.
 IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
     ("room", "gains"): {"heater": {"column": "T_out", "radiative": 0.3}},
@@ -552,5 +581,5 @@ def everything() -> list[Building]:
             "zones.room.thermal_bridges": {"edge": edge},
         }
     )
-    further = [freedom, *imposed, converted]
+    further = [freedom, *imposed, converted, building.replace(HEAT_SOURCES)]
     return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *further, *melting]

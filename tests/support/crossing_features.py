@@ -156,6 +156,21 @@ def _controls(tree: Json) -> None:
     room["ventilation"] = {"fan": {"flow": 0.01, "control": "warmth"}}
 
 
+def _heat_sources(tree: Json) -> None:
+    tree["schedules"] = {"half": {"kind": "fraction", "value": 0.5}}
+    layer = tree["constructions"]["wall"]["layers"][0]
+    tree["constructions"]["active"] = {"layers": [layer | {"name": "lower"}, layer | {"name": "upper"}]}
+    tree["controls"] = {"cold": {"zone": "room", "indoor_below": {"open": 18, "close": 20}}}
+    faces = {"construction": "active", "area": 9, "tilt": 180, "outside": {"adiabatic": True}}
+    tree["surfaces"] |= {name: faces | {"inside": _side("room")} for name in ("heated", "wet")}
+    heating = {"zone": "room", "setpoint": 20, "mode": "heating"}
+    water = {"flow": {"flow": 0.02, "schedule": "half"}, "supply": 35, "conductance": 12}
+    tree["heat_sources"] = {
+        "mat": {"surface": "heated", "after": "lower", "electric": 60, "control": "cold"},
+        "pipes": {"surface": "wet", "after": "lower", "water": water, "thermostat": heating},
+    }
+
+
 def _openings(tree: Json) -> None:
     tree["openings"] = {"slit": {"zone": "room", "area": 0.02, "height": 0.5}}
 
@@ -298,6 +313,7 @@ FEATURES: Final[dict[str, Callable[[Json], None]]] = {
     "humidity": _humidity,
     "vents": _vents,
     "controls": _controls,
+    "heat sources": _heat_sources,
     "openings": _openings,
     "blinds": _blinds,
     "loads": _loads,

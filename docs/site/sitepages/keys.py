@@ -37,6 +37,7 @@ _NAMES: Final = {
     "air_paths": "PATH", "ventilation_units": "UNIT", "openings": "OPENING", "vents": "VENT",
     "controls": "CONTROL", "surfaces": "SURFACE",
     "glazings": "GLAZING", "windows": "WINDOW", "shades": "SHADE", "sensors": "SENSOR", "layers": "LAYER",
+    "heat_sources": "SOURCE",
 }  # fmt: skip
 
 

@@ -28,6 +28,7 @@ _UNITS: Final = {
     "temperature": "degC",
     "power": "W",
     "heat_flux": "W/m2",
+    "water_flow": "kg/s",
     "flow": "m3/s",
     "air_change": "1/h",
     "vapour": "kg/s",

@@ -200,6 +200,7 @@ LIMITS_OF_COURSES: Final = {
     "flow": (0.0, 1000.0),
     "air_change": (0.0, 1000.0),
     "vapour": (0.0, 10.0),
+    "water_flow": (0.0, 1000.0),
     "rain": (0.0, 1000.0),
     "relative_humidity": (0.0, 1.0),
     "humidity_ratio": (0.0, 0.2),

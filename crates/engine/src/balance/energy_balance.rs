@@ -32,11 +32,13 @@ pub enum Flow {
     Glass,
     /// Thermal bridges to outdoors, ground and measured temperatures.
     Bridges,
+    /// Heat sources in walls; of water that cools it is negative.
+    Sources,
 }
 
 impl Flow {
     /// All flows, in the order of the ledger's arrays.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Solar,
         Self::Convection,
         Self::Longwave,
@@ -50,6 +52,7 @@ impl Flow {
         Self::Transmitted,
         Self::Glass,
         Self::Bridges,
+        Self::Sources,
     ];
 
     /// Name in results.
@@ -69,6 +72,7 @@ impl Flow {
             Self::Transmitted => "transmitted",
             Self::Glass => "glass",
             Self::Bridges => "bridges",
+            Self::Sources => "sources",
         }
     }
 }

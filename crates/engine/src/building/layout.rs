@@ -2,7 +2,7 @@
 
 use super::glazing::GlassPlan;
 use super::ids::SideId;
-use crate::input::description::{Construction, Description, Material, Zone, ZoneLongwave};
+use crate::input::description::{Construction, Description, HeatSource, Material, Zone, ZoneLongwave};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
@@ -15,8 +15,10 @@ pub struct SurfacePlan {
     pub link_layers: Vec<Vec<usize>>,
     /// First and one past the last cell of each layer.
     pub layer_cells: Vec<(usize, usize)>,
-    /// True when its properties depend on temperature, or its panes absorb sun.
+    /// True when its properties depend on temperature, its panes absorb sun, or heat sources are in it.
     pub nonlinear: bool,
+    /// Heat sources in it, and the cell that is the plane of each: of no thickness, between two layers.
+    pub planes: Vec<(usize, usize)>,
     /// The panes of a window.
     pub glass: Option<GlassPlan>,
     /// Position in [`Plan::windows`](crate::building::plan::Plan::windows); none for a wall.
@@ -67,13 +69,18 @@ pub struct ZonePlan {
 
 impl SurfacePlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
-    pub(crate) fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
+    pub(crate) fn new(
+        description: &Description,
+        (surface, construction): (usize, &Construction),
+        first_cell: usize,
+    ) -> Self {
         if let Some(glazing) = &construction.glazing {
             return Self::of_glass(GlassPlan::new(glazing, construction.blind.as_ref()), first_cell);
         }
         let mut cell_layers = Vec::new();
         let mut link_layers = vec![Vec::new()];
         let mut layer_cells = Vec::new();
+        let mut planes = Vec::new();
         let mut nonlinear = false;
         for (index, layer) in construction.layers.iter().enumerate() {
             let start = cell_layers.len();
@@ -92,13 +99,23 @@ impl SurfacePlan {
                 }
             }
             layer_cells.push((start, cell_layers.len()));
+            let sources = description.heat_sources.iter().enumerate();
+            let here = |source: &HeatSource| source.surface == surface && source.layer == index;
+            let here: Vec<_> = sources.filter(|(_, source)| here(source)).map(|(k, _)| k).collect();
+            if !here.is_empty() {
+                planes.extend(here.into_iter().map(|k| (k, cell_layers.len())));
+                cell_layers.push(index);
+                link_layers.push(Vec::new());
+            }
         }
         Self {
             first_cell,
             cell_layers,
             link_layers,
             layer_cells,
-            nonlinear,
+            // What water takes and gives changes with its flow.
+            nonlinear: nonlinear || !planes.is_empty(),
+            planes,
             glass: None,
             window: None,
             thick: false,
@@ -113,6 +130,7 @@ impl SurfacePlan {
             link_layers: vec![Vec::new(); glass.cell_panes.len() + 1],
             layer_cells: Vec::new(),
             nonlinear: true,
+            planes: Vec::new(),
             glass: Some(glass),
             window: None,
             thick: false,

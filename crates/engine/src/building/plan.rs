@@ -82,9 +82,9 @@ impl Plan {
         let formulas = formulas::read(&description)?;
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
-        for wall in &description.surfaces {
-            let wall =
-                SurfacePlan::new(&description, &description.constructions[wall.construction], first_cell);
+        for (index, wall) in description.surfaces.iter().enumerate() {
+            let construction = &description.constructions[wall.construction];
+            let wall = SurfacePlan::new(&description, (index, construction), first_cell);
             first_cell += wall.cell_layers.len();
             walls.push(wall);
         }

@@ -8,11 +8,12 @@ use core::fmt::{Display, Write};
 use super::description::{
     AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth,
     DerivedOutput, Description, DirectedFlow, Door, Drying, Facing, FlowDensity, FormulaNumber, FrameShare,
-    Gain, Gap, Glazing, HeatFlux, Humidity, HumidityControl, HumiditySetPoint, IdealLoad, Infiltration,
-    Layer, Material, MeltingCurve, Mixing, Opening, OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw,
-    PublishedLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface, TextLaw, ThermalBridge,
-    UnitFlow, VapourGain, Vent, VentControl, Ventilation, VentilationUnit, WindOnVent, WindPressure,
-    WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
+    Gain, Gap, Glazing, HeatExchange, HeatFlux, HeatSource, HeatingMeans, Humidity, HumidityControl,
+    HumiditySetPoint, IdealLoad, Infiltration, Layer, Material, MeltingCurve, Mixing, Opening,
+    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PublishedLaw, Sensor, SetPoint, Side, Site, Sky,
+    Sorption, SunShares, Surface, TextLaw, ThermalBridge, Throttle, UnitFlow, VapourGain, Vent, VentControl,
+    Ventilation, VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave,
+    ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -105,7 +106,7 @@ macro_rules! walk {
 }
 
 walk!(Description { site, materials, constructions, zones, air_paths, directed_flows, doors, ventilation_units,
-    thermal_bridges, openings, vents, controls, surfaces, sensors, humidity, outputs }
+    thermal_bridges, openings, vents, controls, surfaces, heat_sources, sensors, humidity, outputs }
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse, horizon });
@@ -230,6 +231,16 @@ walk!(FrameShare { fraction } plain { is_frame });
 walk!(Side { facing, convection, heat_flux, emissivity, absorptance, area_factor, sky_view, height, longwave }
     plain { irradiance, behind_obstacles, exposure, shaded_by, own_shades, outline });
 walk!(HeatFlux { flux } plain { schedule });
+walk!(HeatSource { means, thermostat } plain { name, surface, layer, control });
+walk!(HeatingMeans by variant {
+    Electric { power } plain { schedule },
+    Water { flow, supply, specific_heat, exchange } plain { schedule },
+});
+walk!(HeatExchange by variant {
+    Conductance { conductance } plain {},
+    Effectiveness { effectiveness } plain {},
+});
+walk!(Throttle { setpoint, range } plain { zone, cooling });
 walk!(Facing by variant {
     Outdoors {} plain {},
     Zone {} plain { zone },

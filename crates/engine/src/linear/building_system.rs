@@ -130,6 +130,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         let condensed = match model.plan.walls[w].window {
             // Solar radiation absorbed in the panes.
             Some(window) => self.walls[w].condense_heated(enthalpy, &conditions.sun.windows[window].cells),
+            None if self.walls[w].has_sources() => self.walls[w].condense_with_sources(enthalpy),
             None => self.walls[w].condense(enthalpy),
         };
         (self.sources[w], self.responses[w]) = (condensed.source, condensed.response);

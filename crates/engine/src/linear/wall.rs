@@ -10,6 +10,7 @@ use crate::linear::tridiagonal::Tridiagonal;
 use crate::linear::wall_linearisation::PhaseChange;
 use crate::number::real::Real;
 use crate::physics::pcm::PcmHistory;
+use crate::weather::heat_sources::SourceConditions;
 
 pub use crate::linear::tridiagonal::{Condensed, Link, Response};
 pub use crate::linear::wall_linearisation::{Iterate, Start, Storage, StorageRule};
@@ -23,6 +24,9 @@ pub struct WallSystem<S> {
     pub storage: Vec<Storage<S>>,
     /// Thickness over stage length [m/s].
     pub(crate) rate: Vec<S>,
+    /// Heat released in each cell [W/m2], and what more of it a colder cell takes [W/(m2 K)]; empty in a wall without heat sources.
+    released: Vec<S>,
+    taken: Vec<S>,
     elimination: Tridiagonal<S>,
     phase_change: PhaseChange<S>,
 }
@@ -35,6 +39,8 @@ impl<S: Real> WallSystem<S> {
             links: solid_links(wall),
             storage: wall.cells.iter().map(|cell| Storage::constant(solid_capacity(&cell.matter))).collect(),
             rate: vec![S::zero(); n],
+            released: vec![S::zero(); if wall.planes { n } else { 0 }],
+            taken: vec![S::zero(); if wall.planes { n } else { 0 }],
             elimination: Tridiagonal::new(n),
             phase_change: PhaseChange::new(wall),
         }
@@ -57,6 +63,10 @@ impl<S: Real> WallSystem<S> {
     pub fn factor(&mut self, wall: &WallCoefficients<S>, stage: f64) -> Response<S> {
         self.set_stage_length(wall, stage);
         let (storage, rate) = (&self.storage, &self.rate);
+        if !self.taken.is_empty() {
+            let taken = &self.taken;
+            return self.elimination.factor(&self.links, |i| storage[i].capacity * rate[i] + taken[i]);
+        }
         self.elimination.factor(
             &self.links,
             #[inline(always)]
@@ -90,6 +100,35 @@ impl<S: Real> WallSystem<S> {
             held,
             #[inline(always)]
             |heat, i| heat + gains[i],
+        )
+    }
+
+    /// Sets what heat sources release in planes of the wall, by their positions.
+    pub(crate) fn set_sources(&mut self, planes: &[(usize, usize)], sources: &[SourceConditions<S>]) {
+        self.released.fill(S::zero());
+        self.taken.fill(S::zero());
+        for &(source, cell) in planes {
+            let at = &sources[source];
+            self.released[cell] += at.released(S::zero());
+            self.taken[cell] += at.conductance;
+        }
+    }
+
+    /// Whether heat sources are in it.
+    #[inline(always)]
+    pub(crate) fn has_sources(&self) -> bool {
+        !self.taken.is_empty()
+    }
+
+    /// [`Self::condense`] with what heat sources release.
+    // One copy only: few walls have heat sources.
+    #[inline(never)]
+    pub(crate) fn condense_with_sources(&mut self, held: &[S]) -> Condensed<S> {
+        let (storage, rate, taken, released) = (&self.storage, &self.rate, &self.taken, &self.released);
+        self.elimination.condense(
+            &self.links,
+            |i| storage[i].capacity * rate[i] + taken[i],
+            |i| (held[i] - storage[i].offset) * rate[i] + released[i] - taken[i] * storage[i].reference,
         )
     }
 
@@ -217,6 +256,9 @@ impl WallSystem<f64> {
         }
         for (mine, theirs) in self.storage.iter_mut().zip(&other.storage) {
             mine.capacity = theirs.capacity.lane(0);
+        }
+        for (mine, theirs) in self.taken.iter_mut().zip(&other.taken) {
+            *mine = theirs.lane(0);
         }
     }
 

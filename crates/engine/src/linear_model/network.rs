@@ -287,7 +287,14 @@ impl Sink<f64> for Network<'_> {
                 self.drive(node, (surface.index(), 0), &name, size);
             }
             // A linear building has neither windows nor ideal loads.
-            (Origin::Sun { .. } | Origin::Window | Origin::HeatFlux | Origin::IdealLoad, _) => {}
+            (
+                Origin::Sun { .. }
+                | Origin::Window
+                | Origin::HeatFlux
+                | Origin::HeatSource
+                | Origin::IdealLoad,
+                _,
+            ) => {}
         }
     }
 

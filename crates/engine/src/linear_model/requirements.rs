@@ -32,6 +32,9 @@ pub(super) fn require_linear(
         let name = &plan.description.surfaces[window].name;
         return refuse(&format!("window {name}"), "replace it by a wall of a resistance");
     }
+    if let Some(source) = plan.description.heat_sources.first() {
+        return refuse(&format!("heat source {}", source.name), "use a heat flux on a side");
+    }
     require_linear_surfaces(plan, coefficients)?;
     require_linear_zones(plan, numbers, coefficients)?;
     if let Some(opening) = plan.description.openings.first() {

@@ -12,6 +12,7 @@ pub mod flow_density;
 pub(crate) mod formula;
 pub mod gains;
 pub mod globe;
+pub(crate) mod heat_sources;
 pub mod horizon;
 pub mod imposed;
 pub mod law_row;

@@ -180,6 +180,14 @@ impl<S: Real> PhysicalLimits<S> {
         for &bridge in conditions.bridges.iter().flatten() {
             act(bridge);
         }
+        for (source, at) in numbers.heat_sources.iter().zip(&conditions.heat_sources) {
+            if let Some(water) = &source.water {
+                for row in rows {
+                    act(water.supply.at(row));
+                }
+                act(at.supply);
+            }
+        }
     }
 
     /// Notes the temperature that is farthest outside of its causes so far.
@@ -289,6 +297,9 @@ fn supplied<S: Real>(stepper: &Stepper<'_, S>, state: &State<S>) -> [S::Mask; 2]
     for &surface in weather.index.heated.iter().map(|(surface, ..)| surface).chain(warmed) {
         let flux = weather.conditions.surfaces[surface].longwave;
         (heat, cooling) = (heat.max(flux), cooling.min(flux));
+    }
+    for at in &weather.conditions.heat_sources {
+        (heat, cooling) = (heat.max(at.heat), cooling.min(at.heat));
     }
     for &zone in &stepper.model.plan.ideal_loads {
         heat = heat.max(state.load[zone]);

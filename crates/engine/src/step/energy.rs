@@ -28,7 +28,10 @@ impl<S: Real> Stepper<'_, S> {
     pub(super) fn add_heat(&self, duration: f64, energy: &mut Power<S>) {
         let solution = &self.solver.solution;
         let flux = |surface| self.flux_into_wall(surface);
-        energy.add_for(duration, &self.balances().power(&solution.surfaces, &solution.air, flux));
+        energy.add_for(
+            duration,
+            &self.balances().power((&solution.cells, &solution.surfaces, &solution.air), flux),
+        );
     }
 
     /// Evaluates the residual of the stage just solved.

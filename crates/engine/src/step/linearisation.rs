@@ -92,6 +92,9 @@ impl<S: Real> Linearisation<S> {
             }
         } else {
             chain.linearise(numbers, &at, &start, stage.tableau.storage);
+            if chain.has_sources() {
+                chain.set_sources(&stage.model.plan.walls[w].planes, &stage.conditions.heat_sources);
+            }
         }
     }
 

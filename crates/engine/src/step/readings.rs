@@ -63,6 +63,24 @@ impl<S: Real> Readings<'_, S> {
         &self.weather.conditions.vents
     }
 
+    /// Heat of a heat source at the end of the step [W].
+    pub(crate) fn released(&self, state: &State<S>, source: usize) -> S {
+        let numbers = &self.model.coefficients.heat_sources[source];
+        let at = &self.weather.conditions.heat_sources[source];
+        self.model.coefficients.walls[numbers.wall].area * at.released(state.cells[numbers.cell])
+    }
+
+    /// Temperature of the plane of a heat source [degC].
+    pub(crate) fn plane(&self, state: &State<S>, source: usize) -> S {
+        state.cells[self.model.coefficients.heat_sources[source].cell]
+    }
+
+    /// Temperature of the water that leaves a heat source [degC].
+    pub(crate) fn returned(&self, state: &State<S>, source: usize) -> S {
+        let at = &self.weather.conditions.heat_sources[source];
+        at.supply - at.effectiveness * (at.supply - self.plane(state, source))
+    }
+
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SideId) -> S {
         self.weather.incident(surface)

@@ -1,7 +1,7 @@
 //! Air through openings that pressure drives, and the controls of openings.
 //!
 //! A control decides at the beginning of a step, from the temperatures there, the weather in the first stage and the time since it last
-//! opened or closed; its decision holds for the step. The pressures and flows of a stage belong to the weather in the stage and to the temperatures of the airs at the beginning of
+//! opened or closed; its decision holds for the step. So do those of the thermostats of heat sources in walls. The pressures and flows of a stage belong to the weather in the stage and to the temperatures of the airs at the beginning of
 //! the step, or of the part of it: a step stays as linear as it is without them, and its flows are of first order in its length. (Hensen
 //! 1999, A comparison of coupled and de-coupled solutions for temperature and air flow in a building, ASHRAE Trans. 105(2), 962-969, calls
 //! this ping-pong.) A flow that a temperature difference alone drives grows with the root of it: a flow that is too large for the heat in
@@ -46,7 +46,7 @@ pub(super) fn control_vents<S: Real>(model: &Model<'_, S>, state: &mut State<S>,
     }
 }
 
-/// Closes what controls have closed, and finds the flows in the weather of the conditions.
+/// Closes what controls have closed, lets heat sources release what thermostats ask for, and finds the flows in the weather of the conditions.
 #[inline(always)]
 pub(super) fn drive_vents<S: Real>(
     model: &Model<'_, S>,
@@ -54,6 +54,10 @@ pub(super) fn drive_vents<S: Real>(
     network: Option<&mut VentNetwork<'_, S>>,
     state: &State<S>,
 ) {
+    let sources = weather.conditions.heat_sources.iter_mut().zip(&model.coefficients.heat_sources);
+    for (at, source) in sources {
+        at.drive(source, &state.air, &state.opened);
+    }
     if !model.coefficients.vents.is_empty() {
         find_vent_flows(model, weather, network, state);
     }

@@ -9,6 +9,7 @@ use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::flow_density::AirDensities;
 use crate::physics::longwave::SkyWeather;
+use crate::weather::heat_sources::SourceConditions;
 use crate::weather::humidity::HumidityConditions;
 use crate::weather::index::WeatherIndex;
 pub use crate::weather::instant::{Instant, Weather};
@@ -38,6 +39,8 @@ pub struct Conditions<S: Real> {
     pub(crate) humidity: Option<HumidityConditions<S>>,
     /// Densities of the air that flows are volumes of.
     pub(crate) densities: AirDensities<S>,
+    /// Heat released between layers of walls.
+    pub(crate) heat_sources: Vec<SourceConditions<S>>,
     /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
     pub bridges: Vec<Option<S>>,
     /// Outdoor air [degC].
@@ -78,6 +81,7 @@ impl<S: Real> Conditions<S> {
             humidity: coefficients.humidity.as_ref().map(|humidity| {
                 HumidityConditions::new(humidity, plan.humidity.as_ref().map_or(0, HumidityPlan::recovered))
             }),
+            heat_sources: vec![SourceConditions::none(); coefficients.heat_sources.len()],
             densities: AirDensities::of_site(plan.zones.len()),
             bridges: coefficients
                 .bridges
@@ -129,6 +133,10 @@ impl<S: Real> Conditions<S> {
         }
         self.mechanical_air.interpolate(&first.mechanical_air, &second.mechanical_air, fraction);
         self.vents.interpolate(&first.vents, &second.vents, fraction);
+        let sources = first.heat_sources.iter().zip(&second.heat_sources);
+        for (at, (a, b)) in self.heat_sources.iter_mut().zip(sources) {
+            at.interpolate(a, b, fraction);
+        }
         if let (Some(at), Some(a), Some(b)) = (&mut self.humidity, &first.humidity, &second.humidity) {
             at.interpolate(a, b, fraction);
         }
@@ -255,6 +263,9 @@ impl<S: Real> Conditions<S> {
         }
         if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
             at.update(humidity, (&coefficients.mechanical_air.units, &self.densities), now);
+        }
+        for (at, source) in self.heat_sources.iter_mut().zip(&coefficients.heat_sources) {
+            at.update(source, now.row);
         }
         for (at, bridge) in self.bridges.iter_mut().zip(&coefficients.bridges) {
             *at = match &bridge.to {

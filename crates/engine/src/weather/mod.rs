@@ -2,6 +2,7 @@
 
 mod beams;
 pub mod conditions;
+pub(crate) mod heat_sources;
 pub(crate) mod humidity;
 pub mod index;
 pub(crate) mod instant;

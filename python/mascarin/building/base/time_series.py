@@ -17,6 +17,7 @@ CourseKind = Literal[
     "flow",
     "air_change",
     "vapour",
+    "water_flow",
     "rain",
     "relative_humidity",
     "humidity_ratio",
@@ -40,6 +41,7 @@ Columns = Annotated[str | tuple[str, ...], AfterValidator(_named)]
 POWER_UNITS: Final[Mapping[str, float]] = {"W": 1.0, "kW": 1000.0}
 FLOW_UNITS: Final[Mapping[str, float]] = {"m3/s": 1.0, "m3/h": 1.0 / 3600.0, "L/s": 1e-3}
 VAPOUR_UNITS: Final[Mapping[str, float]] = {"kg/s": 1.0, "kg/h": 1.0 / 3600.0, "g/h": 1e-3 / 3600.0}
+WATER_UNITS: Final[Mapping[str, float]] = {"kg/s": 1.0, "kg/h": 1.0 / 3600.0}
 _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "temperature": {"degC": 1.0},
     "power": POWER_UNITS,
@@ -47,6 +49,7 @@ _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "flow": FLOW_UNITS,
     "air_change": {"1/h": 1.0},
     "vapour": VAPOUR_UNITS,
+    "water_flow": WATER_UNITS,
     "rain": {"mm/h": 1.0},
     "relative_humidity": {"-": 1.0, "%": 0.01},
     "humidity_ratio": {"kg/kg": 1.0, "g/kg": 1e-3},

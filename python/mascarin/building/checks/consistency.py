@@ -59,6 +59,7 @@ def faults(building: Description) -> Faults:
     yield from _emissivities_where_exchange_is(building)
     yield from _convection_suits_its_side(building)
     yield from _sensors_inside_walls(building)
+    yield from _heat_sources_between_layers(building)
     yield from _columns_have_one_meaning(building)
     yield from _view_factors_sum_to_one(building)
     yield from _schedules_suit_their_use(building)
@@ -96,6 +97,7 @@ def _one_namespace(building: Description) -> Faults:
         "sensors": building.sensors,
         "vents": building.vents,
         "controls": building.controls,
+        "heat_sources": building.heat_sources,
     }
     owner: dict[str, str] = {}
     for section, named in sections.items():
@@ -104,10 +106,28 @@ def _one_namespace(building: Description) -> Faults:
                 yield fault(
                     (section, name),
                     f"'{name}' also under '{owner[name]}:'",
-                    "a name that no other zone, surface, window, sensor, vent or control has",
+                    "a name that no other zone, surface, window, sensor, vent, control or heat source has",
                     "Rename one: results have this name.",
                 )
             owner.setdefault(name, section)
+
+
+def _heat_sources_between_layers(building: Description) -> Faults:
+    for name, source in building.heat_sources.items():
+        construction = building.surfaces[source.surface].construction
+        layers = [layer.name for layer in building.constructions[construction].layers]
+        if source.after not in layers[:-1]:
+            inner = layers[:-1]
+            yield fault(
+                ("heat_sources", name, "after"),
+                f"'{source.after}'",
+                f"a layer of construction '{construction}' with another one behind it: {', '.join(inner)}"
+                if inner
+                else f"a construction of two layers or more; '{construction}' has one",
+                f"Write 'after: {inner[-1]}', or divide the layer that the pipes are in."
+                if inner
+                else "Divide the layer in two at the depth of the pipes.",
+            )
 
 
 def _layers_have_what_they_need(building: Description) -> Faults:

@@ -164,6 +164,7 @@ def _in_zones(building: Description) -> Iterator[str]:
         steered = _scheduled(opening.schedule) + _controlled(opening.control)
         yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{steered}"
     yield from _vents(building)
+    yield from _heat_sources(building)
     yield from forced_convection_lines(building)
 
 
@@ -181,6 +182,26 @@ def _vents(building: Description) -> Iterator[str]:
             if time is not None
         )
         yield f"control {name} in {control.zone} opens and closes at {bands}{times}"
+
+
+def _heat_sources(building: Description) -> Iterator[str]:
+    for name, source in building.heat_sources.items():
+        _, part = source.driven
+        what = f"electric, {part.in_words('W/m2')}"
+        if (water := source.water) is not None:
+            exchange = (
+                f"effectiveness {water.effectiveness:g}"
+                if water.effectiveness is not None
+                else f"{water.conductance:g} W/(m2 K)"
+            )
+            what = f"water, {part.in_words('kg/s')} at {water.supply.words}, {exchange}"
+        steered = _scheduled(getattr(part, "schedule", None)) + _controlled(source.control)
+        if (thermostat := source.thermostat) is not None:
+            steered += (
+                f", {thermostat.mode} by {thermostat.zone} at {thermostat.setpoint.words} "
+                f"within {thermostat.range:g} K"
+            )
+        yield f"heat source {name} in {source.surface} after {source.after}: {what}{steered}"
 
 
 def _controlled(control: str | None) -> str:

@@ -48,6 +48,7 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         "openings",
         "vents",
         "controls",
+        "heat_sources",
         "shades",
         "sensors",
     )

@@ -23,6 +23,7 @@ from mascarin.building.engine_input.air import (
 )
 from mascarin.building.engine_input.channels import channels
 from mascarin.building.engine_input.derived_outputs import describe_derived
+from mascarin.building.engine_input.heat_sources import describe_heat_source
 from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Positions, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
@@ -139,6 +140,9 @@ def _describe(
                 *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
                 *(describe_frame(building, columns, name, ids) for name in framed(building)),
             ],
+        ),
+        "heat_sources": each(
+            building.heat_sources, "heat_sources", ids, partial(describe_heat_source, building, positions)
         ),
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
         "outputs": describe_derived(building, ids),

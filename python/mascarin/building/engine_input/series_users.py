@@ -38,6 +38,7 @@ def schedule_uses(building: Description) -> Iterator[Use]:
                 yield side.heat_flux.schedule, flux_location, "fraction"
             if side.scheduled is not None:
                 yield side.scheduled, ("surfaces", name, which, "scheduled"), "temperature"
+    yield from _of_heat_sources(building)
     for section in ("air_paths", "openings", "vents"):
         for name, part in getattr(building, section).items():
             if part.schedule is not None:
@@ -63,6 +64,18 @@ def _of_humidity(building: Description) -> Iterator[Use]:
             key, setpoint = plant.setpoint
             if setpoint.schedule is not None:
                 yield setpoint.schedule, (*location, which, key, "schedule"), setpoint.SCHEDULED
+
+
+def _of_heat_sources(building: Description) -> Iterator[Use]:
+    for name, source in building.heat_sources.items():
+        path, driven = source.driven
+        schedule = getattr(driven, "schedule", None)
+        if schedule is not None:
+            yield schedule, ("heat_sources", name, *path.split("."), "schedule"), "fraction"
+        for path_of_temperature, temperature in source.temperatures.items():
+            if temperature.schedule is not None:
+                location = ("heat_sources", name, *path_of_temperature.split("."), "schedule")
+                yield temperature.schedule, location, "temperature"
 
 
 def _of_units(building: Description) -> Iterator[Use]:
@@ -110,17 +123,29 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
                 temperature_course(unit.temperature.column),
                 ("ventilation_units", name, "temperature", "column"),
             )
+    yield from _columns_of_heat_sources(building)
     for name, control in building.controls.items():
         if control.rain is not None:
             yield control.rain.course, ("controls", name, "rain", "column")
     for name, vapour in (building.humidity.zones if building.humidity is not None else {}).items():
-        for key, source in vapour.gains.items():
-            if source.course is not None:
-                yield source.course, ("humidity", "zones", name, "gains", key, "column")
+        for key, released in vapour.gains.items():
+            if released.course is not None:
+                yield released.course, ("humidity", "zones", name, "gains", key, "column")
         for which, plant in vapour.plants.items():
             key, setpoint = plant.setpoint
             if setpoint.measured is not None:
                 yield setpoint.measured, ("humidity", "zones", name, which, key, "column")
+
+
+def _columns_of_heat_sources(building: Description) -> Iterator[tuple[ColumnCourse, tuple[str, ...]]]:
+    for name, source in building.heat_sources.items():
+        path, driven = source.driven
+        if driven.course is not None:
+            yield driven.course, ("heat_sources", name, *path.split("."), "column")
+        for path_of_temperature, temperature in source.temperatures.items():
+            if temperature.column is not None:
+                location = ("heat_sources", name, *path_of_temperature.split("."), "column")
+                yield temperature_course(temperature.column), location
 
 
 def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:

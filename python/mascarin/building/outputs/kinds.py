@@ -18,7 +18,7 @@ class OutputName(NamedTuple):
     Attributes
     ----------
     owner : str
-        What the parts are: ZONE, SURFACE, WINDOW, VENT, CONTROL or SENSOR; nothing for the building.
+        What the parts are: ZONE, SURFACE, WINDOW, VENT, CONTROL, SOURCE or SENSOR; nothing for the building.
     pattern : str
         The name; words in capitals stand for names of the description, SIDE for outside or inside, N for a
         number.

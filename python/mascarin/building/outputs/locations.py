@@ -39,6 +39,7 @@ def owners(building: Description) -> dict[str, list[str]]:
         "WINDOW": list(building.windows),
         "VENT": list(building.vents),
         "CONTROL": list(building.controls),
+        "SOURCE": list(building.heat_sources),
         "": [""],
         "SENSOR": list(building.sensors),
     }
@@ -66,6 +67,9 @@ def places(building: Description, owner: str, index: int, name: str, of: str) ->
         locations = [
             Place({"derived": number}, {"NAME": word}) for number, word in enumerate(building.derived_outputs)
         ]
+    elif of == "water_source":
+        is_water = building.heat_sources[name].water is not None
+        locations = [Place({"source": index}, {})] if is_water else []
     elif owner == "SURFACE":
         locations = list(_of_surface(building, index, name, of))
     elif owner == "WINDOW":

@@ -56,8 +56,8 @@ class Output:
         Its unit.
     kind : str
         What it is.
-    zone, surface, sensor, vent, control : int or None
-        Position of the zone, surface, sensor, vent or control in the description.
+    zone, surface, sensor, vent, control, source : int or None
+        Position of the zone, surface, sensor, vent, control or heat source in the description.
     side : int or None
         0 for the outside, 1 for the inside.
     layer : int or None
@@ -90,6 +90,7 @@ class Output:
     sensor: int | None = None
     vent: int | None = None
     control: int | None = None
+    source: int | None = None
     derived: int | None = None
     means: bool = False
     aliases: tuple[str, ...] = ()
@@ -117,8 +118,8 @@ class Output:
     @property
     def place(self) -> dict[str, int]:
         """Positions that are set for this kind, by name."""
-        keys = ("zone", "surface", "side", "layer", "interface", "sensor", "vent", "control", "derived")
-        return {key: value for key in keys if (value := getattr(self, key)) is not None}
+        keys = ("zone", "surface", "side", "layer", "interface", "sensor", "vent", "control", "source")
+        return {key: value for key in (*keys, "derived") if (value := getattr(self, key)) is not None}
 
 
 def outputs(building: Description) -> list[Output]:

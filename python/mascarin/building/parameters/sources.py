@@ -17,6 +17,7 @@ from mascarin.building.parts.air.ventilation import RECOVERY_SOURCE
 from mascarin.building.parts.air.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
 from mascarin.building.parts.envelope.convection import SOURCES
 from mascarin.building.parts.envelope.formula_law import FormulaLaw
+from mascarin.building.parts.heat_source import SOURCE as HEAT_SOURCE
 from mascarin.building.parts.materials.material import PhaseChangeMaterial
 from mascarin.building.parts.materials.phase_change import FractionsLaw, TableLaw
 from mascarin.building.parts.materials.sorption import SorptionLaw
@@ -105,6 +106,8 @@ def _of_methods(building: Description) -> Iterator[str]:
     if any(item.windy and has_height(item.side) for item in sides(building)):
         yield ASHRAE_WIND
     yield from _of_air(building)
+    if any(source.water or source.thermostat for source in building.heat_sources.values()):
+        yield HEAT_SOURCE
     if any(zone.loads for zone in building.zones.values()):
         yield _IDEAL_LOADS
     if building.humidity is not None:

@@ -17,6 +17,7 @@ from mascarin.building.parts.air.ventilation import VentilationUnit
 from mascarin.building.parts.air.zone import AirPath, Opening, Zone
 from mascarin.building.parts.derived_output import DerivedOutput
 from mascarin.building.parts.envelope.surface import Construction, Surface, WallSensor
+from mascarin.building.parts.heat_source import HeatSource
 from mascarin.building.parts.materials.material import Material
 from mascarin.building.parts.openings.glazing import Glazing
 from mascarin.building.parts.openings.window import Shade, Window
@@ -65,6 +66,9 @@ class Description(Part):
     windows: dict[Name, Window] = Field(default_factory=dict, description="Windows in the surfaces by name")
     shades: dict[Name, Shade] = Field(
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
+    )
+    heat_sources: dict[Name, HeatSource] = Field(
+        default_factory=dict, description="Heat released between layers of surfaces, by name"
     )
     sensors: dict[Name, WallSensor] = Field(
         default_factory=dict, description="Thermometers inside walls by name"

@@ -58,6 +58,69 @@ Capacity = Annotated[
         NOT_NEGATIVE,
     ),
 ]
+MatPower = Annotated[
+    Number,
+    Quantity(
+        "W/m2",
+        "Power of an electric mat per area",
+        Percent(5, "name plate"),
+        Limits(at_least=0, at_most=1e5),
+    ),
+]
+WaterFlow = Annotated[
+    Number,
+    Quantity(
+        "kg/s",
+        "Flow of water through all pipes of the surface",
+        Percent(10, "balancing of the circuits"),
+        Limits(at_least=0, at_most=1000),
+    ),
+]
+SupplyTemperature = Annotated[
+    Number,
+    Quantity(
+        "degC",
+        "Temperature of the water that enters",
+        Within(2, "controller and pipes to it"),
+        Limits(at_least=-60, at_most=120),
+    ),
+]
+WaterConductance = Annotated[
+    Number,
+    Quantity(
+        "W/(m2 K)",
+        "Conductance from the water to the plane per area of the surface",
+        Percent(30, "spacing of the pipes and their contact"),
+        Limits(at_least=0, at_most=1e4),
+    ),
+]
+Effectiveness = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Fall of the water over its excess at the inlet, at any flow",
+        Within(0.1, "spacing and length of the pipes"),
+        FRACTION,
+    ),
+]
+WaterSpecificHeat = Annotated[
+    Number,
+    Quantity(
+        "J/(kg K)",
+        "Specific heat of the water",
+        OnlyGiven("a property of water; less with glycol"),
+        Limits(at_least=500, at_most=10000),
+    ),
+]
+ThrottlingRange = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "Range of the air temperature from all of the power or flow to nothing",
+        Span(0.5, 4, "thermostats of floor heating"),
+        Limits(above=0, at_most=50),
+    ),
+]
 ScheduledFraction = Annotated[
     Number,
     Quantity(

@@ -55,6 +55,7 @@ _FLOWS: Final = {
     "transmitted": "Sun through windows",
     "glass": "Through panes",
     "bridges": "Thermal bridges",
+    "sources": "Heat sources in surfaces",
 }
 
 

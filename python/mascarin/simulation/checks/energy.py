@@ -29,6 +29,7 @@ FLOWS: Final = (
     "transmitted",
     "glass",
     "bridges",
+    "sources",
 )
 """Heat flows into a building; cooling removes heat and is negative."""
 

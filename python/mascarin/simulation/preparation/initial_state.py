@@ -225,18 +225,23 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
     surface = building.surfaces[name]
     layers: list[tuple[float, float]] = []
     cells: list[float] = []
+    # The plane of heat sources is a cell of no thickness.
+    planes = {source.after for source in building.heat_sources.values() if source.surface == name}
     for layer in building.constructions[surface.construction].layers:
         material = building.materials[layer.material]
         before = sum(resistance for _, resistance in layers)
         if isinstance(material, Resistance) or layer.thickness is None:
-            layers.append((0.0, float(getattr(material, "resistance", 0.0))))
-            continue
-        # The mean of solid and liquid: which of the two it is depends on the profile.
-        both = [phase(material.conductivity, state) for state in ("solid", "liquid")]
-        resistance = float(layer.thickness) / (0.5 * sum(both))
-        count = nodes[surface.construction, layer.name]
-        cells += [before + (i + 0.5) / count * resistance for i in range(count)]
-        layers.append((float(layer.thickness), resistance))
+            resistance = float(getattr(material, "resistance", 0.0))
+            layers.append((0.0, resistance))
+        else:
+            # The mean of solid and liquid: which of the two it is depends on the profile.
+            both = [phase(material.conductivity, state) for state in ("solid", "liquid")]
+            resistance = float(layer.thickness) / (0.5 * sum(both))
+            count = nodes[surface.construction, layer.name]
+            cells += [before + (i + 0.5) / count * resistance for i in range(count)]
+            layers.append((float(layer.thickness), resistance))
+        if layer.name in planes:
+            cells.append(before + resistance)
     return InitialWall(name, surface.sides, tuple(layers), tuple(cells))
 
 

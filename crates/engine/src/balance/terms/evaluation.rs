@@ -141,6 +141,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         match origin {
             Origin::Sun { .. } => self.heat.add_to_building(Flow::Solar, heat),
             Origin::HeatFlux => self.heat.add_to_building(Flow::Boundary, heat),
+            Origin::HeatSource => self.heat.add_to_building(Flow::Sources, heat),
             Origin::IdealLoad => {
                 self.heat.add_to_building(Flow::Heating, heat.max(S::zero()));
                 self.heat.add_to_building(Flow::Cooling, heat.min(S::zero()));

@@ -45,10 +45,14 @@ impl<S: Real, F: Fn(SideId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
 }
 
 impl<S: Real> Balances<'_, S> {
-    /// Heat into the building at temperatures of surfaces and airs [degC]; `flux` is the conduction from a surface into its
+    /// Heat into the building at temperatures of cells, of which those with heat sources count, surfaces and airs [degC]; `flux` is the conduction from a surface into its
     /// wall [W/m2].
     #[inline(always)]
-    pub(crate) fn power(&self, surfaces: &BySide<S>, air: &[S], flux: impl Fn(SideId) -> S) -> Power<S> {
+    pub(crate) fn power(
+        &self,
+        (cells, surfaces, air): (&[S], &BySide<S>, &[S]),
+        flux: impl Fn(SideId) -> S,
+    ) -> Power<S> {
         let mut power = Power::none();
         let heat = ExteriorSums { solar: Sum::none(), convection: Sum::none(), longwave: Sum::none() };
         let mut exterior = Evaluation { cells: &[], surfaces, air, heat };
@@ -57,7 +61,8 @@ impl<S: Real> Balances<'_, S> {
         power.add_sum(Flow::Convection, &exterior.heat.convection);
         power.add_sum(Flow::Longwave, &exterior.heat.longwave);
         let heat = OtherFlows { power: &mut power, flux };
-        let mut others = Evaluation { cells: &[], surfaces, air, heat };
+        let mut others = Evaluation { cells, surfaces, air, heat };
+        self.heat_sources(&mut others);
         self.imposed_temperatures(&mut others);
         self.windows(&mut others);
         self.outdoor_air(&mut others);

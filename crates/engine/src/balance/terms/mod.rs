@@ -3,7 +3,7 @@
 //! Unknowns are the temperatures of the cells of walls, of surfaces and of zone airs. In the balance of each, the heat
 //! that flows in is the heat stored; surfaces store none:
 //!
-//! - cell: storage, conduction to its neighbours, sun absorbed in panes;
+//! - cell: storage, conduction to its neighbours, sun absorbed in panes, heat sources in planes between layers;
 //! - surface: conduction into its wall, convection, emission and exchange of long-wave radiation, absorbed sun, radiant
 //!   gains and radiated ideal loads; or an imposed temperature in place of a balance; an adiabatic surface has only what is left;
 //! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths and doors, fans, thermal
@@ -64,6 +64,8 @@ pub(crate) enum Origin<S> {
     Window,
     /// A heat flux that is given at a surface.
     HeatFlux,
+    /// A heat source in a wall.
+    HeatSource,
     /// Gains of a zone; counted by zone.
     ConvectiveGains {
         zone: usize,
@@ -213,6 +215,7 @@ impl<S: Real> Balances<'_, S> {
     #[inline(always)]
     pub(crate) fn visit(&self, stage: &Stage<'_, S>, sink: &mut impl Sink<S>) {
         self.cells(stage, sink);
+        self.heat_sources(sink);
         self.sun_inside(sink);
         self.exterior_surfaces(sink);
         self.imposed_temperatures(sink);
@@ -271,6 +274,21 @@ impl<S: Real> Balances<'_, S> {
             let (area, first) = (self.model.coefficients.walls[w].area, self.model.plan.walls[w].first_cell);
             for (i, &heat) in window.cells.iter().enumerate() {
                 sink.release(Node::Cell(first + i), area, heat, Origin::Window);
+            }
+        }
+    }
+
+    /// Heat released between layers of walls.
+    #[inline(always)]
+    pub(crate) fn heat_sources(&self, sink: &mut impl Sink<S>) {
+        for (source, at) in self.model.coefficients.heat_sources.iter().zip(&self.conditions.heat_sources) {
+            let (node, area) = (Node::Cell(source.cell), self.model.coefficients.walls[source.wall].area);
+            if source.water.is_some() {
+                let water = End::Environment { flow: Flow::Sources, temperature: at.supply };
+                let law = Line { offset: S::zero(), slope: at.conductance };
+                sink.exchange([water, End::Node(node)], area, &law);
+            } else {
+                sink.release(node, area, at.heat, Origin::HeatSource);
             }
         }
     }

@@ -50,7 +50,7 @@ fn at(plan: &Plan, surfaces: [f64; 2]) -> ([f64; 2], [f64; 2]) {
     let residual = balances.residual(&stage, &[], &temperatures, &[]);
     let into_wall =
         |surface: SideId| walls[0].links[0].left * (temperatures[surface] - temperatures[surface.opposite()]);
-    let power = balances.power(&temperatures, &[], into_wall);
+    let power = balances.power((&[], &temperatures, &[]), into_wall);
     (residual.surfaces.pair(0), [power.into[Flow::Convection as usize], power.into[Flow::Boundary as usize]])
 }
 

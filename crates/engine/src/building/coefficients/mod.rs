@@ -2,6 +2,7 @@
 
 pub(crate) mod air;
 pub(crate) mod bridge;
+pub(crate) mod heat_source;
 pub(crate) mod humidity;
 pub(crate) mod mechanical_air;
 pub(crate) mod passing;
@@ -11,6 +12,7 @@ pub(crate) mod wall;
 pub(crate) mod zone;
 
 pub use self::bridge::{Bridge, BridgeEnd};
+pub use self::heat_source::HeatSource;
 pub use self::humidity::HumidityCoefficients;
 pub use self::mechanical_air::MechanicalAir;
 pub use self::passing::Passing;
@@ -53,6 +55,8 @@ pub struct Coefficients<S> {
     pub vents: Vents<S>,
     /// Thermal bridges.
     pub bridges: Vec<Bridge<S>>,
+    /// Heat released between layers of walls.
+    pub heat_sources: Vec<HeatSource<S>>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: S,
     /// Emission of the sky.
@@ -82,7 +86,11 @@ impl<S: Real> Coefficients<S> {
         let passing = Passing::new(plan, &walls, &zones);
         let paths = description.air_paths.iter().map(|path| Path::new(path, &values, &air)).collect();
         let humidity = HumidityCoefficients::new(plan, &values, &walls, &zones);
+        let heat_sources = description.heat_sources.iter().enumerate();
+        let heat_sources =
+            heat_sources.map(|source| HeatSource::new(plan, source, &values, &walls)).collect();
         Self {
+            heat_sources,
             humidity,
             walls,
             surfaces,

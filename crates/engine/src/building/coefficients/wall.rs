@@ -28,6 +28,8 @@ pub struct WallCoefficients<S> {
     pub pcm: Vec<PcmCoefficients<S>>,
     /// Resistance of each massless layer, zero for the others [m2 K/W].
     pub layer_resistance: Vec<S>,
+    /// Whether heat sources lie between its layers.
+    pub planes: bool,
     /// Optics and gaps of a window.
     pub glass: Option<Glass<S>>,
 }
@@ -44,13 +46,17 @@ impl<S: Real> WallCoefficients<S> {
                 GlassWall::new(values, (glazing, construction.blind.as_ref()), glass, described);
             let massless = vec![true; extra.len()];
             let (pcm, layer_resistance) = (Vec::new(), Vec::new());
-            return Self { area, cells, extra, massless, pcm, layer_resistance, glass: Some(glass) };
+            let planes = false;
+            return Self { area, cells, extra, massless, pcm, layer_resistance, planes, glass: Some(glass) };
         }
         let mut pcm = Vec::new();
         let mut cells = Vec::with_capacity(wall.len());
         let layer_resistance: Vec<S> =
             construction.layers.iter().map(|layer| resistance(plan, layer.material, values)).collect();
         for (layer, &(start, end)) in construction.layers.iter().zip(&wall.layer_cells) {
+            if wall.planes.iter().any(|&(_, plane)| plane == cells.len()) {
+                cells.push(plane_of_sources());
+            }
             let thickness = values.get_or(layer.thickness, 0.0);
             let matter = match &description.materials[layer.material] {
                 Material::Resistance { .. } | Material::Rated { .. } => continue,
@@ -80,8 +86,15 @@ impl<S: Real> WallCoefficients<S> {
             .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
         let extra = extra.collect();
         let massless = wall.link_layers.iter().map(|layers| !layers.is_empty()).collect();
-        Self { area, extra, massless, cells, pcm, layer_resistance, glass: None }
+        let planes = !wall.planes.is_empty();
+        Self { area, extra, massless, cells, pcm, layer_resistance, planes, glass: None }
     }
+}
+
+/// A plane between two layers in which heat is released: it stores none and resists none.
+fn plane_of_sources<S: Real>() -> Cell<S> {
+    let matter = Matter::Solid { conductivity: S::one(), capacity: S::zero() };
+    Cell { thickness: S::zero(), matter }
 }
 
 /// Area of a wall without its openings, of a window without its frame, or of the frame [m2].

@@ -58,6 +58,9 @@ pub(crate) fn check(description: &Description) -> Checked {
     for wall in &description.surfaces {
         surface::check_surface(description, wall)?;
     }
+    for source in &description.heat_sources {
+        surface::check_heat_source(description, source)?;
+    }
     for (index, zone) in description.zones.iter().enumerate() {
         zone::check_zone(description, index, zone)?;
     }

@@ -3,8 +3,39 @@
 use super::numbers::check_polygon;
 use super::{Checked, check_index, check_schedule, refuse};
 use crate::input::description::{
-    Convection, Description, Facing, OutdoorLongwave, Side, Surface, ZoneLongwave,
+    Convection, Description, Facing, HeatSource, HeatingMeans, OutdoorLongwave, SetPoint, Side, Surface,
+    ZoneLongwave,
 };
+
+/// References of a heat source, and a plane between two layers.
+pub(super) fn check_heat_source(description: &Description, source: &HeatSource) -> Checked {
+    let place = format!("heat source {}", source.name);
+    check_index(&place, "surface", source.surface, description.surfaces.len())?;
+    let wall = &description.surfaces[source.surface];
+    let layers = description.constructions[wall.construction].layers.len();
+    if source.layer + 1 >= layers {
+        return refuse(place, format_args!("layer {}", source.layer), "a layer with another one behind it");
+    }
+    let channels = description.channels.len();
+    let check_temperature = |temperature: &SetPoint| match temperature {
+        SetPoint::Scheduled { channel } => check_index(&place, "channel", *channel, channels),
+        SetPoint::Constant { .. } => Ok(()),
+    };
+    match &source.means {
+        HeatingMeans::Electric { schedule, .. } => check_schedule(description, &place, *schedule)?,
+        HeatingMeans::Water { schedule, supply, .. } => {
+            check_schedule(description, &place, *schedule)?;
+            check_temperature(supply)?;
+        }
+    }
+    if let Some(thermostat) = &source.thermostat {
+        check_index(&place, "zone", thermostat.zone, description.zones.len())?;
+        check_temperature(&thermostat.setpoint)?;
+    }
+    source
+        .control
+        .map_or(Ok(()), |control| check_index(&place, "control", control, description.controls.len()))
+}
 
 /// References, corners and both sides of a wall or window.
 pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checked {

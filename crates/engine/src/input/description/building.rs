@@ -6,6 +6,7 @@ use super::air_flow::{AirPath, DirectedFlow, Door, Opening, VentilationUnit};
 use super::bridge::ThermalBridge;
 use super::construction::Construction;
 use super::convection::TextLaw;
+use super::heat_source::HeatSource;
 use super::humidity::Humidity;
 use super::material::Material;
 use super::parameter::Parameter;
@@ -54,6 +55,9 @@ pub struct Description {
     pub controls: Vec<VentControl>,
     /// Walls and windows.
     pub surfaces: Vec<Surface>,
+    /// Heat released between layers of walls.
+    #[serde(default)]
+    pub heat_sources: Vec<HeatSource>,
     /// Sensors inside walls.
     #[serde(default)]
     pub sensors: Vec<Sensor>,
@@ -108,6 +112,7 @@ pub struct OutputPlace {
     pub interface: usize,
     pub vent: usize,
     pub control: usize,
+    pub source: usize,
     pub sensor: usize,
     pub derived: usize,
 }

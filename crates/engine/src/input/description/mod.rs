@@ -16,6 +16,7 @@ mod construction;
 mod convection;
 mod flow_density;
 mod glazing;
+mod heat_source;
 mod humidity;
 mod material;
 mod parameter;
@@ -33,6 +34,7 @@ pub use construction::{Construction, Layer};
 pub use convection::{Convection, FormulaNumber, TextLaw};
 pub use flow_density::FlowDensity;
 pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
+pub use heat_source::{HeatExchange, HeatSource, HeatingMeans, Throttle};
 pub use humidity::{
     Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,
 };

@@ -21,6 +21,7 @@ fn wall(cells: usize) -> WallCoefficients<f64> {
         massless: vec![true; cells + 1],
         pcm: Vec::new(),
         layer_resistance: Vec::new(),
+        planes: false,
         glass: None,
     }
 }

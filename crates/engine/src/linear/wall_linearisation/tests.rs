@@ -28,6 +28,7 @@ fn wall(solid: f64) -> WallCoefficients<f64> {
         massless: vec![false; 4],
         pcm: vec![pcm(solid)],
         layer_resistance: Vec::new(),
+        planes: false,
         glass: None,
     }
 }

@@ -285,6 +285,21 @@ outputs! {
         Row::state(Of::Control, "CONTROL.open", "-", "Open by the control"),
         |at| at.state.opened[control];
 
+    /// Heat that the heat source gives to its surface; negative: water that takes heat.
+    SourceHeat { source } =
+        Row::state(Of::Source, "SOURCE.heat", "W", "Heat of a heat source").usual(),
+        |at| at.step.released(at.state, source);
+
+    /// Temperature of the plane between the layers in which the heat is released.
+    PlaneTemperature { source } =
+        Row::state(Of::Source, "SOURCE.plane_temperature", "degC", "Temperature of the plane of a heat source"),
+        |at| at.step.plane(at.state, source);
+
+    /// Temperature of the water that leaves the pipes; without flow that of the plane, by a conductance.
+    ReturnTemperature { source } =
+        Row::state(Of::WaterSource, "SOURCE.return_temperature", "degC", "Return temperature"),
+        |at| at.step.returned(at.state, source);
+
     /// Temperature of a black sky with the same long-wave emission.
     SkyTemperature =
         Row::state(Of::Building, "sky_temperature", "degC", "Sky temperature"),

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::building::ids::SideId;
 use crate::building::plan::{Plan, SideRole};
 use crate::error::EngineError;
+use crate::input::description::HeatingMeans;
 pub(super) use crate::input::description::OutputPlace as Place;
 use crate::number::real::Real;
 use crate::step::readings::Readings;
@@ -151,6 +152,10 @@ pub enum Of {
     Vent,
     /// Controls of openings.
     Control,
+    /// Heat sources in walls.
+    Source,
+    /// Those of water.
+    WaterSource,
     /// The building.
     Building,
     /// Sensors.
@@ -184,6 +189,8 @@ impl Of {
             Self::MeltingLayer => "layers of phase-change materials",
             Self::Vent => "every vent",
             Self::Control => "every control",
+            Self::Source => "every entry of `heat_sources`",
+            Self::WaterSource => "entries of `heat_sources` with `water`",
             Self::Building => "every building",
             Self::Sensor => "every entry of `sensors`",
             Self::Derived => "every entry of `derived_outputs`",
@@ -224,6 +231,11 @@ impl Of {
             }
             Self::Vent => at.vent < description.vents.len(),
             Self::Control => at.control < description.controls.len(),
+            Self::Source => at.source < description.heat_sources.len(),
+            Self::WaterSource => {
+                let source = description.heat_sources.get(at.source);
+                source.is_some_and(|source| matches!(source.means, HeatingMeans::Water { .. }))
+            }
             Self::Building => true,
             Self::Sensor => at.sensor < description.sensors.len(),
             Self::Derived => at.derived < description.outputs.len(),
@@ -258,6 +270,9 @@ impl Of {
             }
             Self::Vent => format!("vent {}", description.vents[at.vent].name),
             Self::Control => format!("control {}", description.controls[at.control].name),
+            Self::Source | Self::WaterSource => {
+                format!("heat source {}", description.heat_sources[at.source].name)
+            }
             Self::Building => "the building".to_owned(),
             Self::Sensor => format!("sensor {}", description.sensors[at.sensor].name),
             Self::Derived => format!("output {}", description.outputs[at.derived].name),

@@ -98,6 +98,7 @@ impl Builder {
             vents: Vec::new(),
             controls: Vec::new(),
             surfaces: Vec::new(),
+            heat_sources: Vec::new(),
             sensors: Vec::new(),
             humidity: None,
             shades: Vec::new(),

@@ -36,6 +36,7 @@ FLOW_LABELS: Final = {
     "transmitted": "solar radiation transmitted by windows",
     "glass": "solar radiation absorbed by windows",
     "bridges": "thermal bridges",
+    "sources": "heat sources in surfaces",
 }
 
 

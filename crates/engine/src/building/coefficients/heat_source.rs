@@ -1,0 +1,115 @@
+//! Heat sources in walls: their numbers.
+
+use crate::building::plan::Plan;
+use crate::input::description::{self, HeatExchange, HeatingMeans, SetPoint};
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule};
+use crate::input::values::Values;
+use crate::number::real::Real;
+
+use super::wall::WallCoefficients;
+
+/// A heat source.
+#[derive(Debug, Clone)]
+pub struct HeatSource<S> {
+    /// Index of the wall, and of the cell of the building that is its plane.
+    pub(crate) wall: usize,
+    pub(crate) cell: usize,
+    /// Power [W/m2] or flow [kg/(s m2)], and what multiplies it.
+    pub(crate) driven: (S, Schedule),
+    pub(crate) water: Option<Water<S>>,
+    pub(crate) thermostat: Option<Throttle<S>>,
+    pub(crate) control: Option<usize>,
+}
+
+/// Water in pipes.
+#[derive(Debug, Clone)]
+pub(crate) struct Water<S> {
+    pub(crate) supply: Temperature<S>,
+    /// [J/(kg K)].
+    pub(crate) specific_heat: S,
+    pub(crate) exchange: Exchange<S>,
+}
+
+/// How well water exchanges its heat.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Exchange<S> {
+    /// [W/(m2 K)].
+    Conductance(S),
+    /// [-].
+    Effectiveness(S),
+}
+
+/// A thermostat with a throttling range.
+#[derive(Debug, Clone)]
+pub(crate) struct Throttle<S> {
+    pub(crate) zone: usize,
+    pub(crate) set_point: Temperature<S>,
+    pub(crate) range: S,
+    pub(crate) cooling: bool,
+}
+
+/// A temperature that is a number or a channel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Temperature<S> {
+    /// [degC].
+    Constant(S),
+    /// Position in a forcing row.
+    Channel(usize),
+}
+
+impl<S: Real> Temperature<S> {
+    fn new(given: &SetPoint, values: &Values<'_, S>) -> Self {
+        match given {
+            SetPoint::Constant { temperature } => Self::Constant(values.get(*temperature)),
+            SetPoint::Scheduled { channel } => Self::Channel(CLIMATE_CHANNELS + channel),
+        }
+    }
+
+    /// In a forcing row [degC].
+    pub(crate) fn at(&self, row: &[f64]) -> S {
+        match *self {
+            Self::Constant(temperature) => temperature,
+            Self::Channel(channel) => S::constant(row[channel]),
+        }
+    }
+}
+
+impl<S: Real> HeatSource<S> {
+    pub(crate) fn new(
+        plan: &Plan,
+        (index, source): (usize, &description::HeatSource),
+        values: &Values<'_, S>,
+        walls: &[WallCoefficients<S>],
+    ) -> Self {
+        let (wall, area) = (&plan.walls[source.surface], walls[source.surface].area);
+        let planes = wall.planes.iter().filter(|(of, _)| *of == index);
+        let cell = planes.map(|(_, cell)| wall.first_cell + cell).sum();
+        let (driven, water) = match &source.means {
+            HeatingMeans::Electric { power, schedule } => {
+                ((values.get(*power), Schedule::new(*schedule)), None)
+            }
+            HeatingMeans::Water { flow, schedule, supply, specific_heat, exchange } => {
+                let water = Water {
+                    supply: Temperature::new(supply, values),
+                    specific_heat: values.get(*specific_heat),
+                    exchange: match exchange {
+                        HeatExchange::Conductance { conductance } => {
+                            Exchange::Conductance(values.get(*conductance))
+                        }
+                        HeatExchange::Effectiveness { effectiveness } => {
+                            Exchange::Effectiveness(values.get(*effectiveness))
+                        }
+                    },
+                };
+                ((values.get(*flow) / area, Schedule::new(*schedule)), Some(water))
+            }
+        };
+        let thermostat = source.thermostat.as_ref().map(|given| Throttle {
+            zone: given.zone,
+            set_point: Temperature::new(&given.setpoint, values),
+            range: values.get(given.range),
+            cooling: given.cooling,
+        });
+        Self { wall: source.surface, cell, driven, water, thermostat, control: source.control }
+    }
+}
