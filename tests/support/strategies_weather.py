@@ -7,13 +7,18 @@ import pandas as pd
 from hypothesis import settings
 from hypothesis import strategies as st
 
+from mascarin.tables.reading.numbers import CODES
+
 quick = settings(deadline=None, max_examples=40)
 """Few examples, each as long as it takes."""
 
 ZONES = ("UTC", "Europe/Paris", "Indian/Reunion", "America/Denver", "Australia/Lord_Howe")
 STEPS = ("1min", "10min", "15min", "30min", "1h", "3h", "24h")
 
-numbers = st.floats(-1e6, 1e6, allow_nan=False, width=32).map(float)
+# A code of loggers for no value, such as -999, is read as none.
+numbers = (
+    st.floats(-1e6, 1e6, allow_nan=False, width=32).map(float).filter(lambda number: number not in CODES)
+)
 names = st.text("abcdefghijklmnopqrstuvwxyz_0123456789", min_size=1, max_size=12).map(lambda s: f"c_{s}")
 
 

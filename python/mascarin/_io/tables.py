@@ -6,7 +6,7 @@ import contextlib
 import csv
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Final, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, Protocol, TextIO
 
 from mascarin.errors import InputError
 
@@ -17,7 +17,19 @@ if TYPE_CHECKING:
 _EXACT: Final = (3, 1)
 
 
-def read_csv(path: Path | TextIO | BinaryIO, **options: Any) -> pd.DataFrame:
+class Pieces(Protocol):
+    """What gives its bytes piece by piece, as a file does."""
+
+    def read(self, size: int = -1, /) -> bytes:
+        """The next bytes; none at the end."""
+        ...
+
+    def __iter__(self) -> Iterator[bytes]:
+        """All pieces."""
+        ...
+
+
+def read_csv(path: Path | TextIO | BinaryIO | Pieces, **options: Any) -> pd.DataFrame:
     r"""Read a CSV file; each number is the floating-point number nearest to its text.
 
     Older versions of pandas read some numbers with an error in the last digit, unless asked not to.
@@ -49,7 +61,7 @@ def read_csv(path: Path | TextIO | BinaryIO, **options: Any) -> pd.DataFrame:
     version = tuple(int(part) for part in pd.__version__.split(".")[:2])
     if version < _EXACT:
         options["float_precision"] = "round_trip"
-    table: pd.DataFrame = pd.read_csv(path, **options)
+    table: pd.DataFrame = pd.read_csv(path, **options)  # type: ignore[arg-type, assignment, unused-ignore]
     return table
 
 

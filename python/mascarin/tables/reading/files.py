@@ -6,9 +6,8 @@ import codecs
 import hashlib
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,11 +19,12 @@ from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked
 from mascarin.tables.reading.influx import is_influx, read_influx
-from mascarin.tables.reading.layout import Layout, decoded, find_layout, footer_of
+from mascarin.tables.reading.layout import Layout, cells_of, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
 from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
 from mascarin.tables.reading.preamble import clock_of_preamble, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
+from mascarin.tables.stamps.iso_stamps import ISO_TEXT, MIDNIGHT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,7 +129,12 @@ def _of_archive(path: Path, content: bytes) -> Read | None:
 
 
 def read_frame(
-    path: Path, content: bytes, separator: str | None, decimal: str | None, skip_lines: int | None
+    path: Path,
+    content: bytes,
+    separator: str | None,
+    decimal: str | None,
+    skip_lines: int | None,
+    time: str | None = None,
 ) -> Read:
     """Read a CSV or Parquet file, or a spreadsheet, without changing it.
 
@@ -143,6 +148,9 @@ def read_frame(
         Between entries of a CSV file, and its decimal mark; None: found.
     skip_lines : int or None
         Lines before the line with the names of the columns; None: found.
+    time : str or None
+        The column whose stamps may come back as times: where it is the first one of a large file, they are
+        read with the numbers. Empty: whichever is the first; None: none.
 
     Returns
     -------
@@ -175,16 +183,19 @@ def read_frame(
         # Numbers of cells have no marks that could be read in two ways.
         encoding, separator, decimal = "utf-8-sig", separator or "\t", decimal or "."
         content = b""  # a large sheet is put together from its text
+    elif _is_plain(content):
+        text, encoding = "", "utf-8-sig"  # its bytes are its letters
     else:
         text, encoding = decoded(content, path.name)
     raw = content.removeprefix(codecs.BOM_UTF8) if encoding == "utf-8-sig" else b""
-    body = _large_body(text, raw, path.name, separator, decimal, skip_lines) or _body(
-        text, path.name, separator, decimal, skip_lines
+    body = _large_body(raw or text.encode(), path.name, separator, decimal, skip_lines) or _body(
+        text or decoded(content, path.name)[0], path.name, separator, decimal, skip_lines
     )
     del text  # a large table is in memory once, as far as that is possible
-    layout, rows = body.layout, body.rows
+    layout = body.layout
     notes = (*sheet, *_notes(layout, encoding, body.head, path.name), *body.notes)
-    frame = _parsed(body.content, rows, layout, path.name, doubt=decimal is None)
+    frame = _parsed(body, path.name, doubt=decimal is None, dated=_is_dated(body, time))
+    rows = layout.first + np.arange(1, len(frame) + 1) if body.rows is None else body.rows[: len(frame)] + 1
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
     notes += _twice(list(frame.columns), path.name)
     if layout.trailing:
@@ -192,8 +203,9 @@ def read_frame(
     if is_meteo_france(frame):
         frame, station_units, clock = of_one_station(frame, path.name)
         note = f"{path.name}: hourly data of Meteo-France: {clock or 'local clock'}, units as described."
-        return Read(frame, rows[: len(frame)] + 1, (*notes, note), station_units, clock=(clock, 1))
-    _refuse_cut(body.last, layout, len(frame.columns), path.name, body.count)
+        return Read(frame, rows, (*notes, note), station_units, clock=(clock, 1))
+    count = layout.first + len(frame) if body.rows is None else body.count
+    _refuse_cut(body.last, layout, len(frame.columns), path.name, count)
     preamble = body.head[: layout.header]
     units = dict(zip(map(str, frame.columns), layout.units, strict=False))
     stated = decimal is not None
@@ -202,7 +214,7 @@ def read_frame(
     }
     words, line = clock_of_preamble(preamble)
     return Read(
-        frame, rows[: len(frame)] + 1, notes, units, layout.header + 2, layout.decimal, stated,
+        frame, rows, notes, units, layout.header + 2, layout.decimal, stated,
         layout.evident, said_units, (words, line + 1),
     )  # fmt: skip
 
@@ -223,15 +235,78 @@ def _parquet(path: Path) -> Read:
 
 @dataclass(frozen=True)
 class _Body:
-    """The rows of a text file below a line with the names."""
+    """The rows of a text file below a line with the names.
+
+    Attributes
+    ----------
+    layout : Layout
+        Where they begin, and how they are written.
+    names : bytes
+        The line with the names.
+    content : bytes
+        The file, or its rows alone.
+    begin : int
+        Where they begin in it.
+    rows : ndarray, shape (n,), or None
+        Number of the line of each, from 0; None where all lines below the names are rows.
+    head : sequence of str
+        Lines above them.
+    first : sequence of str
+        The first rows; empty for a small file.
+    last : str
+        The last line.
+    count : int
+        Lines of the file; 0 where all lines below the names are rows.
+    notes : tuple of str
+        What was left out.
+    """
 
     layout: Layout
+    names: bytes
     content: bytes
-    rows: Lines
+    begin: int
+    rows: Lines | None
     head: Sequence[str]
+    first: Sequence[str]
     last: str
-    count: int
+    count: int = 0
     notes: tuple[str, ...] = ()
+
+    def has_blanks(self, size: int | None = None) -> bool:
+        """Whether entries in the first bytes, or in all, begin with a blank: skipping them takes time."""
+        mark = self.layout.separator.encode()
+        stop = len(self.content) if size is None else self.begin + size
+        return (
+            any(
+                self.names.find(before + b" ") >= 0 or self.content.find(before + b" ", self.begin, stop) >= 0
+                for before in (mark, b"\n", b"\r")
+            )
+            or self.content[self.begin : self.begin + 1] == b" "
+        )
+
+
+class _Pieces:
+    """A file of a line and the bytes below it, which are not copied before they are read."""
+
+    mode = "r"  # pandas passes what it reads on to its parser, as bytes
+
+    def __init__(self, body: _Body) -> None:
+        self._pieces = [memoryview(body.names), memoryview(body.content)[body.begin :]]
+
+    def read(self, size: int = -1) -> bytes:
+        """The next bytes; none at the end."""
+        while self._pieces:
+            piece = self._pieces[0]
+            if len(piece):
+                end = len(piece) if size < 0 else size
+                self._pieces[0] = piece[end:]
+                return bytes(piece[:end])
+            del self._pieces[0]
+        return b""
+
+    def __iter__(self) -> Iterator[bytes]:
+        """Pieces of a fixed size."""
+        return iter(lambda: self.read(_HEAD), b"")
 
 
 def _body(text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None) -> _Body:
@@ -251,44 +326,59 @@ def _body(text: str, where: str, separator: str | None, decimal: str | None, ski
         notes += (f"{where}: the head is repeated in line {repeated[0] + 1}; {len(repeated)} such lines "
                   "were left out.",)  # fmt: skip
     data = (lines[k] for k in rows.tolist()) if repeated else lines[layout.first :]
-    body = "\n".join([_names_line(lines, layout), *data])
-    return _Body(layout, body.encode(), rows, lines[: layout.first], last, count, notes)
+    content = "\n".join(data).encode()
+    return _Body(
+        layout, _names_line(lines, layout), content, 0, rows, lines[: layout.first], (), last, count, notes
+    )
 
 
-def _names_line(lines: Sequence[str], layout: Layout) -> str:
+def _names_line(lines: Sequence[str], layout: Layout) -> bytes:
     header = lines[layout.header] if layout.header < len(lines) else ""
-    return (layout.separator.join(layout.names) or header) + layout.separator * layout.trailing
+    names = (layout.separator.join(layout.names) or header) + layout.separator * layout.trailing
+    return f"{names}\n".encode()
+
+
+def _is_plain(content: bytes) -> bool:
+    """Whether a large file has letters of ASCII alone: its text is not made, which would take memory."""
+    return len(content) >= _LARGE and content.isascii() and b"\0" not in content
 
 
 def _large_body(
-    text: str, raw: bytes, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
+    raw: bytes, where: str, separator: str | None, decimal: str | None, skip_lines: int | None
 ) -> _Body | None:
     """A large file without a loop over its lines; None where it is small, repeats heads or has remarks."""
-    if len(text) < _LARGE or "\n" not in text[:_HEAD] or (skip_lines or 0) > _HEAD_LINES:
+    if len(raw) < _LARGE or b"\n" not in raw[:_HEAD] or (skip_lines or 0) > _HEAD_LINES:
         return None
-    lines = text[: text.rfind("\n", 0, _HEAD)].splitlines()
+    lines = raw[: raw.rfind(b"\n", 0, _HEAD)].decode().splitlines()
     layout = find_layout(lines, where, separator, decimal, skip_lines)
     if layout.first > _HEAD_LINES or layout.first >= len(lines):
         return None
     first = 0
     for _ in range(layout.first):
-        first = text.find("\n", first) + 1
+        first = raw.find(b"\n", first) + 1
     starts = {line[:8] for line in lines[: layout.first] if line.strip()}
-    tail = text[text.find("\n", len(text) - _HEAD) + 1 :].splitlines()
-    if any(text.find("\n" + start, max(first - 1, 0)) >= 0 for start in starts) or footer_of(
+    tail = raw[raw.find(b"\n", len(raw) - _HEAD) + 1 :].decode().splitlines()
+    if any(raw.find(f"\n{start}".encode(), max(first - 1, 0)) >= 0 for start in starts) or footer_of(
         tail, 0, layout.separator
     ) < len(tail):
         return None
-    last = text[text.rfind("\n") + 1 :]
-    count = text.count("\n", first) + bool(last)
-    rows = layout.first + np.arange(count, dtype=np.int64)
-    # The head may have letters of several bytes; the rows are not copied before they are put together.
-    data_bytes = memoryview(raw or text.encode())[len(text[:first].encode()) :]
-    body = b"".join([f"{_names_line(lines, layout)}\n".encode(), data_bytes])
-    return _Body(layout, body, rows, lines[: layout.first], last, layout.first + count)
+    last = raw[raw.rfind(b"\n") + 1 :].decode()
+    names, head = _names_line(lines, layout), lines[: layout.first]
+    return _Body(layout, names, raw, first, None, head, lines[layout.first :][:2], last)
 
 
-#: Characters from which on a file is not read line by line; characters at both ends that are looked at.
+def _is_dated(body: _Body, time: str | None) -> bool:
+    """Whether the first column has stamps of ISO 8601, with a time of day that is not in another column."""
+    if len(body.first) < 2 or time is None:
+        return False
+    name = cells_of(body.names.decode(), body.layout.separator)[0]
+    entries = [cells_of(line, body.layout.separator)[0] for line in body.first]
+    return time in ("", name) and bool(
+        all(ISO_TEXT.fullmatch(entry) for entry in entries) and not MIDNIGHT.search(entries[1])
+    )
+
+
+#: Bytes from which on a file is not read line by line; bytes at both ends that are looked at.
 _LARGE: Final = 2_000_000
 _HEAD: Final = 200_000
 _HEAD_LINES: Final = 150
@@ -315,18 +405,19 @@ def _is_head_again(line: str, lines: Sequence[str], layout: Layout) -> bool:
     return line[:5] == first[:5] and line.count(layout.separator) == first.count(layout.separator)
 
 
-def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool) -> pd.DataFrame:
+def _parsed(body: _Body, where: str, *, doubt: bool, dated: bool) -> pd.DataFrame:
+    """The rows as a frame; with `dated`, the stamps of the first column as times where all can be read."""
     import pandas as pd
 
+    layout = body.layout
     options: dict[str, Any] = {
-        "sep": layout.separator, "decimal": layout.decimal, "skip_blank_lines": False,
-        "skipinitialspace": True, "low_memory": False, "index_col": False,
+        "sep": layout.separator, "decimal": layout.decimal, "skip_blank_lines": False, "index_col": False,
     }  # fmt: skip
     try:
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(BytesIO(body), **options)
+            frame = _read(body, options, dated)
     except pd.errors.ParserWarning as error:
         raise InputError(
             f"{where}:{layout.first + 1}: the row has more entries than the header has names, expected as "
@@ -334,11 +425,12 @@ def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool
             "with another separator."
         ) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
-        said = re.sub(
-            r"(?<=line )\d+",
-            lambda match: str(int(rows[int(match[0]) - 2]) + 1),
-            " ".join(str(error).split()),
-        )
+
+        def line(match: re.Match[str]) -> str:
+            row = int(match[0]) - 2
+            return str((layout.first + row if body.rows is None else int(body.rows[row])) + 1)
+
+        said = re.sub(r"(?<=line )\d+", line, " ".join(str(error).split()))
         raise InputError(
             f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}; expected the "
             "same number of entries in each line: repair the line, or state another separator."
@@ -352,9 +444,42 @@ def _parsed(body: bytes, rows: Lines, layout: Layout, where: str, *, doubt: bool
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(BytesIO(body), dtype=str, **options)
+        texts = read_csv(_Pieces(body), dtype=str, skipinitialspace=True, **options)
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
+    return frame
+
+
+def _read(body: _Body, options: Mapping[str, Any], dated: bool) -> pd.DataFrame:
+    """Blanks before entries are skipped where there are some: numbers are read with them, too."""
+    import pandas as pd
+
+    skip = {"skipinitialspace": True}
+    if body.layout.separator.isspace() or body.has_blanks(_HEAD):
+        return _in_pieces(body, {**options, **skip}, dated)
+    try:
+        frame = _in_pieces(body, options, dated)
+    except (pd.errors.ParserError, pd.errors.ParserWarning, ValueError):
+        if not body.has_blanks():
+            raise
+        return _in_pieces(body, {**options, **skip}, dated)
+    plain = all(dtype.kind in "iufM" for dtype in frame.dtypes)
+    return frame if plain or not body.has_blanks() else _in_pieces(body, {**options, **skip}, dated)
+
+
+def _in_pieces(body: _Body, options: Mapping[str, Any], dated: bool) -> pd.DataFrame:
+    """Read the rows piece by piece, and all at once where the pieces disagree on what a column holds."""
+    import pandas as pd
+
+    dates: dict[str, Any] = {"parse_dates": [0], "date_format": "ISO8601"} if dated else {}
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.DtypeWarning)
+            frame = read_csv(_Pieces(body), **options, **dates)
+    except pd.errors.DtypeWarning:
+        frame = read_csv(_Pieces(body), low_memory=False, **options, **dates)
+    if dates and (frame.dtypes.iloc[0].kind != "M" or frame.iloc[:, 0].isna().any()):
+        return _in_pieces(body, options, dated=False)  # an offset, 24:00, no time at all: read with care
     return frame
 
 

@@ -134,15 +134,15 @@ def find_layout(
     """
     header = skip_lines if skip_lines is not None else _header(lines, where, separator)
     delimiter = separator or _separator(lines, where, header)
-    names = _cells(lines[header], delimiter) if header < len(lines) else []
+    names = cells_of(lines[header], delimiter) if header < len(lines) else []
     units: tuple[str, ...] = ()
     first = header + 1
     while first - header <= _UNIT_ROWS and first < len(lines):
-        cells = _cells(lines[first], delimiter)
+        cells = cells_of(lines[first], delimiter)
         if len(cells) != len(names) or not (_is_units(cells) or _is_labels(cells)):
             break
         units, first = units or (tuple(cells) if _is_units(cells) else ()), first + 1
-    sample = [_cells(line, delimiter) for line in lines[first : first + _SEARCHED] if line.strip()]
+    sample = [cells_of(line, delimiter) for line in lines[first : first + _SEARCHED] if line.strip()]
     trailing = bool(sample) and all(len(row) == len(names) + 1 and not row[-1].strip() for row in sample)
     mark, evident = (decimal, True) if decimal else _decimal(sample)
     two = _names_of_two_lines(lines, header, delimiter, names)
@@ -155,7 +155,7 @@ def _names_of_two_lines(
     """Names of WeatherLink, whose first words are in the line above that of date and time."""
     if header == 0 or [name.lower() for name in names[:2]] != ["date", "time"]:
         return ()
-    above = _cells(lines[header - 1], mark)
+    above = cells_of(lines[header - 1], mark)
     if len(above) != len(names) or any(above[:2]) or not any(above):
         return ()
     return tuple(" ".join(pair).strip() for pair in zip(above, names, strict=True))
@@ -176,14 +176,14 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
     count, negated_first, mark = max(blocks)
     first = -negated_first
     # Rows above the block that begin with a time are data, too: one of their entries is no number.
-    while first > 0 and len(cells := _cells(lines[first - 1], mark)) == count and _DIGIT.match(cells[0]):
+    while first > 0 and len(cells := cells_of(lines[first - 1], mark)) == count and _DIGIT.match(cells[0]):
         first -= 1
     header = first - 1
-    while header >= 0 and (not lines[header].strip() or _is_units(_cells(lines[header], mark))):
+    while header >= 0 and (not lines[header].strip() or _is_units(cells_of(lines[header], mark))):
         header -= 1
     header = _above_labels(lines, header, mark, count)
     header = _below_a_preamble(lines, header, mark, count)
-    names = _cells(lines[header], mark) if header >= 0 else []
+    names = cells_of(lines[header], mark) if header >= 0 else []
     if header < 0 or len(names) not in (count, count - 1):
         above = (
             f"line {header + 1} has {len(names)} of {count} entries"
@@ -201,11 +201,11 @@ def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
 def _above_labels(lines: Sequence[str], header: int, mark: str, count: int) -> int:
     """Number of the line with the names where a line of labels without one for the time is below them."""
     line_number = header
-    while line_number > 0 and _is_labels(_cells(lines[line_number], mark)):
+    while line_number > 0 and _is_labels(cells_of(lines[line_number], mark)):
         line_number -= 1
-        while line_number > 0 and _is_units(_cells(lines[line_number], mark)):
+        while line_number > 0 and _is_units(cells_of(lines[line_number], mark)):
             line_number -= 1
-    names = _cells(lines[line_number], mark) if line_number >= 0 else []
+    names = cells_of(lines[line_number], mark) if line_number >= 0 else []
     return line_number if len(names) == count and all(names) else header
 
 
@@ -215,13 +215,13 @@ def _below_a_preamble(lines: Sequence[str], header: int, mark: str, count: int) 
     Such a preamble, as spreadsheets write it, leaves entries of the line above its rows empty, or begins it
     with a number.
     """
-    cells = _cells(lines[header], mark) if header >= 0 else []
+    cells = cells_of(lines[header], mark) if header >= 0 else []
     if len(cells) == count and _are_names(lines[header], mark):
         return header
     for line_number in range(max(header, 0) + 1, min(len(lines), _SEARCHED)):
-        if not _are_names(lines[line_number], mark) or len(_cells(lines[line_number], mark)) != count:
+        if not _are_names(lines[line_number], mark) or len(cells_of(lines[line_number], mark)) != count:
             continue
-        rows = [_cells(line, mark) for line in lines[line_number + 1 : line_number + 2 + _UNIT_ROWS]]
+        rows = [cells_of(line, mark) for line in lines[line_number + 1 : line_number + 2 + _UNIT_ROWS]]
         data = [row for row in rows if row and not _is_units(row)]
         if data and all(len(row) == count and _is_data(row) for row in data):
             return line_number
@@ -230,14 +230,14 @@ def _below_a_preamble(lines: Sequence[str], header: int, mark: str, count: int) 
 
 def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
     """Whether the first line of a table holds names and the second one data."""
-    names, data = (_cells(line, mark) for line in lines) if len(lines) == 2 else ([], [])
+    names, data = (cells_of(line, mark) for line in lines) if len(lines) == 2 else ([], [])
     named = sum(bool(name) for name in names)
     return 1 < len(names) == len(data) and 2 * named > len(names) and not _is_data(names) and _is_data(data)
 
 
 def _are_names(line: str, mark: str) -> bool:
     """Whether a line below two others has names of columns: the two are a preamble, as that of NSRDB."""
-    cells = _cells(line, mark)
+    cells = cells_of(line, mark)
     return (
         len(cells) > 1
         and all(cells)
@@ -279,7 +279,7 @@ def footer_of(lines: Sequence[str], first: int, separator: str) -> int:
 
 def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:
     """Number of the first of some rows of data with the same number of entries, and that number."""
-    rows = [_cells(line, mark) for line in lines[:_SEARCHED]]
+    rows = [cells_of(line, mark) for line in lines[:_SEARCHED]]
     for k, cells in enumerate(rows):
         block = rows[k : k + _BLOCK]
         if (
@@ -291,7 +291,16 @@ def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:
     return None
 
 
-def _cells(line: str, mark: str) -> list[str]:
+def cells_of(line: str, mark: str) -> list[str]:
+    """Entries of a line, without blanks around them.
+
+    Parameters
+    ----------
+    line : str
+        The line.
+    mark : str
+        Between entries.
+    """
     try:
         cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True), [])
     except csv.Error:  # a field of more than 131,072 characters, which is no data
@@ -326,9 +335,9 @@ def _separator(lines: Sequence[str], where: str, line: int) -> str:
     below = [text for text in lines[line + 1 : line + 8] if text.strip()]
     fits: dict[str, tuple[int, int]] = {}
     for mark in _MARKS:
-        count = len(_cells(header, mark))
+        count = len(cells_of(header, mark))
         if count > 1:
-            same = sum(len(_cells(text, mark)) in (count, count + 1) for text in below)
+            same = sum(len(cells_of(text, mark)) in (count, count + 1) for text in below)
             fits[mark] = (same, header.count(mark))
     words = below[0].split() if below else []
     same = len(below) > 1 and all(len(text.split()) == len(header.split()) for text in below)

@@ -76,13 +76,14 @@ def parse_numbers(
     import pandas as pd
 
     if pd.api.types.is_numeric_dtype(series.dtype):
-        values = series.to_numpy(dtype=np.float64, na_value=np.nan).copy()
+        plain = series.dtype == np.float64
+        values = series.to_numpy(dtype=np.float64, copy=True, **({} if plain else {"na_value": np.nan}))
     else:
         values = _of_texts(series, decimal, stated, evident, lines, where)
-    infinite = np.flatnonzero(np.isinf(values))
-    if len(infinite):
+    infinite = np.isinf(values)
+    if infinite.any():
         raise InputError(
-            f"{where}, line {lines[int(infinite[0])]}: found an infinite value, expected a number; "
+            f"{where}, line {lines[int(np.argmax(infinite))]}: found an infinite value, expected a number; "
             "repair it, or name it in missing: ['inf', '-inf']."
         )
     return values

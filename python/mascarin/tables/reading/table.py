@@ -264,13 +264,16 @@ def read_table(
         where = path.name
         content = content_of(path)
         digest = hashlib.sha256(content).hexdigest()
-        read = read_frame(path, content, separator, decimal, skip_lines)
+        dated = None if time_format is not None else "" if time is None else time
+        named = dated if isinstance(dated, str) else None
+        read = read_frame(path, content, separator, decimal, skip_lines, named)
         del content
         frame, said = read.frame, read.notes
     frame, of_entries = without_units(frame, where)
     lines = read.lines if read is not None else 1 + np.arange(len(frame), dtype=np.int64)
     empty = _empty_rows(frame)
-    frame, lines = frame.loc[~empty], lines[~empty]
+    if empty.any():
+        frame, lines = frame.loc[~empty], lines[~empty]
     _require_two(frame, "rows", where)
     if time is None and time_format is None and (parts := parts_of_time(frame)):
         time, time_format = parts
@@ -387,17 +390,17 @@ def _regular(
     import pandas as pd
 
     index = pd.DatetimeIndex(frame.index)
-    seconds = epoch_seconds(index)
-    gaps = np.round(np.diff(seconds), 6)
+    gaps = _steps(index)
     require_order(frame, gaps, index, lines, where, zone)
     interval = expected if expected is not None else _commonest(gaps)
-    ratio = gaps / interval
-    odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
-    moved = _without_jitter(seconds, expected, interval, tolerance) if len(odd) else None
+    others, ratio, odd = _deviating(gaps, interval)
+    start = float(epoch_seconds(index[:1])[0])
+    moved = _without_jitter(epoch_seconds(index), expected, interval, tolerance) if len(odd) else None
     if moved is not None:
         seconds, interval, text = moved
         said, index, gaps = (*said, f"{where}: {text}"), stamps_of(seconds, zone), np.diff(seconds)
-        ratio, odd = gaps / interval, odd[:0]
+        others, ratio, _ = _deviating(gaps, interval)
+        start, odd = float(seconds[0]), odd[:0]
     if len(odd):
         row = int(odd[0])
         raise InputError(
@@ -406,40 +409,69 @@ def _regular(
             f"({len(odd)} such steps in all); state a larger tolerance (tolerance: 30s; by default a tenth "
             "of the step) if the clock is not exact, or put the table on a regular step first."
         )
-    size = float(np.round(ratio).sum()) + 1.0
+    size = float(np.round(ratio).sum()) + len(gaps) - len(others) + 1.0
     memory.require(
         size * (frame.shape[1] + 4) * 16.0,  # the table twice, stamps and lines
         f"{where}: {len(frame)} rows over {size:.3g} steps of {interval:g} s",
         "check the first and the last time, or state the step",
     )
-    grid_rows = np.concatenate([[0], np.cumsum(np.round(ratio).astype(np.int64))])
     notes = [
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
-    notes += [*said, *clock_changes(index, where, zone), *skipped_hour(index, gaps - interval, where, zone)]
-    absent = int(grid_rows[-1]) + 1 - len(frame)
+    extra = gaps - interval if len(others) else others.astype(np.float64)
+    notes += [*said, *clock_changes(index, where, zone), *skipped_hour(index, extra, where, zone)]
+    absent = int(size) - len(frame)
     if absent:
-        row = int(np.argmax(ratio > 1.5))
+        row = int(others[np.argmax(ratio > 1.5)])
         notes.append(
             f"{where}: {absent} rows are missing, the first after {index[row]:%Y-%m-%d %H:%M}; left empty."
         )
-        grid_lines = np.zeros(int(grid_rows[-1]) + 1, dtype=np.int64)
+        steps = np.ones(len(frame), dtype=np.int64)
+        steps[0] = 0
+        steps[others + 1] = np.round(ratio)
+        grid_rows = np.cumsum(steps)
+        row_at = np.full(int(size), -1, dtype=np.int64)
+        row_at[grid_rows] = np.arange(len(frame))
+        grid_lines = np.zeros(int(size), dtype=np.int64)
         grid_lines[grid_rows] = lines
-        grid = stamps_of(seconds[0] + interval * np.arange(len(grid_lines)), zone)
-        frame = frame.set_axis(stamps_of(seconds[0] + interval * grid_rows, zone), axis=0).reindex(grid)
+        # Rows by their number: a search for each stamp among all others takes longer than the reading.
+        frame = frame.reset_index(drop=True).reindex(row_at)
+        frame = frame.set_axis(stamps_of(start + interval * np.arange(len(grid_lines)), zone), axis=0)
         lines = grid_lines
     if moved is not None and not absent:
         frame = frame.set_axis(index, axis=0)
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
 
 
+def _steps(index: pd.DatetimeIndex) -> Array:
+    """Steps between stamps, to the microsecond, shape (n - 1,). [s]"""
+    steps = np.diff(index.asi8) / _IN_A_SECOND[index.unit]
+    return np.round(steps, 6) if index.unit == "ns" else steps
+
+
+def _deviating(gaps: Array, interval: float) -> tuple[Lines, Array, Lines]:
+    """Rows before another step than the usual one, their ratio to it [-], and those of no whole ratio."""
+    others = np.flatnonzero(gaps != interval)
+    ratio = gaps[others] / interval
+    return others, ratio, others[np.abs(ratio - np.round(ratio)) > 1e-6]
+
+
+#: Units of stamps in a second.
+_IN_A_SECOND: Final = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+
+
 def _commonest(gaps: Array) -> float:
     """The commonest step, of two that are equally common the earlier one. [s]"""
-    if (gaps == gaps[0]).all():
-        return float(gaps[0])
+    likely = float(np.median(gaps[:_FIRST]))
+    if 2 * np.count_nonzero(gaps == likely) > len(gaps):
+        return likely
     lengths, first_rows, counts = np.unique(gaps, return_index=True, return_counts=True)
     return float(lengths[np.lexsort((first_rows, -counts))[0]])
+
+
+#: Steps that suggest the commonest one, so that those of a long record need not be sorted.
+_FIRST: Final = 1000
 
 
 def _without_jitter(

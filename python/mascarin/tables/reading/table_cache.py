@@ -29,15 +29,15 @@ from mascarin.tables.reading import (
 from mascarin.tables.reading.files import file_hash
 from mascarin.tables.reading.own_readers import reader_of
 from mascarin.tables.record import Origin, Record
-from mascarin.tables.stamps import clocks, formats, iso_stamps, months, time_columns
+from mascarin.tables.stamps import clocks, digit_groups, formats, iso_stamps, months, time_columns
 from mascarin.tables.timezones import parse_timezone
 
 AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 #: Modules that make a record of a table, beside that of the caller.
 _CODE: Final = (
-    archives, clocks, columns, encodings, files, formats, interval_labels, iso_stamps, layout, months,
-    numbers, order, preamble, records, rows, spreadsheets, table, time_columns, timezones, units,
+    archives, clocks, columns, digit_groups, encodings, files, formats, interval_labels, iso_stamps, layout,
+    months, numbers, order, preamble, records, rows, spreadsheets, table, time_columns, timezones, units,
     units_of_entries,
 )  # fmt: skip
 #: Larger files have more numbers than the cache keeps: their hash alone would take time. [B]

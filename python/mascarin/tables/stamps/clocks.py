@@ -10,8 +10,9 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Array, Flags, Lines
+from mascarin.tables.stamps.digit_groups import DateParts, date_parts
 from mascarin.tables.stamps.formats import DATE, FORMATS, written_format
-from mascarin.tables.stamps.iso_stamps import iso_stamps
+from mascarin.tables.stamps.iso_stamps import ISO_TEXT, iso_stamps
 from mascarin.tables.stamps.months import with_numbers_of_months
 from mascarin.tables.timezones import YEARS, localize, zone_name
 
@@ -96,6 +97,11 @@ def stamps_from(
         return _of_numbers(text, zone, clock, lines, where)
     if time_format is None and (plain := _plain_iso(text)) is not None:
         return _local(plain, clock, zone, lines, where)
+    if time_format is None and (dates := date_parts(text)) is not None:
+        ordered = _in_order(dates, str(text.iloc[0]), lines, where)
+        if ordered is not None:
+            stamped = _local(ordered[0], clock, zone, lines, where)
+            return Stamped(stamped.times, (*ordered[1], *stamped.notes))
     written = with_numbers_of_months(text.astype(str).str.strip())
     if written.str.contains(_BLANKS).any():
         written = written.str.replace(r"\s+", " ", regex=True)
@@ -135,15 +141,11 @@ def _unreadable(
     return f"{where}:{lines[row]}: time {entry!r} cannot be read, expected {expected}; {remedy}"
 
 
-#: ISO 8601 without an offset.
-_ISO_TEXT: Final = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:\.\d+)?)?")
-
-
 def _plain_iso(text: pd.Series[Any]) -> pd.DatetimeIndex | None:
     """Stamps all of which are ISO 8601 without an offset, read at once; None where one is not."""
     import pandas as pd
 
-    if not len(text) or not isinstance(text.iloc[0], str) or not _ISO_TEXT.fullmatch(text.iloc[0]):
+    if not len(text) or not isinstance(text.iloc[0], str) or not ISO_TEXT.fullmatch(text.iloc[0]):
         return None
     if (times := iso_stamps(text)) is not None:
         return pd.DatetimeIndex(times)
@@ -288,8 +290,6 @@ def _of_dates(
     written: pd.Series[str], lines: Lines, where: str
 ) -> tuple[pd.DatetimeIndex, tuple[str, ...]] | None:
     """Stamps whose order of day, month and year follows from all of them; None where they are no dates."""
-    import pandas as pd
-
     parts = written.str.extract(DATE)
     if parts["a"].isna().any():
         return _with_names(written)
@@ -303,11 +303,23 @@ def _of_dates(
     if half.notna().any():
         hour = hour % 12 + 12 * (half == "p").to_numpy(dtype=np.int64)
     seconds = 3600.0 * hour + 60.0 * minute + second
-    orders = {"ymd": (a, b, c), "dmy": (c, b, a), "mdy": (c, a, b)}
     first_is_year = bool((parts["a"].str.len() == 4).all())
+    last_is_year = bool((parts["c"].str.len() == 4).any())
+    dates = DateParts(a, b, c, seconds, first_is_year, last_is_year, str(parts["mark"].iloc[0]))
+    return _in_order(dates, str(written.iloc[0]), lines, where)
+
+
+def _in_order(
+    dates: DateParts, example: str, lines: Lines, where: str
+) -> tuple[pd.DatetimeIndex, tuple[str, ...]] | None:
+    """Stamps of dates in the order of day, month and year that gives regular times; None for no order."""
+    import pandas as pd
+
+    a, b, c, seconds, first_is_year, last_is_year, mark = dates
+    orders = {"ymd": (a, b, c), "dmy": (c, b, a), "mdy": (c, a, b)}
     index_of_order = {}
     for name, (year, month, day) in orders.items():
-        if first_is_year != (name == "ymd") and (first_is_year or (parts["c"].str.len() == 4).any()):
+        if first_is_year != (name == "ymd") and (first_is_year or last_is_year):
             continue
         full = year + np.where(year < 100, np.where(year < 70, 2000, 1900), 0)
         if month.min() < 1 or month.max() > 12 or day.min() < 1 or day.max() > 31:
@@ -321,23 +333,21 @@ def _of_dates(
     best = max(shares, key=lambda name: shares[name])
     rivals = [name for name in shares if name != best and shares[name] >= _REGULAR]
     rivals = [name for name in rivals if not index_of_order[name].equals(index_of_order[best])]
-    if "dmy" in (best, *rivals) and str(parts["mark"].iloc[0]) == ".":
+    if "dmy" in (best, *rivals) and mark == ".":
         best, rivals = "dmy", []  # points stand between day, month and year alone (DIN 5008)
     if rivals:
         names = [best, *rivals]
         readings = " or ".join(
             f"{index_of_order[name][0]:%Y-%m-%d %H:%M} ({FORMATS[name]})" for name in names
         )
-        formats = " or ".join(repr(written_format(written.iloc[0], name)) for name in names)
+        formats = " or ".join(repr(written_format(example, name)) for name in names)
         count = "both" if len(names) == 2 else "all of them"
         raise InputError(
-            f"{where}:{lines[0]}: time {written.iloc[0]!r} can be {readings}, and {count} give regular "
+            f"{where}:{lines[0]}: time {example!r} can be {readings}, and {count} give regular "
             f"times; expected one reading: state time_format: {formats}."
         )
     words = {"ymd": "year, month, day", "dmy": "day, month, year", "mdy": "month, day, year"}[best]
-    return index_of_order[best], (
-        f"stamps such as {written.iloc[0]!r} are {words}, by the regular times of all.",
-    )
+    return index_of_order[best], (f"stamps such as {example!r} are {words}, by the regular times of all.",)
 
 
 def _with_names(written: pd.Series[str]) -> tuple[pd.DatetimeIndex, tuple[str, ...]] | None:

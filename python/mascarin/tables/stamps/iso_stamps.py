@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+import re
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
+
+from mascarin.tables.arrays import Lines
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    Bytes = npt.NDArray[np.uint8]
 
+Bytes: TypeAlias = "npt.NDArray[np.uint8]"
+
+ISO_TEXT: Final = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:\.\d+)?)?")
+"""ISO 8601 without an offset."""
+MIDNIGHT: Final = re.compile(r"[T ]00:00(?::00(?:\.0+)?)?$")
+"""A time of day that may say nothing: the hour may be in another column."""
 #: Places of the marks between the digits, and the marks.
 _MARKS: Final = ((4, "-"), (7, "-"), (13, ":"), (16, ":"))
 _WIDTHS: Final = (16, 19)
@@ -55,6 +63,31 @@ def iso_stamps(text: pd.Series[Any]) -> npt.NDArray[np.datetime64] | None:
 def _letters(text: pd.Series[Any]) -> Bytes | None:
     """The bytes of texts of one width, shape (n, width); None where widths differ or one is missing."""
     width = len(str(text.iloc[0]))
+    letters = letters_of(text)
+    if letters is None or not (np.diff(letters[1]) == width).all():
+        return None
+    return letters[0].reshape(len(text), width)
+
+
+def letters_of(text: pd.Series[Any]) -> tuple[Bytes, Lines] | None:
+    """The bytes of texts one after the other, and where each begins and the last one ends.
+
+    Parameters
+    ----------
+    text : pandas.Series
+        As read.
+
+    Returns
+    -------
+    (ndarray of uint8, ndarray of int, shape (n + 1,)) or None
+        None where one is missing, or no text.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> [part.tolist() for part in letters_of(pd.Series(["1.2", "7"]))]
+    [[49, 46, 50, 55], [0, 3, 4]]
+    """
     try:
         import pyarrow as pa
 
@@ -64,22 +97,20 @@ def _letters(text: pd.Series[Any]) -> Bytes | None:
             return None
         _, ends, content = column.buffers()
         offsets = np.frombuffer(ends, dtype=np.int64)[column.offset : column.offset + len(column) + 1]
-        if not (np.diff(offsets) == width).all():
-            return None
         raw = np.frombuffer(content, dtype=np.uint8)[offsets[0] : offsets[-1]]
+        return raw, offsets - offsets[0]
     except ImportError:
+        entries = text.tolist()
         try:
-            joined = "".join(text.tolist())
+            joined = "".join(entries)
         except TypeError:  # a missing value is no text
             return None
-        if len(joined) != width * len(text) or not joined.isascii():
+        if not joined.isascii():
             return None
-        if not all(len(entry) == width for entry in text.tolist()):
-            return None
-        raw = np.frombuffer(joined.encode(), dtype=np.uint8)
+        ends = np.cumsum([0, *map(len, entries)], dtype=np.int64)
+        return np.frombuffer(joined.encode(), dtype=np.uint8), ends
     except (TypeError, ValueError):
         return None
-    return raw.reshape(len(text), width)
 
 
 def _times(letters: Bytes) -> npt.NDArray[np.datetime64] | None:
