@@ -1,6 +1,6 @@
 //! What no building can do, looked for after every step of a run: an energy balance closes for nonsense, too.
 //!
-//! *Impossible* are temperatures below absolute zero, negative humidity, ideal loads above their capacity, a calculated irradiance above
+//! *Impossible* are temperatures below absolute zero or above 2000 degC, negative humidity, ideal loads above their capacity, a calculated irradiance above
 //! the extraterrestrial one and what the ground reflects of it, and recorded fractions outside of 0 to 1 (`run/output_limits.rs`): the run ends with an error that names time and place; a member in lanes is marked as failed and run
 //! again alone, where it ends in the same way.
 //!
@@ -38,6 +38,9 @@ const NO_VAPOUR: ByPrecision = ByPrecision { double: -1e-12, single: -1e-6 };
 /// What rounding and the tolerances of the solver may add to a load, as a part of its capacity [-].
 const CAPACITY: ByPrecision = ByPrecision { double: 1e-6, single: 1e-2 };
 
+/// No part of a building is hotter [degC]: steel melts at 1500, gypsum and concrete are decomposed long before (EN 1993-1-2, EN 1992-1-2), and
+/// no law of the engine holds there.
+const HOTTEST: f64 = 2000.0;
 /// What rounding may add to an irradiance, and a change of the extraterrestrial one within a step, as a part of the limit [-].
 const IRRADIANCE: f64 = 1e-3;
 /// The temperature of a run of one member that is farthest outside of its causes.
@@ -95,8 +98,8 @@ impl<S: Real> PhysicalLimits<S> {
         (action, step): (Action, usize),
     ) -> Result<(), EngineError> {
         let (ends, row) = (state.extremes(), rows[1]);
-        let coldest = ends[0];
-        let mut impossible = coldest.lt(S::constant(-KELVIN));
+        let [coldest, hottest] = ends;
+        let mut impossible = coldest.lt(S::constant(-KELVIN)) | S::constant(HOTTEST).lt(hottest);
         for &vapour in &state.vapour[..state.vapour.len().min(state.air.len())] {
             impossible = impossible | vapour.lt(S::constant(NO_VAPOUR.of::<S>()));
         }
@@ -268,8 +271,12 @@ fn name_impossible<S: Real>(
             }
         }
     }
-    let (place, temperature) = extreme(plan, state, |a, b| a < b);
-    impossible(place, format!("{temperature:.1} degC, expected no temperature below -273.15 degC"))
+    let (place, hottest) = extreme(plan, state, |a, b| a > b);
+    if hottest > HOTTEST {
+        return impossible(place, format!("{hottest:.1} degC, expected no temperature above {HOTTEST} degC"));
+    }
+    let (place, coldest) = extreme(plan, state, |a, b| a < b);
+    impossible(place, format!("{coldest:.1} degC, expected no temperature below -273.15 degC"))
 }
 
 /// Temperatures of a state.
@@ -394,6 +401,11 @@ mod tests {
         assert!(
             cold.contains("step 7") && cold.contains("surface north (layer layer_0) has -273.2 degC"),
             "{cold}"
+        );
+        let hot = text(&|state, _| state.cells[0] = 2000.1);
+        assert!(
+            hot.contains("surface north (layer layer_0) has 2000.1 degC, expected no temperature above 2000"),
+            "{hot}"
         );
         let surface = text(&|state, _| state.surfaces[SideId::inside(1)] = -764.0);
         assert!(surface.contains("surface east (inside) has -764.0 degC"), "{surface}");

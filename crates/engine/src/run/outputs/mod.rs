@@ -394,6 +394,7 @@ mod tests {
             Of::Layer | Of::MeltingLayer => r#", "surface": 0, "layer": 0"#,
             Of::Vent => r#", "vent": 0"#,
             Of::Control => r#", "control": 0"#,
+            Of::Source | Of::WaterSource => r#", "source": 0"#,
             Of::Building => "",
             Of::Sensor => r#", "sensor": 0"#,
             Of::Derived => r#", "derived": 0"#,
