@@ -79,5 +79,6 @@ fn radiant_heating_of_a_cold_room_freezes_nothing() {
             assert!(scheme == Scheme::LinearlyImplicit || missing < 1e-2, "{name}: {missing} W are missing");
         }
     }
-    assert!(hottest > 60.0, "the radiation is strong: {hottest} degC");
+    // Emitters give 419 W/m2 of black surfaces at most, which is what these are heated with.
+    assert!(hottest > 30.0, "the radiation is strong: {hottest} degC");
 }
