@@ -153,6 +153,43 @@ def test_schedules_of_clocks_that_never_change_need_no_pandas() -> None:
         np.testing.assert_array_equal(one, other)
 
 
+def test_a_run_imports_nothing_that_it_does_not_need() -> None:
+    """A run of a description on the command line: no figures, tables, statistics or files of results."""
+    code = (
+        "import sys; import mascarin; from mascarin.cli import main\n"
+        "from mascarin.examples import FOLDER\n"
+        "main(['run', str(FOLDER / 'box.yaml'), '--weather', 'shipped:golden', '--end', '01-02'])\n"
+        "heavy = {'pandas', 'scipy', 'matplotlib', 'xarray', 'plotly', 'h5netcdf', 'pyarrow', 'pvlib',\n"
+        "         'mascarin.figures', 'mascarin.pages', 'mascarin.calibration', 'mascarin.energyplus',\n"
+        "         'mascarin.genopt', 'mascarin.optimization', 'mascarin.study.study', 'mascarin.design'}\n"
+        "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or None)"
+    )
+    process = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert "balance" in process.stdout
+    assert process.returncode == 0, process.stderr[-300:]
+
+
+def test_an_import_alone_reads_no_part_of_the_package() -> None:
+    code = (
+        "import sys; before = set(sys.modules); import mascarin\n"
+        "new = [name for name in set(sys.modules) - before if name.startswith('mascarin.')]\n"
+        "sys.exit(', '.join(sorted(set(new) | {'numpy', 'pydantic'} & set(sys.modules))) or None)"
+    )
+    process = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
+
+
+def test_classes_are_made_without_a_search_for_circles() -> None:
+    """And the search is on again afterwards."""
+    code = (
+        "import gc, sys\n"
+        "import pydantic, numpy, mascarin.errors\n"
+        "begin = sum(s['collections'] for s in gc.get_stats()); import mascarin.building.building\n"
+        "sys.exit(not gc.isenabled() or sum(s['collections'] for s in gc.get_stats()) - begin > 20)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
 def test_a_check_imports_no_pandas() -> None:
     code = (
         "import sys; from mascarin.examples import FOLDER; from mascarin.building import load\n"

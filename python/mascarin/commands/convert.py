@@ -45,7 +45,8 @@ def convert(
     out : Path
         File for the building. Default: the name of the model with .yaml, in the current folder.
     weather : Path
-        Weather file (EPW) that gives the site: for a model without Site:Location, or of another place.
+        Weather file (EPW) that gives the site: for a model without Site:Location, or of another place; or
+        shipped:NAME of a climate that comes with Mascarin, such as shipped:tampa.
     force : bool
         Write over a building file that was changed since it was converted.
     compare : Path

@@ -36,6 +36,7 @@ from mascarin.energyplus.zones.gains import describe_gains
 from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
+from mascarin.weather.reading.shipped import found
 
 #: Lines of an error that are shown.
 _MOST_LINES: Final = 40
@@ -92,7 +93,8 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     file : str or Path
         IDF or epJSON file of version 8.9 or later.
     weather : str or Path, optional
-        Weather file (EPW) that gives the site where the model has no ``Site:Location``.
+        Weather file (EPW) that gives the site where the model has no ``Site:Location``; or
+        ``shipped:NAME`` of a climate that comes with Mascarin.
 
     Returns
     -------
@@ -118,7 +120,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
             "There is no building to convert where a file has plants or schedules alone"
         )
     inside = read_openings(context, all_surfaces)
-    describe_site(context, None if weather is None else Path(weather))
+    describe_site(context, None if weather is None else found(weather))
     zones = describe_zones(context, all_surfaces)
     coefficients = ConvectionCoefficients(context)
     surfaces = describe_surfaces(context, all_surfaces, coefficients)

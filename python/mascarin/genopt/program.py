@@ -19,7 +19,7 @@ from pathlib import Path
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt.command_line import place_word, split_command, variables
-from mascarin.genopt.extraction import lines_of, word_after
+from mascarin.genopt.extraction import count_of, decimal_comma, lines_of, word_after
 from mascarin.genopt.files import functions
 from mascarin.genopt.files.numbers import double_text, parse_double
 from mascarin.genopt.files.project import FileEntry, Objective, Project
@@ -72,6 +72,7 @@ class Program:
         self._project = project
         self._limit = time_limit
         self._separators = separators
+        self._doubts: dict[tuple[str, str], str] = {}
         self._templates = [_read_template(entry) for entry in project.template]
         self._text_names = self._check_names()
         self._words = split_command(project)
@@ -325,7 +326,9 @@ class Program:
         for i in order:
             word = word_after(outputs[i], delimiter, o.column, self._separators)
             if word is not None:
-                value = self._number(o, word, self._inside(self._project.output[i], folder), folder)
+                path = self._inside(self._project.output[i], folder)
+                value = self._number(o, word, path, folder)
+                self._doubt(o, delimiter, outputs[i], word, path.name)
                 self._output_index[o.name] = i
                 return value
         files = ", ".join(f"'{self._inside(self._project.output[i], folder)}'" for i in order)
@@ -334,6 +337,26 @@ class Program:
             f"the value of '{o.name}' could not be found in {files}. Objective function delimiter is "
             f"'{delimiter}' ({o.location}); check it and the file",
         )
+
+    @property
+    def doubts(self) -> list[str]:
+        """What may not be the number that was meant, once for each objective."""
+        return list(self._doubts.values())
+
+    def _doubt(self, o: Objective, delimiter: str, lines: Sequence[str], word: str, name: str) -> None:
+        """Note a delimiter that stands several times, and a number that seems to be cut at its comma."""
+        count = count_of(lines, delimiter, o.column) if delimiter else 1
+        if count > 1 and (o.name, "count") not in self._doubts:
+            self._doubts[o.name, "count"] = (
+                f"the delimiter '{delimiter}' of '{o.name}' ({o.location}) stands {count} times in {name}; "
+                f"the last one is read, here {word}. Choose a longer delimiter if another one is meant"
+            )
+        comma = decimal_comma(lines, delimiter, o.column)
+        if comma is not None and word != comma and (o.name, "comma") not in self._doubts:
+            self._doubts[o.name, "comma"] = (
+                f"'{o.name}' is read as {word} from '{comma}' in {name}: a comma ends a number. If it is the "
+                "decimal mark, let the program write a point"
+            )
 
     def _number(self, o: Objective, word: str, path: Path, folder: Path) -> float:
         """A finite number, or the reason why not."""

@@ -215,7 +215,11 @@ def _optimized(project: Project, o: Options, run: Runner | None, started: dt.dat
         program = (
             None if run is not None else Program(project, time_limit=o.time_limit, separators=_separators())
         )
-        _work(project, built, listings, o, outcome, run or _runner(program), workers, _stopper(program))
+        try:
+            _work(project, built, listings, o, outcome, run or _runner(program), workers, _stopper(program))
+        finally:
+            doubts = [] if program is None else program.doubts
+            outcome.warnings = [*outcome.warnings, *doubts, *_constant_costs(outcome)]
     except MascarinError as error:
         _write_log(project, outcome, started, str(error))
         raise
@@ -224,6 +228,21 @@ def _optimized(project: Project, o: Options, run: Runner | None, started: dt.dat
     ended = "Maximum number of iteration exceeded." if outcome.exhausted else ""
     _write_log(project, outcome, started, ended)
     return outcome
+
+
+def _constant_costs(outcome: Outcome) -> list[str]:
+    """A warning where all runs gave one cost: then the search found nothing."""
+    done = [record for record in outcome.records if record.costs is not None]
+    points = {record.key[1:] for record in done}
+    costs = {record.costs[0] for record in done if record.costs is not None}
+    if len(points) < 2 or len(costs) != 1:
+        return []
+    objective = outcome.project.objectives[0]
+    return [
+        f"the cost '{objective.name}' ({objective.location}) is {double_text(costs.pop())} in all runs at "
+        f"{len(points)} different points: it does not depend on the parameters. Check that the template has "
+        "their names between percent signs, that the program reads the input file, and the delimiter"
+    ]
 
 
 def _runner(program: Program | None) -> Runner:

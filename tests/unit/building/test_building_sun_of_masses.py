@@ -63,3 +63,10 @@ def test_a_mass_among_shares_says_where_it_belongs() -> None:
         furnished(shares={"floor": 0.8, "shelf": 0.2})
     with pytest.raises(InputError, match="under 'shares:'"):
         furnished(shares={"floor": 0.8}, masses={"roof": {"inside": 0.2}})
+
+
+def test_a_misspelt_mass_is_named() -> None:
+    with pytest.raises(InputError, match=r"found: 'shelv'[\s\S]*Did you mean 'shelf'"):
+        furnished(shares={"floor": 0.8}, masses={"shelv": {"inside": 0.2}})
+    with pytest.raises(InputError, match=r"found: 'cupboard'[\s\S]*Known: shelf"):
+        furnished(shares={"floor": 0.8}, masses={"cupboard": {"inside": 0.2}})

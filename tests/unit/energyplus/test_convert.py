@@ -15,6 +15,7 @@ import pytest
 
 import mascarin as mc
 from mascarin.building.parts.air.flow_density import ConstantDensity
+from mascarin.cli import main
 from mascarin.energyplus import Conversion, convert
 from mascarin.energyplus.envelope.constructions import inner_part
 from mascarin.energyplus.envelope.convection import combined as combined_film
@@ -386,6 +387,27 @@ def test_names_that_are_not_ascii(tmp_path: Path, encoding: str) -> None:
     file = tmp_path / "box.idf"
     file.write_text(box().replace("Zone,Room", "Zone,Küche").replace("ROOM", "KÜCHE"), encoding=encoding)
     assert list(convert(file).building.zones) == ["Küche"]
+
+
+def test_a_shipped_climate_gives_the_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A model without a place gets that of a climate of Mascarin; no file is refused with a remedy."""
+    monkeypatch.chdir(tmp_path)
+    text = "".join(line + "\n" for line in box().splitlines() if not line.startswith("Site:Location"))
+    Path("box.idf").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="found no Site:Location"):
+        convert("box.idf")
+    site = convert("box.idf", weather="shipped:tampa").building.site
+    assert (site.latitude, site.longitude) == pytest.approx((27.97, -82.53))
+    assert main(["convert", "box.idf", "--weather", "shipped:tampa", "-o", "box.yaml"]) in (0, 1)
+    assert mc.load("box.yaml").site.latitude == pytest.approx(27.97)
+    capsys.readouterr()
+    assert main(["convert", "box.idf", "--weather", "shipped:tamba", "-o", "no.yaml"]) == 2
+    assert "Did you mean 'tampa'" in capsys.readouterr().err
+    assert main(["convert", "box.idf", "--weather", "tampa.epw", "-o", "no.yaml"]) == 2
+    assert "tampa.epw: no such file; expected a weather file (.epw)" in capsys.readouterr().err
+    assert not Path("no.yaml").exists()
 
 
 def test_missing_files(tmp_path: Path) -> None:

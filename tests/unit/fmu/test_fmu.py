@@ -107,6 +107,24 @@ def test_only_schedules_as_inputs_give_the_run_to_the_bit(room: Simulation, tmp_
     assert np.array_equal(simulated(file, room, input=signals), room.run().records)
 
 
+def test_inputs_without_a_signal_hold_the_first_values_of_their_tables(
+    room: Simulation, tmp_path: Path
+) -> None:
+    """As the page says: the unit gives the run of a room whose schedules are constant."""
+    file = tmp_path / "room.fmu"
+    export(room, file, inputs=["schedules.*"])
+    positions = [c.position for c in channels_of(room) if c.name.startswith("schedules.")]
+    first = room.compiled.forcing[0, 0, positions]
+    assert (room.compiled.forcing[:, :, positions] != first).any()
+    held = simulated(file, room)
+    names = [c.name for c in channels_of(room) if c.name.startswith("schedules.")]
+    signals = np.array(
+        [(0.0, *first), (1e9, *first)], dtype=[("time", float), *((name, float) for name in names)]
+    )
+    assert np.array_equal(held, simulated(file, room, input=signals))
+    assert not np.array_equal(held, room.run().records)
+
+
 def test_the_sun_as_inputs(room: Simulation, tmp_path: Path) -> None:
     """Without beam the sky is isotropic (Hay and Davies 1980): a wall gets half of it, and half of the fifth
     of the global radiation that the ground reflects, which follows from it."""
@@ -278,6 +296,7 @@ def test_the_command(
     assert cli.main([*call, "-o", "cell.fmu", "--output", "room.*", "--input", "weather.*"]) == 0
     err = capsys.readouterr().err
     assert "wrote cell.fmu" in err
+    assert "inputs hold until they are set, also where nothing is connected: weather.air_temperature " in err
     assert "warning" not in err
     described = fmpy.read_model_description("cell.fmu")
     inputs = [v.name for v in described.modelVariables if v.causality == "input"]

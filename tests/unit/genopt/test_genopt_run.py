@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -270,6 +271,33 @@ def test_too_many_equal_costs_stop_the_simplex(tmp_path: Path) -> None:
     settings = "MaxIte = 50; MaxEqualResults = 2; WriteStepNumber = false;"
     with pytest.raises(SolverError, match="more than MaxEqualResults = 2 times"):
         optimize(write_project(tmp_path, algorithm=algorithm, settings=settings), run=runner(lambda _: 1.0))
+
+
+def test_a_cost_that_never_changes_is_said(tmp_path: Path) -> None:
+    outcome = optimize(write_project(tmp_path / "constant"), run=runner(lambda _: 4.5))
+    assert len(outcome.warnings) == 1
+    assert "the cost 'cost'" in outcome.warnings[0]
+    assert "4.5 in all runs at" in outcome.warnings[0]
+    assert "does not depend on the parameters" in (tmp_path / "constant" / "GenOpt.log").read_text()
+    assert not optimize(write_project(tmp_path / "bowl"), run=runner(bowl)).warnings
+
+
+def test_doubtful_numbers_are_said_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A delimiter that stands several times, and a comma that seems to be a decimal mark."""
+    in_process(monkeypatch)
+    program = """
+    import re
+    x = [float(n) for n in re.findall(r'= (\\S+)', open('in.txt').read())]
+    open('log.txt', 'w').close()
+    cost = str(sum(v * v for v in x) + 20.25).replace('.', ',')
+    open('out.txt', 'w').write('cost= 1\\ncost= ' + cost + '\\n')
+    """
+    outcome = optimize(write_project(tmp_path, program=program))
+    several, comma, *_ = outcome.warnings
+    assert "the delimiter 'cost=' of 'cost'" in several
+    assert "stands 2 times in out.txt; the last one is read" in several
+    assert re.search(r"'cost' is read as (\d+) from '\1,\d+' in out.txt", comma)
+    assert sum("stands 2 times" in text for text in outcome.warnings) == 1
 
 
 # ---------------------------------------------------------------------- beyond GenOpt

@@ -435,7 +435,9 @@ def _fractions_sum_to_one(location: Location, sun: GivenSun | SunShares, names: 
                 (*location, "masses", name),
                 f"'{name}'",
                 "a surface with both sides in this zone",
-                "Write the fraction of another one under 'shares:'." if name in names else "Remove it.",
+                "Write the fraction of another one under 'shares:'."
+                if name in names
+                else did_you_mean(name, masses) or "Remove it.",
             )
     of_masses = sum(float(mass.outside) + float(mass.inside) for mass in sun.masses.values())
     total = float(sum(sun.shares.values()) + sun.lost) + of_masses

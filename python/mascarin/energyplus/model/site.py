@@ -11,6 +11,7 @@ from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.year import DAYS, Year, constant, year_of
 from mascarin.errors import InputError
+from mascarin.weather.reading.shipped import content
 
 _TERRAINS: Final = {
     "country": "open",
@@ -32,8 +33,9 @@ _MONTHS: Final = (
 _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 #: Differences of latitude, longitude [deg], altitude [m] and time zone [h] of one place.
 _SAME_PLACE: Final = (1.0, 1.0, 100.0, 0.0)
-#: Lines before the data of a weather file.
+#: Lines before the data of a weather file, and bytes in which they are.
 _HEADER_LINES: Final = 8
+_HEADER_BYTES: Final = 65_536
 #: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
 _GROUND: Final = 18.0
 
@@ -87,8 +89,7 @@ def _location(context: Context, weather: Path | None) -> dict[str, Any]:
 
 
 def _of_weather(path: Path) -> list[float]:
-    with require_regular(path).open(encoding="latin-1") as lines:
-        cells = lines.readline().split(",")
+    cells = _head(path)[0].split(",")
     try:
         latitude, longitude, zone, altitude = (float(cell) for cell in cells[6:10])
     except ValueError:
@@ -100,12 +101,24 @@ def _of_weather(path: Path) -> list[float]:
 
 def _special_days(path: Path) -> dict[str, bool]:
     """Whether a weather file has daylight saving time and holidays."""
-    with require_regular(path).open(encoding="latin-1") as lines:
-        for _, line in zip(range(_HEADER_LINES), lines, strict=False):
-            cells = [cell.strip() for cell in line.split(",")]
-            if cells[0].upper() == "HOLIDAYS/DAYLIGHT SAVINGS" and len(cells) > 4:
-                return {"daylight saving": cells[2] != "0", "holidays": cells[4] != "0"}
+    for line in _head(path):
+        cells = [cell.strip() for cell in line.split(",")]
+        if cells[0].upper() == "HOLIDAYS/DAYLIGHT SAVINGS" and len(cells) > 4:
+            return {"daylight saving": cells[2] != "0", "holidays": cells[4] != "0"}
     return {}
+
+
+def _head(path: Path) -> list[str]:
+    """First lines of a weather file, at least one."""
+    try:
+        raw = content(require_regular(path))
+    except FileNotFoundError:
+        raise InputError(
+            f"{path}: no such file; expected a weather file (.epw). Give the path from the folder you work "
+            "in, or shipped:NAME of a climate that 'mascarin weather' lists"
+        ) from None
+    lines = raw[:_HEADER_BYTES].decode("latin-1").splitlines()[:_HEADER_LINES]
+    return lines or [""]
 
 
 @reads("Building", "Site:HeightVariation", "Site:WeatherStation")
