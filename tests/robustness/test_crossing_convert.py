@@ -88,6 +88,9 @@ OBJECTS: Final[dict[str, Objects]] = {
     "measured columns": Objects(_LOGGED, lambda one: "Lamp" in one.zones["Store"].gains),
     "mechanical air": Objects("", lambda one: bool(one.air_paths)),
     "shades": Objects("", lambda one: bool(one.shades)),
+    "heat sources": Objects(
+        "ConstructionProperty:InternalHeatSource,Mat,Wall,1,1,1,0.2;", None, "InternalHeatSource"
+    ),
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {

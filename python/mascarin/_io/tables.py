@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final, Protocol, TextIO
 
@@ -93,3 +93,31 @@ def csv_refused(where: str) -> Iterator[None]:
             f"{where}: found no table that can be read ({error}); expected lines of short fields. Look for a "
             "quotation mark that is not closed, or for another file under this name"
         ) from None
+
+
+class JoinedBytes:
+    """A file of bytes one after the other, which are not copied before they are read."""
+
+    mode = "r"  # pandas passes what it reads on to its parser, as bytes
+
+    def __init__(self, pieces: Iterable[bytes | memoryview]) -> None:
+        self._pieces = [memoryview(piece) for piece in pieces]
+
+    def read(self, size: int = -1) -> bytes:
+        """The next bytes; none at the end."""
+        while self._pieces:
+            piece = self._pieces[0]
+            if len(piece):
+                end = len(piece) if size < 0 else size
+                self._pieces[0] = piece[end:]
+                return bytes(piece[:end])
+            del self._pieces[0]
+        return b""
+
+    def __iter__(self) -> Iterator[bytes]:
+        """Pieces of a fixed size."""
+        return iter(lambda: self.read(_PIECE), b"")
+
+
+#: Bytes of a piece where no number is asked for.
+_PIECE: Final = 200_000

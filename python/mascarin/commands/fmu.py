@@ -25,7 +25,9 @@ from mascarin.commands.options.tables import run_inputs
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    pass
+    from collections.abc import Sequence
+
+    from mascarin.simulation.simulation import Simulation
 
 
 def fmu(
@@ -97,8 +99,6 @@ def fmu(
         Version of the Functional Mock-up Interface.
     """
     from mascarin.fmu import export
-    from mascarin.fmu.inputs import chosen_inputs
-    from mascarin.fmu.variables import variables_of
     from mascarin.simulation.nominal import of_short_run
     from mascarin.simulation.simulation import Simulation
 
@@ -126,12 +126,20 @@ def fmu(
             print(f"warning: {line}", file=sys.stderr)
         export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
     if inputs:
-        held = ", ".join(
-            f"{variable.name} {variable.start:.4g}{'' if variable.unit == '-' else ' ' + variable.unit}"
-            for variable in variables_of(simulation, chosen_inputs(simulation, inputs), [])
-            if variable.causality == "input" and variable.start is not None
-        )
-        print(f"inputs hold until they are set, also where nothing is connected: {held}", file=sys.stderr)
+        print(_held(simulation, inputs), file=sys.stderr)
     size = out.stat().st_size / 2**20
     print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)
     return exit_code(warnings=lines)
+
+
+def _held(simulation: Simulation, inputs: Sequence[str]) -> str:
+    """The values that inputs of a unit have before they are set."""
+    from mascarin.fmu.inputs import chosen_inputs
+    from mascarin.fmu.variables import variables_of
+
+    held = ", ".join(
+        f"{variable.name} {variable.start:.4g}{'' if variable.unit == '-' else ' ' + variable.unit}"
+        for variable in variables_of(simulation, chosen_inputs(simulation, inputs), [])
+        if variable.causality == "input" and variable.start is not None
+    )
+    return f"inputs hold until they are set, also where nothing is connected: {held}"

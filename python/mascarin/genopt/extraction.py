@@ -110,8 +110,8 @@ def decimal_comma(lines: Sequence[str], delimiter: str, column: int) -> str | No
     >>> decimal_comma(["7,12,5,30"], "7,", 1) is None
     True
     """
-    rest = word_after(lines, delimiter, column, "\n")  # up to a blank
-    match = None if rest is None else _DECIMAL_COMMA.fullmatch(rest.rstrip(";"))
+    word = word_after(lines, delimiter, column, "\n")  # up to a blank
+    match = None if word is None else _DECIMAL_COMMA.fullmatch(word.rstrip(";"))
     return None if match is None else match[0]
 
 

@@ -182,9 +182,9 @@ def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tupl
         begin, finish = stamps_of(np.array([first, last]), grid.zone)
         if start is None or end is None:
             opening, closing = stamps_of(np.array([grid.start, grid.end]), grid.zone)
-            which, given, other = ("end", finish, "before") if start is None else ("start", begin, "after")
+            which, limit, side = ("end", finish, "before") if start is None else ("start", begin, "after")
             raise InputError(
-                f"{which}: found {given}, {other} all values of {climate.file}; expected a time within "
+                f"{which}: found {limit}, {side} all values of {climate.file}; expected a time within "
                 f"{opening} .. {closing}. Choose one there, or another weather file"
             )
         raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")

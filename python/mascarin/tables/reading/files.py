@@ -6,7 +6,7 @@ import codecs
 import hashlib
 import re
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin._io.regular import require_regular
-from mascarin._io.tables import read_csv
+from mascarin._io.tables import JoinedBytes, read_csv
 from mascarin.errors import InputError
 from mascarin.tables.arrays import Lines
 from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_station, read_bsrn, unpacked
@@ -22,7 +22,7 @@ from mascarin.tables.reading.influx import is_influx, read_influx
 from mascarin.tables.reading.layout import Layout, cells_of, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
 from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
-from mascarin.tables.reading.preamble import clock_of_preamble, units_of_preamble
+from mascarin.tables.reading.preamble import clock_of_preamble, repeated_names, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 from mascarin.tables.stamps.iso_stamps import ISO_TEXT, MIDNIGHT
 
@@ -197,7 +197,7 @@ def read_frame(
     frame = _parsed(body, path.name, doubt=decimal is None, dated=_is_dated(body, time))
     rows = layout.first + np.arange(1, len(frame) + 1) if body.rows is None else body.rows[: len(frame)] + 1
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
-    notes += _twice(list(frame.columns), path.name)
+    notes += repeated_names(list(frame.columns), path.name)
     if layout.trailing:
         frame = frame.iloc[:, :-1]
     if is_meteo_france(frame):
@@ -272,41 +272,19 @@ class _Body:
     count: int = 0
     notes: tuple[str, ...] = ()
 
+    def stream(self) -> JoinedBytes:
+        """The names and the rows as a file."""
+        return JoinedBytes([self.names, memoryview(self.content)[self.begin :]])
+
     def has_blanks(self, size: int | None = None) -> bool:
         """Whether entries in the first bytes, or in all, begin with a blank: skipping them takes time."""
         mark = self.layout.separator.encode()
         stop = len(self.content) if size is None else self.begin + size
-        return (
-            any(
-                self.names.find(before + b" ") >= 0 or self.content.find(before + b" ", self.begin, stop) >= 0
-                for before in (mark, b"\n", b"\r")
-            )
-            or self.content[self.begin : self.begin + 1] == b" "
+        in_rows = any(
+            self.names.find(before + b" ") >= 0 or self.content.find(before + b" ", self.begin, stop) >= 0
+            for before in (mark, b"\n", b"\r")
         )
-
-
-class _Pieces:
-    """A file of a line and the bytes below it, which are not copied before they are read."""
-
-    mode = "r"  # pandas passes what it reads on to its parser, as bytes
-
-    def __init__(self, body: _Body) -> None:
-        self._pieces = [memoryview(body.names), memoryview(body.content)[body.begin :]]
-
-    def read(self, size: int = -1) -> bytes:
-        """The next bytes; none at the end."""
-        while self._pieces:
-            piece = self._pieces[0]
-            if len(piece):
-                end = len(piece) if size < 0 else size
-                self._pieces[0] = piece[end:]
-                return bytes(piece[:end])
-            del self._pieces[0]
-        return b""
-
-    def __iter__(self) -> Iterator[bytes]:
-        """Pieces of a fixed size."""
-        return iter(lambda: self.read(_HEAD), b"")
+        return in_rows or self.content[self.begin : self.begin + 1] == b" "
 
 
 def _body(text: str, where: str, separator: str | None, decimal: str | None, skip_lines: int | None) -> _Body:
@@ -444,7 +422,12 @@ def _parsed(body: _Body, where: str, *, doubt: bool, dated: bool) -> pd.DataFram
         and suspicious_decimals(frame.iloc[:, k].to_numpy())
     ]
     if doubtful:  # the texts decide between decimals and thousands
-        texts = read_csv(_Pieces(body), dtype=str, skipinitialspace=True, **options)
+        texts = read_csv(
+            body.stream(),
+            dtype=str,
+            skipinitialspace=True,
+            **options,
+        )
         parts = [texts.iloc[:, k] if k in doubtful else frame.iloc[:, k] for k in range(frame.shape[1])]
         frame = pd.concat(parts, axis=1)
     return frame
@@ -475,9 +458,9 @@ def _in_pieces(body: _Body, options: Mapping[str, Any], dated: bool) -> pd.DataF
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pd.errors.DtypeWarning)
-            frame = read_csv(_Pieces(body), **options, **dates)
+            frame = read_csv(body.stream(), **options, **dates)
     except pd.errors.DtypeWarning:
-        frame = read_csv(_Pieces(body), low_memory=False, **options, **dates)
+        frame = read_csv(body.stream(), low_memory=False, **options, **dates)
     if dates and (frame.dtypes.iloc[0].kind != "M" or frame.iloc[:, 0].isna().any()):
         return _in_pieces(body, options, dated=False)  # an offset, 24:00, no time at all: read with care
     return frame
@@ -498,15 +481,6 @@ def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> t
     if layout.decimal != ".":
         notes.append(f"{where}: the decimal mark is {layout.decimal!r}.")
     return tuple(notes)
-
-
-def _twice(names: Sequence[str], where: str) -> tuple[str, ...]:
-    """A note about names that stand above several columns: the reader of CSV numbers the later ones."""
-    later = [name for name in names if name.endswith(".1") and name[:-2] in names]
-    return tuple(
-        f"{where}: {name[:-2]!r} stands above several columns: the second one is called {name!r}."
-        for name in later
-    )
 
 
 def _refuse_cut(last: str, layout: Layout, fields: int, where: str, line: int) -> None:

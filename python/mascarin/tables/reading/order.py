@@ -160,3 +160,33 @@ def _names_of_series(frame: pd.DataFrame) -> str:
         if has_words(frame[name]) and 1 < frame[name].nunique() <= max(2, len(frame) // 3):
             return str(name)
     return ""
+
+
+def with_missing_rows(
+    frame: pd.DataFrame, lines: Lines, steps_before: tuple[Lines, Array], times: pd.DatetimeIndex
+) -> tuple[pd.DataFrame, Lines]:
+    """Insert empty rows, of line 0, where a row is several steps after the one before it.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        The rows, whose index is not used.
+    lines : ndarray, shape (n,)
+        Line of each row in its file.
+    steps_before : tuple of two ndarrays
+        Rows before which there is more than one step, and how many. [-]
+    times : pandas.DatetimeIndex
+        Times of all rows, those that are missing too.
+    """
+    steps = np.ones(len(frame), dtype=np.int64)
+    steps[0] = 0
+    rows, counts = steps_before
+    steps[rows] = counts
+    positions = np.cumsum(steps)
+    row_at = np.full(len(times), -1, dtype=np.int64)
+    row_at[positions] = np.arange(len(frame))
+    all_lines = np.zeros(len(times), dtype=np.int64)
+    all_lines[positions] = lines
+    # Rows by their number: a search for each stamp among all others takes longer than the reading.
+    frame = frame.reset_index(drop=True).reindex(row_at)
+    return frame.set_axis(times, axis=0), all_lines

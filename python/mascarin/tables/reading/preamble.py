@@ -109,3 +109,12 @@ def units_of_preamble(lines: Sequence[str], names: Sequence[str]) -> dict[str, t
                 if parse_unit(text) is not None:
                     units[name] = (text, number)
     return units
+
+
+def repeated_names(names: Sequence[str], where: str) -> tuple[str, ...]:
+    """A note about names that stand above several columns: the reader of CSV numbers the later ones."""
+    later = [name for name in names if name.endswith(".1") and name[:-2] in names]
+    return tuple(
+        f"{where}: {name[:-2]!r} stands above several columns: the second one is called {name!r}."
+        for name in later
+    )

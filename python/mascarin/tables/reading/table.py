@@ -19,7 +19,13 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.tables.arrays import Array, Flags, Lines
 from mascarin.tables.reading.files import Read, content_of, read_frame, with_time_column
 from mascarin.tables.reading.numbers import EMPTY, parse_numbers, points_as_degrees
-from mascarin.tables.reading.order import clock_changes, first_to_last, require_order, skipped_hour
+from mascarin.tables.reading.order import (
+    clock_changes,
+    first_to_last,
+    require_order,
+    skipped_hour,
+    with_missing_rows,
+)
 from mascarin.tables.reading.rows import has_words, rows_with_values, without_entries
 from mascarin.tables.reading.units_of_entries import without_units
 from mascarin.tables.stamps.clocks import offset_in_name, on_grid, require_zone_has, stamps_from
@@ -260,8 +266,7 @@ def read_table(
     if isinstance(source, pd.DataFrame):
         frame, where = with_time_column(source.copy()), "table"
     else:
-        path = Path(source)
-        where = path.name
+        path, where = Path(source), Path(source).name
         content = content_of(path)
         digest = hashlib.sha256(content).hexdigest()
         dated = None if time_format is not None else "" if time is None else time
@@ -393,13 +398,13 @@ def _regular(
     gaps = _steps(index)
     require_order(frame, gaps, index, lines, where, zone)
     interval = expected if expected is not None else _commonest(gaps)
-    others, ratio, odd = _deviating(gaps, interval)
+    deviating, ratio, odd = _deviating(gaps, interval)
     start = float(epoch_seconds(index[:1])[0])
     moved = _without_jitter(epoch_seconds(index), expected, interval, tolerance) if len(odd) else None
     if moved is not None:
         seconds, interval, text = moved
         said, index, gaps = (*said, f"{where}: {text}"), stamps_of(seconds, zone), np.diff(seconds)
-        others, ratio, _ = _deviating(gaps, interval)
+        deviating, ratio, _ = _deviating(gaps, interval)
         start, odd = float(seconds[0]), odd[:0]
     if len(odd):
         row = int(odd[0])
@@ -409,7 +414,7 @@ def _regular(
             f"({len(odd)} such steps in all); state a larger tolerance (tolerance: 30s; by default a tenth "
             "of the step) if the clock is not exact, or put the table on a regular step first."
         )
-    size = float(np.round(ratio).sum()) + len(gaps) - len(others) + 1.0
+    size = float(np.round(ratio).sum()) + len(gaps) - len(deviating) + 1.0
     memory.require(
         size * (frame.shape[1] + 4) * 16.0,  # the table twice, stamps and lines
         f"{where}: {len(frame)} rows over {size:.3g} steps of {interval:g} s",
@@ -419,26 +424,16 @@ def _regular(
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
-    extra = gaps - interval if len(others) else others.astype(np.float64)
+    extra = gaps - interval if len(deviating) else deviating.astype(np.float64)
     notes += [*said, *clock_changes(index, where, zone), *skipped_hour(index, extra, where, zone)]
     absent = int(size) - len(frame)
     if absent:
-        row = int(others[np.argmax(ratio > 1.5)])
+        row = int(deviating[np.argmax(ratio > 1.5)])
         notes.append(
             f"{where}: {absent} rows are missing, the first after {index[row]:%Y-%m-%d %H:%M}; left empty."
         )
-        steps = np.ones(len(frame), dtype=np.int64)
-        steps[0] = 0
-        steps[others + 1] = np.round(ratio)
-        grid_rows = np.cumsum(steps)
-        row_at = np.full(int(size), -1, dtype=np.int64)
-        row_at[grid_rows] = np.arange(len(frame))
-        grid_lines = np.zeros(int(size), dtype=np.int64)
-        grid_lines[grid_rows] = lines
-        # Rows by their number: a search for each stamp among all others takes longer than the reading.
-        frame = frame.reset_index(drop=True).reindex(row_at)
-        frame = frame.set_axis(stamps_of(start + interval * np.arange(len(grid_lines)), zone), axis=0)
-        lines = grid_lines
+        times = stamps_of(start + interval * np.arange(int(size)), zone)
+        frame, lines = with_missing_rows(frame, lines, (deviating + 1, np.round(ratio)), times)
     if moved is not None and not absent:
         frame = frame.set_axis(index, axis=0)
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
@@ -452,9 +447,9 @@ def _steps(index: pd.DatetimeIndex) -> Array:
 
 def _deviating(gaps: Array, interval: float) -> tuple[Lines, Array, Lines]:
     """Rows before another step than the usual one, their ratio to it [-], and those of no whole ratio."""
-    others = np.flatnonzero(gaps != interval)
-    ratio = gaps[others] / interval
-    return others, ratio, others[np.abs(ratio - np.round(ratio)) > 1e-6]
+    deviating = np.flatnonzero(gaps != interval)
+    ratio = gaps[deviating] / interval
+    return deviating, ratio, deviating[np.abs(ratio - np.round(ratio)) > 1e-6]
 
 
 #: Units of stamps in a second.

@@ -126,11 +126,11 @@ def _numbers(raw: Bytes, ends: Lines, signs: bytes, *, half: bool) -> tuple[list
     marks = np.flatnonzero(digits > 9)
     if len(marks) != len(signs) * len(start):
         return None
-    places = marks.reshape(len(start), len(signs))
-    if (letters[places] != np.frombuffer(signs, dtype=np.uint8)).any():
+    borders = marks.reshape(len(start), len(signs))
+    if (letters[borders] != np.frombuffer(signs, dtype=np.uint8)).any():
         return None
-    begins = np.column_stack([start, places + 1])
-    stops = np.column_stack([places, end])
+    begins = np.column_stack([start, borders + 1])
+    stops = np.column_stack([borders, end])
     # Marks of one row that belong to its neighbour make a part of no digits or too many.
     widths = stops - begins
     limits = np.array(_DIGITS[: widths.shape[1]])
@@ -140,9 +140,9 @@ def _numbers(raw: Bytes, ends: Lines, signs: bytes, *, half: bool) -> tuple[list
     numbers = []
     for k in range(widths.shape[1]):
         number = np.zeros(len(start), dtype=np.int64)
-        for place in range(int(extremes[1, k])):
-            digit = digits[np.maximum(stops[:, k] - 1 - place, 0)].astype(np.int64) * 10**place
-            number += np.where(widths[:, k] > place, digit, 0)
+        for power in range(int(extremes[1, k])):
+            digit = digits[np.maximum(stops[:, k] - 1 - power, 0)].astype(np.int64) * 10**power
+            number += np.where(widths[:, k] > power, digit, 0)
         numbers.append(number)
     if half and len(numbers) > 3:
         if (numbers[3] > 12).any():
