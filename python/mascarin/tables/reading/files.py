@@ -21,7 +21,7 @@ from mascarin.tables.reading.archives import is_bsrn, is_meteo_france, of_one_st
 from mascarin.tables.reading.influx import is_influx, read_influx
 from mascarin.tables.reading.layout import Layout, cells_of, decoded, find_layout, footer_of
 from mascarin.tables.reading.numbers import suspicious_decimals
-from mascarin.tables.reading.own_readers import name_of, read_own, reader_of
+from mascarin.tables.reading.own_readers import Reader, name_of, read_own, reader_of
 from mascarin.tables.reading.preamble import clock_of_preamble, repeated_names, units_of_preamble
 from mascarin.tables.reading.spreadsheets import ENDINGS, sheet_text
 from mascarin.tables.stamps.iso_stamps import ISO_TEXT, MIDNIGHT
@@ -166,11 +166,7 @@ def read_frame(
 
     reader = reader_of(path)
     if reader is not None:
-        frame = read_own(path, reader)
-        units = {str(name): str(unit) for name, unit in dict(frame.attrs.get("units", {})).items()}
-        frame = with_time_column(frame)
-        said = (f"{path.name}: read by {name_of(reader)}.",)
-        return Read(frame, 1 + np.arange(len(frame), dtype=np.int64), said, units)
+        return _by_own_reader(path, reader)
     if path.suffix.lower() in {".parquet", ".pq"}:
         return _parquet(path)
     named, content = unpacked(path, content)
@@ -217,6 +213,13 @@ def read_frame(
         frame, rows, notes, units, layout.header + 2, layout.decimal, stated,
         layout.evident, said_units, (words, line + 1),
     )  # fmt: skip
+
+
+def _by_own_reader(path: Path, reader: Reader) -> Read:
+    frame = read_own(path, reader)
+    units = {str(name): str(unit) for name, unit in dict(frame.attrs.get("units", {})).items()}
+    said = (f"{path.name}: read by {name_of(reader)}.",)
+    return Read(with_time_column(frame), 1 + np.arange(len(frame), dtype=np.int64), said, units)
 
 
 def _parquet(path: Path) -> Read:
