@@ -76,7 +76,7 @@ impl<S: Real> VapourBalances<'_, S> {
             (0..humidity.zones.len()).map(|z| self.held(start, z, place.ratio)).collect();
         let mut part = 1.0;
         for _ in 0..MAX_ROUNDS {
-            part = DAMPING * part;
+            part *= DAMPING;
             for _ in 0..SWEEPS {
                 self.solve_zone_by_zone(humidity, place.stage, &mut ratios, open);
                 self.go_toward(humidity, (start, place), &ratios, (part, open));
