@@ -8,13 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mascarin._io.memory import uncollected
-
-# Some hundred classes are made that all stay: looking for others takes a tenth of the time of the import.
-with uncollected():
-    from mascarin.building.building import Building
-
 from mascarin.building.base.number import Number
+from mascarin.building.building import Building
 from mascarin.building.checks.overview import check
 from mascarin.building.engine_input import EngineDescription
 from mascarin.building.engine_input.ratings import WindowRating, window_ratings
