@@ -126,20 +126,20 @@ def fmu(
             print(f"warning: {line}", file=sys.stderr)
         export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
     if inputs:
-        print(_held(simulation, inputs), file=sys.stderr)
+        print(_start_values(simulation, inputs), file=sys.stderr)
     size = out.stat().st_size / 2**20
     print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)
     return exit_code(warnings=lines)
 
 
-def _held(simulation: Simulation, inputs: Sequence[str]) -> str:
+def _start_values(simulation: Simulation, inputs: Sequence[str]) -> str:
     """The values that inputs of a unit have before they are set."""
     from mascarin.fmu.inputs import chosen_inputs
     from mascarin.fmu.variables import variables_of
 
-    held = ", ".join(
+    values = ", ".join(
         f"{variable.name} {variable.start:.4g}{'' if variable.unit == '-' else ' ' + variable.unit}"
         for variable in variables_of(simulation, chosen_inputs(simulation, inputs), [])
         if variable.causality == "input" and variable.start is not None
     )
-    return f"inputs hold until they are set, also where nothing is connected: {held}"
+    return f"inputs hold until they are set, also where nothing is connected: {values}"

@@ -74,20 +74,20 @@ class Calibrated:
 
         What contradicts it in another experiment makes the intervals of the parameters wider, too.
         """
-        found = contradictions(study, run, fit, intervals, combination)
-        _, intervals = with_doubt(study, run, fit, intervals, found)
-        known = {one.text for one in found}
+        doubts = contradictions(study, run, fit, intervals, combination)
+        _, intervals = with_doubt(study, run, fit, intervals, doubts)
+        known = {doubt.text for doubt in doubts}
         for name, other in (together or {}).items():
-            found += [
-                replace(one, text=f"{name}: {one.text}")
-                for one in other.contradictions
-                if one.text not in known
+            doubts += [
+                replace(doubt, text=f"{name}: {doubt.text}")
+                for doubt in other.contradictions
+                if doubt.text not in known
             ]
-        factor = widening(found)
+        factor = widening(doubts)
         if factor > 1.0:
             fit = with_wider_intervals(fit, factor)
         return Calibrated(
-            replace(run, fit=fit), fit, intervals, profiles, combination, found, dict(together or {})
+            replace(run, fit=fit), fit, intervals, profiles, combination, doubts, dict(together or {})
         )
 
 
@@ -111,31 +111,34 @@ def calibrated(study: StudyContext, runs: ModelRuns) -> Calibrated:
         run, fit = runs.fitted()
         intervals = prediction_intervals(study, run, fit, slopes(study, run, fit))
         return Calibrated.judged(study, run, fit, intervals, runs.profiled(fit), None, others)
-    found = runs.combination()
-    others = {name: _combined(study.together[name], found.of_experiment(name), []) for name in study.together}
-    return _combined(study, found, runs.profiled(runs.plain()), others)
+    combination = runs.combination()
+    others = {
+        name: _combined(study.together[name], combination.of_experiment(name), []) for name in study.together
+    }
+    return _combined(study, combination, runs.profiled(runs.plain()), others)
 
 
 def _combined(
     study: StudyContext,
-    found: Combination,
+    combination: Combination,
     profiles: list[Profile],
     together: Mapping[str, Calibrated] | None = None,
 ) -> Calibrated:
     """The calibrated model of an experiment from its forms."""
-    best = found.forms[0]
+    best = combination.forms[0]
     known = (best.fit.problem, best.fit.trace, best.fit.nominal_building)
-    key: list[object] = [(form.label, form.fit.x.tolist()) for form in found.forms]
+    key: list[object] = [(form.label, form.fit.x.tolist()) for form in combination.forms]
     if study.first is not None:
         key.append(study.inputs.experiment)
-    fit = kept(study.workspace, ("estimates", key), lambda: estimates_of(study, found), known)
-    intervals = kept(study.workspace, ("intervals", key), lambda: combined_intervals(study, found))
+    fit = kept(study.workspace, ("estimates", key), lambda: estimates_of(study, combination), known)
+    intervals = kept(study.workspace, ("intervals", key), lambda: combined_intervals(study, combination))
     note = "after the calibration; its parameters are the same on all other days"
-    if len(found.forms) > 1:
-        note += f"; of {len(found.forms)} forms '{best.label}' is used, "
-        note += f"with {100.0 * found.weights[0]:.0f} % of the weight by days left out of the identification"
+    if len(combination.forms) > 1:
+        note += f"; of {len(combination.forms)} forms '{best.label}' is used, "
+        weight = 100.0 * combination.weights[0]
+        note += f"with {weight:.0f} % of the weight by days left out of the identification"
     run = replace(best.run, label="fitted", fit=fit, note=note)
-    return Calibrated.judged(study, run, fit, intervals, profiles, found, together)
+    return Calibrated.judged(study, run, fit, intervals, profiles, combination, together)
 
 
 def building_with_posterior(

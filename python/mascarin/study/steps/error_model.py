@@ -225,11 +225,11 @@ def with_errors(
     plan = study.inputs.calibration_plan
     rules = SearchOptions(slopes=plan.slopes, posterior=plan.posterior, draws=plan.draws)
     stated = [statement(each.study, each.share) for each in experiments]
-    found, joints = estimate_experiments(fit, stated, rules, further, keep=keep)
-    told = tuple(
+    estimate, joints = estimate_experiments(fit, stated, rules, further, keep=keep)
+    notes = tuple(
         Unknowns(each.unknown, basis[0][place]) for each, place in zip(experiments, places, strict=True)
     )
-    return found, joints, told
+    return estimate, joints, notes
 
 
 def _directions(effects: Array, sigma: Array, mask: npt.NDArray[np.bool_]) -> Array:

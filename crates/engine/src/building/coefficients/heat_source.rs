@@ -58,8 +58,8 @@ pub(crate) enum Temperature<S> {
 }
 
 impl<S: Real> Temperature<S> {
-    fn new(given: &SetPoint, values: &Values<'_, S>) -> Self {
-        match given {
+    fn new(point: &SetPoint, values: &Values<'_, S>) -> Self {
+        match point {
             SetPoint::Constant { temperature } => Self::Constant(values.get(*temperature)),
             SetPoint::Scheduled { channel } => Self::Channel(CLIMATE_CHANNELS + channel),
         }
@@ -104,11 +104,11 @@ impl<S: Real> HeatSource<S> {
                 ((values.get(*flow) / area, Schedule::new(*schedule)), Some(water))
             }
         };
-        let thermostat = source.thermostat.as_ref().map(|given| Throttle {
-            zone: given.zone,
-            set_point: Temperature::new(&given.setpoint, values),
-            range: values.get(given.range),
-            cooling: given.cooling,
+        let thermostat = source.thermostat.as_ref().map(|thermostat| Throttle {
+            zone: thermostat.zone,
+            set_point: Temperature::new(&thermostat.setpoint, values),
+            range: values.get(thermostat.range),
+            cooling: thermostat.cooling,
         });
         Self { wall: source.surface, cell, driven, water, thermostat, control: source.control }
     }
