@@ -42,7 +42,7 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 FUZZ_CALLS ?= 20000
 THREE := python/mascarin/pages/view/vendor
 
-.PHONY: help demo test coverage test-lowest bench track fuzz docs docs-links lock vendor-three build check-tools check-rust check-python pytest
+.PHONY: help demo first-engine test coverage test-lowest bench track fuzz docs docs-links lock vendor-three build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -140,9 +140,11 @@ check-tools:
 		echo "error: 'cargo' not found. Mascarin's engine is built with Rust 1.89 or later:" \
 			"see rustup.rs or your system's packages" >&2; exit 1; }
 
+$(PY): | check-tools
+	"$(PYTHON)" -m venv .venv
+
 # By their hashes: what the registry sends is what the tests were run with.
-$(ENVIRONMENT): constraints.lock | check-tools
-	@test -x $(PY) || "$(PYTHON)" -m venv .venv
+$(ENVIRONMENT): constraints.lock | $(PY)
 	$(PY) -m pip install --quiet --require-hashes --no-deps --requirement constraints.lock
 	$(PY) -m pip check
 	@touch $@
@@ -151,17 +153,23 @@ $(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
 	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop --release --quiet
 	@touch $@
 
-# Of the profile of the engine's tests, on all cores: a run takes three times as long. `make build` replaces it.
-$(FIRST): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
-	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop --profile tests --quiet
+# Of the profile of the engine's tests, on all cores, with fewer kinds of lanes: a run takes three times as long. `make build`
+# replaces it. The packages of Python are installed while the engine is compiled.
+FIRST_ENGINE := --profile tests --no-default-features
+$(FIRST): pyproject.toml constraints.lock $(RUST_SOURCES)
+	@$(MAKE) --no-print-directory --jobs=2 $(ENVIRONMENT) first-engine
+	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop $(FIRST_ENGINE) --quiet
 	@touch $@
 	@echo "The engine is built for a first try: 'make build' makes it three times as fast."
+
+first-engine: | $(PY)
+	cargo build --package mascarin-python $(FIRST_ENGINE) --locked --quiet
 
 # The engine for browsers, where the compiler has their target.
 $(WASM): $(WEB_SOURCES) packaging/engine_for_browsers.sh | check-tools
 	@sh packaging/engine_for_browsers.sh $@
 
-check-rust: $(ENVIRONMENT)
+check-rust: | $(PY)
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || { \
 		echo "error: cargo has no 'fmt' or no 'clippy'. With rustup: rustup component add rustfmt clippy" >&2; exit 1; }
 	cargo fmt --all --check

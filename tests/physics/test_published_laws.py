@@ -20,6 +20,7 @@ FACADE = "surfaces.facade.inside.convection"
 MIXING = "zones.room.mixing_air_change.air_changes"
 
 MIXED = "beausoleil_morrison"
+CAVITY = "ventilated_cavity"
 #: Law, numbers, tilt [deg], difference [K], coefficient by hand [W/(m2 K)].
 BY_HAND = [
     # 20.7 air changes an hour: 20.7^0.604 = 6.2351, 20.7^0.98 = 19.4828, 20.7^0.503 = 4.5913.
@@ -40,6 +41,14 @@ BY_HAND = [
     (MIXED, {"mixing": 2.0, "length": 2.0}, 180, -1.0, (4.627900 + 0.676693**3) ** (1 / 3)),
     # 50 air changes: 50^0.8 = 22.8653; wall 4.145398. Opposed: the cubic difference.
     (MIXED, {"mixing": 50.0, "length": 2.0, "opposing": 1}, 90, 1.0, (4.145398**3 - 2.736790) ** (1 / 3)),
+    # Closed air layers of EN ISO 6946, twice: sides that differ by 2 K; by 16 K, 2 0.73 16^(1/3); heat that
+    # flows down through 100 mm, 2 0.12 0.1^-0.44; conduction through 10 mm.
+    (CAVITY, {}, 90, 1.0, 2.5),
+    (CAVITY, {}, 90, 8.0, 3.679009),
+    (CAVITY, {}, 0, 1.0, 3.9),
+    (CAVITY, {}, 180, 1.0, 0.661015),
+    (CAVITY, {}, 0, -1.0, 0.661015),
+    (CAVITY, {"depth": 0.01}, 180, 1.0, 5.0),
 ]
 
 
@@ -52,6 +61,33 @@ def test_coefficients_by_hand(
     found = law.coefficient([difference], tilt=tilt, area=9.0, air_change=0.0)
     assert found[0] == pytest.approx(expected, rel=2e-5)
     assert law.source == published_laws()[key].source
+
+
+#: Air layers of EN ISO 6946:2017, table 8 (both sides with an emissivity of 0.9, 10 degC): depth [m], tilt of
+#: the warm side [deg], resistance [m2 K/W].
+TABLE_8 = [
+    (0.01, 90, 0.15), (0.025, 90, 0.18), (0.3, 90, 0.18),
+    (0.01, 0, 0.15), (0.025, 0, 0.16), (0.3, 0, 0.16),
+    (0.01, 180, 0.15), (0.025, 180, 0.19), (0.1, 180, 0.22), (0.3, 180, 0.23),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("depth", "tilt", "resistance"), TABLE_8)
+def test_closed_cavity_has_the_resistance_of_its_standard(
+    depth: float, tilt: float, resistance: float
+) -> None:
+    law = box().replace({FACADE: {"kind": CAVITY, "depth": depth}}).surfaces["facade"].inside.convection
+    assert isinstance(law, FormulaLaw)
+    side = law.coefficient([2.0], tilt=tilt, area=9.0, air_change=0.0)[0]
+    radiation = 4 * 5.67e-8 * 283.15**3 / (1 / 0.9 + 1 / 0.9 - 1)
+    assert 1 / (0.5 * side + radiation) == pytest.approx(resistance, abs=0.006)
+
+
+def test_air_that_flows_through_a_cavity_adds_four_for_each_metre_per_second() -> None:
+    law = box().replace({FACADE: {"kind": CAVITY, "path": 9.0}}).surfaces["facade"].inside.convection
+    assert isinstance(law, FormulaLaw)
+    still, moved = (law.coefficient([1.0], tilt=90, area=9.0, total_air_change=n)[0] for n in (0.0, 200.0))
+    assert moved - still == pytest.approx(4 * 9.0 * 200 / 3600, rel=1e-12)
 
 
 def test_every_law_has_a_case() -> None:

@@ -5,7 +5,6 @@ from .base.evaluations import Trace as Trace
 from .base.problem import CalibrationProblem as CalibrationProblem
 from .base.problem import FitParameter as FitParameter
 from .base.problem import FitSensor as FitSensor
-from .base.problem import require_known as require_known
 from .base.result import Calibration as Calibration
 from .base.result import Minimum as Minimum
 from .base.search_options import METHODS as METHODS

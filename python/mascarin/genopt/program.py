@@ -74,7 +74,7 @@ class Program:
         self._separators = separators
         self._doubts: dict[tuple[str, str], str] = {}
         self._templates = [_read_template(entry) for entry in project.template]
-        self._text_names = self._check_names()
+        self._check_names()
         self._words = split_command(project)
         files = (*project.input, *project.log, *project.output)
         self._own_names = {Path(e.name).name for e in files}
@@ -86,7 +86,7 @@ class Program:
 
     # ------------------------------------------------------------------ checks before the first run
 
-    def _check_names(self) -> list[str]:
+    def _check_names(self) -> None:
         """Every parameter and function must occur somewhere."""
         project = self._project
         outputs = [o.function for o in project.objectives if o.function is not None]
@@ -110,7 +110,6 @@ class Program:
                     project.function_locations[name], f"function '{mark}' is not used; use or remove it"
                 )
         project.report.raise_if_any()
-        return names
 
     def _used_inside(self, name: str) -> bool:
         """Whether another input function was written with this one."""

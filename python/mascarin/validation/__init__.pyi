@@ -1,6 +1,5 @@
 from .comparison import METRICS as METRICS
 from .comparison import Metrics as Metrics
-from .comparison import compare_sensors as compare_sensors
 from .comparison import metrics as metrics
 from .criteria import Criterion as Criterion
 from .criteria import Verdict as Verdict

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin._io import display
-from mascarin.errors import InputError, did_you_mean
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -390,57 +390,6 @@ def compare(
         msg = f"measured series: infinite value at sample {int(np.argmax(infinite))}; mask it or remove it"
         raise InputError(msg)
     return _metrics(m[keep], s[keep], unit)
-
-
-def compare_sensors(
-    measured: Mapping[str, ArrayLike],
-    simulated: Mapping[str, ArrayLike],
-    *,
-    use: Mapping[str, ArrayLike] | ArrayLike | None = None,
-    units: Mapping[str, str] | None = None,
-) -> dict[str, Metrics]:
-    """Compare several sensors over one period.
-
-    Parameters
-    ----------
-    measured : mapping of str to array_like, shape (n,)
-        Measured series by sensor, NaN for gaps.
-    simulated : mapping of str to array_like, shape (n,)
-        Simulated series by the same names.
-    use : mapping of str to array_like of bool, or one array, optional
-        Samples to compare, by sensor or the same for all.
-    units : mapping of str to str, optional
-        Unit by sensor; degC for those not named.
-
-    Returns
-    -------
-    dict of str to Metrics
-        In the order of `measured`.
-
-    Raises
-    ------
-    InputError
-        When a measured sensor has no simulated series.
-
-    Examples
-    --------
-    >>> found = compare_sensors({"room": [20.0, 21.0]}, {"room": [20.2, 21.2]})
-    >>> round(found["room"].rmse, 3)
-    0.2
-    """
-    metrics: dict[str, Metrics] = {}
-    for name, series in measured.items():
-        if name not in simulated:
-            msg = f"sensor '{name}' has no simulated series. {did_you_mean(name, simulated)}"
-            raise InputError(msg)
-        mask = use.get(name) if isinstance(use, Mapping) else use
-        unit = (units or {}).get(name, "degC")
-        try:
-            metrics[name] = compare(series, simulated[name], use=mask, unit=unit)
-        except InputError as error:
-            msg = f"sensor '{name}': {error}"
-            raise InputError(msg) from error
-    return metrics
 
 
 def _aligned(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.calibration import CalibrationProblem, Cost, FitParameter, FitSensor, require_known
+from mascarin.calibration import CalibrationProblem, Cost, FitParameter, FitSensor
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -192,13 +192,6 @@ def test_problems_that_cannot_be_solved_are_refused() -> None:
         build((a,), (room,)).residuals(np.array([[0.5]]))
     with pytest.raises(InputError, match=r"cost 'rsme' is not known\. Did you mean 'rmse'"):
         Cost(build((a,), (room,)), "rsme")  # type: ignore[arg-type]
-
-
-def test_unknown_paths_are_named_with_their_nearest_names() -> None:
-    known = ["surfaces.roof.outside.absorptance", "zones.room.volume"]
-    require_known(known, known)
-    with pytest.raises(InputError, match=r"'surfaces.roof.outside.absorbtance'.*Did you mean 'surfaces.roof"):
-        require_known(["surfaces.roof.outside.absorbtance"], known)
 
 
 def _heat(measured: list[float], unit: str = "W") -> CalibrationProblem:

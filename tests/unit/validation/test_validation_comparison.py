@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.validation.comparison import Metrics, compare, compare_sensors, metrics
+from mascarin.validation.comparison import Metrics, compare, metrics
 
 
 def test_every_metric_of_a_series_worked_out_by_hand() -> None:
@@ -70,19 +70,6 @@ def test_a_constant_measured_value_has_no_percentages_of_the_range() -> None:
 def test_unusable_series_are_refused(measured: list[float], simulated: list[float], text: str) -> None:
     with pytest.raises(InputError, match=text):
         compare(measured, simulated)
-
-
-def test_sensors_are_compared_by_name() -> None:
-    measured = {"room": [20.0, 21.0], "flux": [5.0, np.nan]}
-    simulated = {"flux": [7.0, 1.0], "room": [20.0, 22.0]}
-    found = compare_sensors(measured, simulated, units={"flux": "W/m2"})
-    assert list(found) == ["room", "flux"]
-    assert found["flux"].unit == "W/m2"
-    assert found["flux"].max_error == 2.0
-    with pytest.raises(InputError, match="Did you mean 'room'"):
-        compare_sensors({"rooom": [1.0]}, {"room": [1.0]})
-    with pytest.raises(InputError, match="sensor 'room': simulated"):
-        compare_sensors({"room": [1.0]}, {"room": [np.nan]})
 
 
 # --- metrics over the mean: ASHRAE Guideline 14 ---------------------------------------------------------

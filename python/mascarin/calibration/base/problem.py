@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.errors import InputError, SolverError
 from mascarin.measurements.uncertainty import SensorUncertainty
 
 Floats = NDArray[np.float64]
@@ -404,35 +404,6 @@ class CalibrationProblem:
         ):
             digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
-
-
-def require_known(paths: Iterable[str], names: Sequence[str]) -> None:
-    """Refuse paths that do not exist.
-
-    Parameters
-    ----------
-    paths : iterable of str
-        Paths of parameters to estimate.
-    names : sequence of str
-        Paths of the building.
-
-    Raises
-    ------
-    InputError
-        Naming every unknown path and the nearest known ones.
-
-    Examples
-    --------
-    >>> require_known(["zones.room.volume"], ["zones.room.volume", "site.altitude"])
-    """
-    distinct_names = set(names)
-    lines = [
-        f"parameter '{path}' is not in the building. {did_you_mean(path, names)}".rstrip()
-        for path in paths
-        if path not in distinct_names
-    ]
-    if lines:
-        raise InputError("\n".join(lines))
 
 
 def _named_once(what: str, names: Sequence[str]) -> None:

@@ -18,8 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.base.problem import CalibrationProblem
-
 Floats = NDArray[np.float64]
 
 
@@ -54,15 +52,15 @@ class SensorError:
     clock: float = 0.0
 
 
-def sensor_columns(
-    problem: CalibrationProblem, sensors: Sequence[SensorError], simulated: Floats, step: float
+def error_columns(
+    names: Sequence[str], sensors: Sequence[SensorError], simulated: Floats, step: float
 ) -> tuple[Floats, tuple[str, ...]]:
     """Change of the readings for one standard uncertainty of each error.
 
     Parameters
     ----------
-    problem : CalibrationProblem
-        Gives the names of the sensors.
+    names : sequence of str, length S
+        Of the sensors.
     sensors : sequence of SensorError, length S
         Of each sensor.
     simulated : ndarray, shape (T, S)
@@ -79,36 +77,9 @@ def sensor_columns(
 
     Examples
     --------
-    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
-    >>> problem = CalibrationProblem(
-    ...     (FitParameter("level", 0.0, 10.0),),
-    ...     (FitSensor("room", np.array([4.0, 6.0]), 0.1),),
-    ...     lambda x: np.tile(x[:, :, None], (1, 2, 1)),
-    ... )
-    >>> found, names = sensor_columns(problem, [SensorError(offset=0.2)], np.array([[5.0], [6.0]]), 60.0)
-    >>> found[:, 0, 0], names
+    >>> columns, names = error_columns(["room"], [SensorError(offset=0.2)], np.array([[5.0], [6.0]]), 60.0)
+    >>> columns[:, 0, 0], names
     (array([0.2, 0.2]), ('room offset',))
-    """
-    return error_columns([s.name for s in problem.sensors], sensors, simulated, step)
-
-
-def error_columns(
-    names: Sequence[str], sensors: Sequence[SensorError], simulated: Floats, step: float
-) -> tuple[Floats, tuple[str, ...]]:
-    """Change of readings as `sensor_columns`, for any series.
-
-    Parameters
-    ----------
-    names : sequence of str, length S
-        Of the sensors.
-    sensors, simulated, step
-        As for `sensor_columns`.
-
-    Returns
-    -------
-    ndarray, shape (T, S, k)
-        [unit]
-    tuple of str, length k
     """
     columns, column_names = [], []
 

@@ -158,10 +158,6 @@ class IdfObject:
             raise self.error(f"{keys[0]}: found {text or 'nothing'}", "a number", "Give the number")
         return number
 
-    def is_auto(self, *keys: str) -> bool:
-        """Whether the field leaves the number to EnergyPlus."""
-        return self.word(*keys) in AUTO
-
     def rows(self, key: str) -> list[Mapping[str, Any]]:
         """Groups of an extensible field."""
         return [row for row in self.fields.get(key) or [] if isinstance(row, Mapping)]

@@ -51,16 +51,6 @@ class CrossReferences:
         self._label_of[kind, key] = f"{kind} {self._counts[kind]}"
         return self._label_of[kind, key]
 
-    def has_label(self, kind: str, key: str) -> bool:
-        """Whether the page has it.
-
-        Parameters
-        ----------
-        kind, key : str
-            As for `label`.
-        """
-        return (kind, key) in self._label_of
-
     def refer(self, kind: str, key: str) -> Markup:
         """A link to a table or figure.
 

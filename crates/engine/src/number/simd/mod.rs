@@ -12,15 +12,16 @@
 mod array;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", feature = "all-lanes"))]
 mod avx2_single;
 #[cfg(target_arch = "x86_64")]
+#[cfg_attr(not(feature = "all-lanes"), allow(dead_code, reason = "ensembles do not use it"))]
 mod avx512;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", feature = "all-lanes"))]
 mod avx512_single;
 #[cfg(target_arch = "aarch64")]
 mod neon;
-#[cfg(target_arch = "aarch64")]
+#[cfg(all(target_arch = "aarch64", feature = "all-lanes"))]
 mod neon_single;
 mod registers;
 mod token;
@@ -53,7 +54,7 @@ pub trait LaneTask {
 /// Does a task on eight members with the registers of a level.
 pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
     match level {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "all-lanes"))]
         Level::Avx512(token) => task.run(move |numbers| avx512::Eight::new(token, numbers)),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(token) => task.run(move |numbers| avx2::Eight::new(token, numbers)),
@@ -67,11 +68,11 @@ pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
 /// Does a task on sixteen members in single precision with the registers of a level.
 pub fn run_single<T: LaneTask>(level: Level, task: T) -> T::Output {
     match level {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "all-lanes"))]
         Level::Avx512(token) => task.run(move |numbers| avx512_single::Sixteen::new(token, numbers)),
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "all-lanes"))]
         Level::Avx2(token) => task.run(move |numbers| avx2_single::Sixteen::new(token, numbers)),
-        #[cfg(target_arch = "aarch64")]
+        #[cfg(all(target_arch = "aarch64", feature = "all-lanes"))]
         Level::Neon(token) => task.run(move |numbers| neon_single::Sixteen::new(token, numbers)),
         _ => task.without_lanes(),
     }

@@ -223,6 +223,7 @@ macro_rules! double_bits {
 pub(super) use double_bits;
 
 /// Operations on the bits of numbers in single precision.
+#[cfg(feature = "all-lanes")]
 macro_rules! single_bits {
     ($kind:ident) => {
         use crate::number::elementary::Bits;
@@ -253,4 +254,5 @@ macro_rules! single_bits {
         }
     };
 }
+#[cfg(feature = "all-lanes")]
 pub(super) use single_bits;

@@ -114,7 +114,7 @@ impl Level {
         let wider = [
             Neon::detect().map(Self::Neon),
             Avx2::detect().map(Self::Avx2),
-            Avx512::detect().map(Self::Avx512),
+            Avx512::detect().map(Self::Avx512).filter(|_| cfg!(feature = "all-lanes")),
         ];
         core::iter::once(Self::Array).chain(wider.into_iter().flatten())
     }
