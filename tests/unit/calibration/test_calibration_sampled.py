@@ -189,6 +189,35 @@ def test_a_truncated_normal_distribution_at_its_end(beyond: float) -> None:
     assert_drawn(chains, 1, LEVELS)  # of which the data say nothing
 
 
+@pytest.mark.parametrize("highest", [0.7, -1.0], ids=["in part", "nowhere"])
+def test_where_the_model_cannot_be_run_nothing_is_drawn(highest: float) -> None:
+    measured = 0.02 * np.random.default_rng(3).standard_normal(72)
+
+    def simulate(points: Floats) -> Floats:
+        level = np.where(points[:, 0] < highest, 0.0, np.nan)
+        return np.broadcast_to(level[:, None, None], (len(points), 72, 1))
+
+    def linear_model(points: Floats) -> Floats:
+        return np.zeros((len(points), 72, 1))
+
+    names = ("first", "second")
+    problem = CalibrationProblem(
+        tuple(FitParameter(name, 0.0, 1.0) for name in names), (FitSensor("room", measured, 0.2),), simulate
+    )
+    z = np.full(2, 0.5)
+    linear = Linear(z, linear_model(z[None])[0], np.zeros((72, 1, 2)), np.zeros((72, 1, 0)))
+    stated = ErrorStatement((SensorError(offset=0.0),), HOURS, 3600.0, np.array([5.0]))
+    lengths = ChainLengths(chains=4, draws=300, warmup=100, seed=2)
+    chains = joint_posterior(problem, linear, stated, sizes(), simulate=simulate, lengths=lengths).chains
+    assert chains is not None
+    if highest < 0.0:
+        assert chains.accepted == 0.0
+        assert any("the model accepts 0 % of the moves" in text for text in chains.warnings)
+    else:
+        assert chains.draws[:, :, 0].max() < highest
+        assert np.quantile(chains.draws[:, :, 0], [0.25, 0.75]) == pytest.approx([0.175, 0.525], abs=0.08)
+
+
 def test_two_parameters_that_are_hard_to_tell_apart() -> None:
     """A correlation of -0.999 in the middle of the ranges: quantiles of the normal distribution."""
     columns = np.stack([np.ones(72), 1.0 + 0.002 * np.sin(HOURS / 7.0)], axis=-1)[:, None] * 60.0

@@ -259,8 +259,10 @@ class _Model:
         nothing = np.zeros(data.error.shape)
         # The sizes are drawn from their distribution given the data: weights that make it the prior.
         marginal = np.array([data.gaussian(size).log_density(data.error) for size in chosen])
-        self.level = np.array([one.log_density(nothing) for one in self.gaussians]) - marginal
-        self.spread = np.sqrt(np.mean([np.diagonal(one.blocks, 0, 1, 2) for one in self.gaussians], axis=0))
+        self.level = np.array([gaussian.log_density(nothing) for gaussian in self.gaussians]) - marginal
+        self.spread = np.sqrt(
+            np.mean([np.diagonal(gaussian.blocks, 0, 1, 2) for gaussian in self.gaussians], axis=0)
+        )
 
     def surface(self, runs: Sequence[tuple[Floats, Floats]]) -> _Surface:
         """Density with a polynomial through runs, coefficients (M, q) and differences (M, D, n)."""
@@ -273,7 +275,9 @@ class _Model:
         usable = np.asarray(np.isfinite(misfit).all(axis=(1, 2)))
         away = self.error[:, :, None] - self.columns @ coefficients.T
         away = away - np.moveaxis(np.where(usable[:, None, None], misfit, 0.0), 0, -1)
-        squares = np.array([np.einsum("dnm,dnm->m", away, one.solve(away)) for one in self.gaussians])
+        squares = np.array(
+            [np.einsum("dnm,dnm->m", away, gaussian.solve(away)) for gaussian in self.gaussians]
+        )
         return np.where(usable, _log_mean(self.level[:, None] - 0.5 * squares)[0], -math.inf)
 
 
@@ -293,12 +297,12 @@ class _Surface:
             self._flat = self._surface.flatness
             directions = self._surface.directions.T.reshape(*model.error.shape, -1) * model.spread[:, :, None]
             columns = np.concatenate([columns, directions], axis=2)
-        weighted = [one.solve(columns) for one in model.gaussians]
+        weighted = [gaussian.solve(columns) for gaussian in model.gaussians]
         self._precision = np.array(
-            [np.einsum("dnp,dnq->pq", columns, one, optimize=True) for one in weighted]
+            [np.einsum("dnp,dnq->pq", columns, solved, optimize=True) for solved in weighted]
         )
-        self._slope = np.array([np.einsum("dnp,dn->p", one, model.error) for one in weighted])
-        squares = [float(np.sum(model.error * one.solve(model.error))) for one in model.gaussians]
+        self._slope = np.array([np.einsum("dnp,dn->p", solved, model.error) for solved in weighted])
+        squares = [float(np.sum(model.error * gaussian.solve(model.error))) for gaussian in model.gaussians]
         self._level = model.level - 0.5 * np.array(squares)
 
     def log_density(self, a: Floats) -> tuple[float, Floats]:
@@ -403,7 +407,8 @@ class _Chain:
         taken = math.log(self._rng.random() or 1e-300) < gain
         if taken:
             self.coefficients, self.log_density = self._proposal, after
-        return taken
+        # A chain that has not yet been where the model can be run goes on, but nothing was accepted.
+        return taken and math.isfinite(after)
 
     def adapt_again(self) -> None:
         """Adapt the step from the start: other scales, another polynomial."""

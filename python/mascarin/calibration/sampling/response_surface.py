@@ -65,9 +65,9 @@ class ResponseSurface:
 
     def at(self, point: Floats) -> tuple[Floats, Floats]:
         """Evaluate the share of each direction (r,) at a point (P,), and its derivative (P, r)."""
-        one = np.concatenate([[1.0], (point - self.center) / self.spread])
-        first, second, third = one[self.factors.T]
-        shares = ((first * second * third) @ self.weights).reshape(one.size, -1)
+        away = np.concatenate([[1.0], (point - self.center) / self.spread])
+        first, second, third = away[self.factors.T]
+        shares = ((first * second * third) @ self.weights).reshape(away.size, -1)
         return shares[0], shares[1:]
 
 
