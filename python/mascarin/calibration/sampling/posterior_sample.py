@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 LEAST_ACCEPTED: Final = 0.2
-"""Part of the accepted moves below which the linearized model is said to be none. [-]"""
+"""Part of the accepted moves below which the polynomial is said to be far from the model. [-]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class PosteriorSample:
     log_density : ndarray, shape (C, N)
         Logarithm of the posterior density, up to a constant. [-]
     accepted : float
-        Part of the proposals from the linearized model that the model itself accepts. [-]
+        Part of the proposals from the polynomial that the model itself accepts. [-]
     diverged : int
         Number of paths that lost their energy.
 
@@ -83,8 +83,9 @@ class PosteriorSample:
                 )
         if self.accepted < LEAST_ACCEPTED:
             texts.append(
-                f"the model accepts {100.0 * self.accepted:.0f} % of the moves that its linearization "
-                "proposes: it is far from linear, and intervals of the linearized posterior are wrong"
+                f"the model accepts {100.0 * self.accepted:.0f} % of the moves that the polynomial through "
+                f"its runs proposes, expected at least {100.0 * LEAST_ACCEPTED:.0f} %: it has kinks or jumps "
+                "where the posterior is, and chains stay long in one place; sample longer (draws)"
             )
         if self.diverged:
             texts.append(
