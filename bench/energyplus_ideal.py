@@ -55,6 +55,11 @@ _FLOW = {
     "flow_per_exterior_surface_area": "flow_rate_per_exterior_surface_area",
 }
 _SPACE = {"zone_name": "zone_or_space_name", "source_zone_name": "source_zone_or_space_name"}
+_MIXING = _SPACE | {
+    f"{most}_{old}temperature_schedule_name": f"{most}_{new}_temperature_schedule_name"
+    for most in ("minimum", "maximum")
+    for old, new in (("zone_", "receiving"), ("source_zone_", "source"))
+}
 RENAMED = {
     "People": {
         "zone_or_zonelist_name": _PLACE,
@@ -68,8 +73,8 @@ RENAMED = {
     "ZoneInfiltration:EffectiveLeakageArea": _SPACE,
     "ZoneInfiltration:FlowCoefficient": _SPACE,
     "ZoneVentilation:WindandStackOpenArea": _SPACE,
-    "ZoneMixing": _SPACE,
-    "ZoneCrossMixing": _SPACE,
+    "ZoneMixing": _MIXING,
+    "ZoneCrossMixing": _MIXING,
     "InternalMass": {"zone_name": "zone_or_zonelist_name"},
 }
 OUTPUTS = (
@@ -110,6 +115,7 @@ def prepared(file: Path, weather: Path, periods: tuple[tuple[date, date], ...], 
                 name: _fields(kind, values, schema.get_inner_schema(kind) or {}, dropped)
                 for name, values in objects.items()
             }
+    _without_fans(model)
     _renew(model, weather, periods, steps)
     _condition(model, stated)
     return Prepared(model, dict(dropped))
@@ -180,6 +186,15 @@ def _fitted(value: Any, told: dict[str, Any]) -> Any:
                 return word
     whole = isinstance(value, float) and value.is_integer()
     return int(value) if whole and any(kind.get("type") == "integer" for kind in kinds) else value
+
+
+def _without_fans(model: dict[str, Section]) -> None:
+    """Take the exhaust fans of systems out of an air flow network."""
+    fans = {name.casefold() for name in model.pop("AirflowNetwork:MultiZone:Component:ZoneExhaustFan", {})}
+    surfaces = model.get("AirflowNetwork:MultiZone:Surface", {})
+    for name, values in list(surfaces.items()):
+        if str(values.get("leakage_component_name", "")).casefold() in fans:
+            del surfaces[name]
 
 
 def _renew(

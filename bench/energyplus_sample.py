@@ -18,12 +18,14 @@ from __future__ import annotations
 
 import argparse
 import json
+import multiprocessing
 import random
 import shlex
 import subprocess
 import sys
 import time
 from datetime import date, timedelta
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -113,7 +115,12 @@ def _refusal(folder: Path) -> str:
 # ------------------------------------------------------------------ Mascarin
 
 
-def _simulated(conversion: Conversion, climate: mc.Climate, start: date) -> dict[tuple[str, str], Array]:
+@cache
+def _climate() -> mc.Climate:
+    return mc.Climate.from_epw(WEATHER)
+
+
+def _simulated(conversion: Conversion, start: date) -> dict[tuple[str, str], Array]:
     """Hourly values of the week that counts, by quantity and zone of the model in capitals."""
     available, steps = {output.name for output in conversion.building.outputs()}, conversion.steps_per_hour
     names = {
@@ -124,7 +131,7 @@ def _simulated(conversion: Conversion, climate: mc.Climate, start: date) -> dict
     }
     run = mc.simulate(
         conversion.building,
-        climate,
+        _climate(),
         start=start.isoformat(),
         end=(start + timedelta(days=DAYS)).isoformat(),
         step=f"{60 // steps}min",
@@ -145,7 +152,6 @@ def compared(name: str, folder: Path) -> dict[str, Any]:
         conversion = convert(folder / "model.epJSON", weather=WEATHER)
         row["listed"] = [f"left out: {line}" for line in level_lines(conversion, "left out")]
         row["listed"] += [f"other form: {line}" for line in level_lines(conversion, "approximated")]
-        climate = mc.Climate.from_epw(WEATHER)
         titles = frozenset(title for group in TITLES.values() for title in group)
         periods = read_series(folder, titles)
         ours: list[dict[tuple[str, str], Array]] = []
@@ -153,7 +159,7 @@ def compared(name: str, folder: Path) -> dict[str, Any]:
         for period, (start, last) in zip(periods, PERIODS, strict=True):
             if period.days != (f"{start:%m-%d}", f"{last:%m-%d}"):
                 raise ValueError(f"results of {period.days}: remove {folder}, and run again")
-            ours.append(_simulated(conversion, climate, start))
+            ours.append(_simulated(conversion, start))
             theirs.append(
                 {
                     (quantity, key): values[-RATED * 24 :] / (3600.0 if title.endswith("[J]") else 1.0)
@@ -275,11 +281,7 @@ def main() -> None:
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--write", type=Path)
     parser.add_argument("--steps", type=int, default=STEPS, help="steps in an hour; with RUNS of their own")
-    parser.add_argument("--one", help=argparse.SUPPRESS)
     options = parser.parse_intermixed_args()
-    if options.one:
-        print(json.dumps(compared(options.one, options.runs / options.one)))
-        return
     rows = _compare(options) if not options.table else _held(options.runs)
     chosen = [row for row in rows.values() if "skipped" not in row]
     text = table(chosen)
@@ -303,6 +305,7 @@ def _held(runs: Path) -> dict[str, dict[str, Any]]:
 def _compare(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
     """Compare files in their order until there are enough."""
     options.runs.mkdir(parents=True, exist_ok=True)
+    _climate()  # for all processes
     rows = _held(options.runs)
     count = 0
     for file in order(options.folder):
@@ -315,7 +318,11 @@ def _compare(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
                 break
             continue
         reason = run_energyplus(file, options.runs / file.stem, options.run, options.steps)
-        row = {"name": file.stem, "skipped": reason} if reason else _separately(file.stem, options)
+        row = (
+            {"name": file.stem, "skipped": reason}
+            if reason
+            else _separately(file.stem, options.runs / file.stem)
+        )
         rows[file.stem] = row
         with (options.runs / "rows.jsonl").open("a", encoding="utf-8") as target:
             target.write(json.dumps(row) + "\n")
@@ -326,16 +333,22 @@ def _compare(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
     return rows
 
 
-def _separately(name: str, options: argparse.Namespace) -> dict[str, Any]:
+def _separately(name: str, folder: Path) -> dict[str, Any]:
     """The comparison in a process of its own, which a limit of time ends."""
-    command = [sys.executable, __file__, str(options.folder), str(options.runs), "--one", name]
-    try:
-        done = subprocess.run(command, check=True, timeout=LIMIT, capture_output=True, text=True)  # noqa: S603
-        return dict(json.loads(done.stdout.splitlines()[-1]))
-    except subprocess.TimeoutExpired:
-        return {"name": name, "error": f"Mascarin: longer than {LIMIT} s"}
-    except subprocess.CalledProcessError as error:
-        return {"name": name, "error": f"Mascarin ends with {error.returncode}: {error.stderr[-300:]}"}
+    context = multiprocessing.get_context("fork")
+    theirs, ours = context.Pipe(duplex=False)
+    process = context.Process(target=lambda: ours.send(compared(name, folder)))
+    process.start()
+    ours.close()
+    row = {"name": name, "error": f"Mascarin: longer than {LIMIT} s"}
+    if theirs.poll(LIMIT):
+        try:
+            row = dict(theirs.recv())
+        except EOFError:
+            row["error"] = "Mascarin ends without results"
+    process.kill()
+    process.join()
+    return row
 
 
 def _said(row: dict[str, Any]) -> str:
