@@ -33,7 +33,7 @@ def test_all_wavelengths_count(tmp_path: Path, text: str, suffix: str) -> None:
     file = tmp_path / "model.idf"
     file.write_text(text, encoding="utf-8")
     if suffix == "epJSON":
-        held = idfkit.write_epjson(idfkit.load_idf(file))
+        held = idfkit.write_epjson(idfkit.load_idf(str(file)))
         file = tmp_path / "model.epJSON"
         file.write_text(held, encoding="utf-8")
     [pane] = convert(file).description["glazings"]["glazing"]["panes"]
