@@ -65,6 +65,14 @@ _LOGGED = (
     "Schedule:File,Logged,Any,logged.csv,2,1,8760,Comma,No,60;\nLights,Lamp,Store,Logged,LightingLevel,50;"
 )
 
+_MAT = """
+ConstructionProperty:InternalHeatSource,Plane,Wall,1,1,1,0.2;
+ZoneHVAC:LowTemperatureRadiant:Electric,Mat,,Store,Back,HeatingDesignCapacity,300,,,MeanAirTemperature,
+  HalfFlowPower,1,Warm;
+ZoneHVAC:EquipmentConnections,Store,Store list,,,Store node,;
+ZoneHVAC:EquipmentList,Store list,SequentialLoad,ZoneHVAC:LowTemperatureRadiant:Electric,Mat,1,1,,;
+"""
+
 #: By feature: objects, and whether the building has it.
 OBJECTS: Final[dict[str, Objects]] = {
     "nothing": Objects("", lambda one: len(one.zones) == 2),
@@ -88,9 +96,7 @@ OBJECTS: Final[dict[str, Objects]] = {
     "measured columns": Objects(_LOGGED, lambda one: "Lamp" in one.zones["Store"].gains),
     "mechanical air": Objects("", lambda one: bool(one.air_paths)),
     "shades": Objects("", lambda one: bool(one.shades)),
-    "heat sources": Objects(
-        "ConstructionProperty:InternalHeatSource,Mat,Wall,1,1,1,0.2;", None, "InternalHeatSource"
-    ),
+    "heat sources": Objects(_MAT, lambda one: len(one.heat_sources) == 1),
 }
 #: Features that a model of EnergyPlus cannot have, with the reason.
 WITHOUT_OBJECTS: Final = {

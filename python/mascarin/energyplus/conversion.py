@@ -33,6 +33,7 @@ from mascarin.energyplus.zones.conditioning import (
 )
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
+from mascarin.energyplus.zones.radiant import Envelope
 from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
 from mascarin.errors import InputError
@@ -130,7 +131,8 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     describe_gains(context, zones, seasonal_temperatures(context, zones))
     describe_water(context, zones, air)
     describe_air(context, zones, all_surfaces, inside)
-    describe_conditioning(context, zones)
+    by_name = {surface.item.name.casefold(): surface for surface in all_surfaces}
+    describe_conditioning(context, zones, Envelope(by_name, inside, surfaces))
     describe_enclosures(context, _built(context), zones)
     version = _version(context)
     start, end = _period(context)
@@ -245,6 +247,9 @@ def _period(context: Context) -> tuple[str, str]:
     items = context.model.of("RunPeriod")
     for item in items[1:]:
         start, end = _days_of(item, year)
+        # The year and its first day of the week are those of the first period.
+        for pattern in ("*_year", "day_of_week_for_start_day"):
+            item.fields.pass_over(pattern)
         context.findings.no_effect(
             [item], "another run period", f"the same building, with --start {start} --end {end}"
         )

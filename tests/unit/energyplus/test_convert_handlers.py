@@ -12,6 +12,7 @@ from mascarin.energyplus.model.context import SECTIONS, Context
 from mascarin.energyplus.model.handlers import HANDLERS, reads
 from mascarin.energyplus.model.idf import IdfModel, read
 from mascarin.energyplus.zones.conditioning import describe_conditioning
+from mascarin.energyplus.zones.radiant import Envelope
 from mascarin.energyplus.zones.zones import Zone
 from test_convert import box, converted
 
@@ -97,8 +98,8 @@ def test_a_section_that_a_handler_writes_reaches_the_building(
 ) -> None:
     """A step of the conversion that adds a vent and humidity: both are in the building that comes out."""
 
-    def with_humidity(context: Context, zones: dict[str, Zone]) -> None:
-        describe_conditioning(context, zones)
+    def with_humidity(context: Context, zones: dict[str, Zone], envelope: Envelope) -> None:
+        describe_conditioning(context, zones, envelope)
         context.section("humidity")["zones"] = {"Room": {"storage": 2.0}}
         context.section("sensors")["middle"] = {"surface": "Mass", "depth": 0.02}
 

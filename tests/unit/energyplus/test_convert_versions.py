@@ -14,7 +14,8 @@ VERSIONS = ("8.9", "9.0", "9.3")
 #: Models without classes that these versions do not have; refused ones and the older one are left out.
 LATER = {
     "extra_field", "macro_include", "old_version_9_4", "spaces", "interzone_one_sided", "incident_multiplier",
-    "surrounding_surfaces", "hvac_template_vav", "internal_source", "spaces_by_area",
+    "surrounding_surfaces", "hvac_template_vav", "internal_source", "spaces_by_area", "radiant_mat",
+    "radiant_group",
 }  # fmt: skip
 #: Rules on lines of IDF: what an older version has in place of a field of 25.2.
 ALL = [

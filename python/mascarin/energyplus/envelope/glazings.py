@@ -180,8 +180,9 @@ def _spectral(context: Context, item: IdfObject) -> Section | None:
             item, "optics by angle or of an unknown data set", "see the windows that use it"
         )
         return None
-    rows: list[Any] = data.rows("extensions") or data.rows("data") or []
-    solar = [(float(row["wavelength"]), row) for row in rows if 0.3 <= float(row.get("wavelength", 0)) <= 2.5]
+    rows = [*_numbered(data), *data.rows("extensions"), *data.rows("data")]
+    by_wavelength = {float(row.get("wavelength", 0.0)): row for row in rows}
+    solar = [(length, by_wavelength[length]) for length in sorted(by_wavelength) if 0.3 <= length <= 2.5]
     if len(solar) < 2:
         raise data.error(f"{len(solar)} wavelengths from 0.3 to 2.5 um", "at least 2", "Complete the table")
     context.findings.approximated(
@@ -203,6 +204,13 @@ def _spectral(context: Context, item: IdfObject) -> Section | None:
         "transmittance": max(mean("transmittance"), 1e-3),
         "reflectance": front if abs(front - back) < 1e-4 else [front, back],
     }
+
+
+def _numbered(data: IdfObject) -> list[dict[str, Any]]:
+    """The first wavelengths of a table, which the schema numbers; the others are groups."""
+    keys = ("wavelength", "transmittance", "front_reflectance", "back_reflectance")
+    numbers = [k for k in range(1, len(data.fields) + 1) if f"wavelength_{k}" in data.fields]
+    return [{key: data.number(f"{key}_{k}") or 0.0 for key in keys} for k in numbers]
 
 
 def _sunlight(wavelength: float) -> float:

@@ -43,8 +43,11 @@ _OPENINGS: Final = {
 }
 #: Tilt above which EnergyPlus turns a roof or ceiling, and below which it turns a floor [deg].
 _VERTICAL: Final = 90.0
-#: Difference of view factors that is not noted [-].
+#: Difference of view factors that is not noted, and view factor that is none [-].
 _SAME_VIEW: Final = 0.05
+_NO_VIEW: Final = 0.001
+#: Tilt from which a plane sees the ground alone [deg].
+_DOWN: Final = 179.0
 OPENINGS: Final = ("FenestrationSurface:Detailed", *_OPENINGS)
 
 
@@ -137,22 +140,29 @@ def _detailed(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
     points = points[::-1] if rules.clockwise else points
     points = _upright(context, item, shape, _checked(item, points))
     if item.word("outside_boundary_condition") in ("outdoors", ""):
-        _ground_seen(context, item, points)
+        sunlit = _ground_seen(context, item, points)
+    else:
+        sunlit = True
     return IdfSurface(
         item=item,
         zone=zone,
         shape=shape,
         boundary=item.word("outside_boundary_condition") or "outdoors",
         beyond=item.text("outside_boundary_condition_object"),
-        sun=item.word("sun_exposure") != "nosun",
+        sun=sunlit and item.word("sun_exposure") != "nosun",
         wind=item.word("wind_exposure") != "nowind",
         points=points,
     )
 
 
-def _ground_seen(context: Context, item: IdfObject, points: g.Array) -> None:
-    """Note a view factor to the ground that is not that of the tilt, which is used here."""
+def _ground_seen(context: Context, item: IdfObject, points: g.Array, *, opaque: bool = True) -> bool:
+    """Whether any sun reaches a plane: none an opaque one that looks down, without a view of the ground.
+
+    A view factor to the ground that is not that of the tilt, which is used here, is noted.
+    """
     entered_view = item.number("view_factor_to_ground")
+    if opaque and entered_view is not None and entered_view <= _NO_VIEW and g.tilt_of(points) >= _DOWN:
+        return False
     by_tilt = 0.5 * (1.0 - math.cos(math.radians(g.tilt_of(points))))
     if entered_view is not None and abs(entered_view - by_tilt) > _SAME_VIEW:
         share = round(100.0 * abs(by_tilt - entered_view))
@@ -162,6 +172,7 @@ def _ground_seen(context: Context, item: IdfObject, points: g.Array) -> None:
             f"a view factor to the ground of {entered_view:g}",
             f"{by_tilt:.2f} by its tilt: {share} % {more} of the sun that the ground reflects reaches it",
         )
+    return True
 
 
 def _simple(context: Context, rules: g.Rules, item: IdfObject) -> IdfSurface:
@@ -253,7 +264,7 @@ def _opening(context: Context, rules: g.Rules, item: IdfObject, base: IdfSurface
         points = g.frame_of(base.zone, rules, rules.relative).place(g.corners_of(item))
         points = points[::-1] if rules.clockwise else points
         if base.boundary == "outdoors":
-            _ground_seen(context, item, base.points)
+            _ground_seen(context, item, base.points, opaque=False)
         shape = {"glassdoor": "window"}.get(item.word("surface_type"), item.word("surface_type"))
     else:
         plane = g.plane_through(base.points)

@@ -17,7 +17,7 @@ Section = dict[str, Any]
 SECTIONS: Final = tuple(name for name in Description.model_fields if name != "name")
 
 #: Sections whose parts have results.
-_WITH_RESULTS: Final = ("zones", "surfaces", "windows", "vents", "controls")
+_WITH_RESULTS: Final = ("zones", "surfaces", "windows", "vents", "controls", "heat_sources")
 
 
 @dataclass

@@ -14,6 +14,7 @@ from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_
 from mascarin.energyplus.zones.draughts import Draught, density_of, limited, ventilate
 from mascarin.energyplus.zones.equipment import Plant, replaced
 from mascarin.energyplus.zones.gains import people_in
+from mascarin.energyplus.zones.radiant import Envelope, describe_mats
 from mascarin.energyplus.zones.zones import Zone
 from mascarin.physics import AIR_SPECIFIC_HEAT
 
@@ -61,8 +62,17 @@ class SetPoints:
     cooling: Year
 
 
-def describe_conditioning(context: Context, zones: dict[str, Zone]) -> None:
-    """Enter ideal heating and cooling.
+def describe_conditioning(context: Context, zones: dict[str, Zone], envelope: Envelope) -> None:
+    """Enter ideal heating and cooling, and mats in surfaces.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    envelope : Envelope
+        What mats lie in.
 
     Raises
     ------
@@ -71,8 +81,11 @@ def describe_conditioning(context: Context, zones: dict[str, Zone]) -> None:
     """
     set_points = dict(_thermostats(context, zones))
     systems = _systems(context)
+    mats = describe_mats(context, zones, systems, envelope)
     for key, zone in zones.items():
-        points, zone_systems = set_points.get(key), systems.get(key, [])
+        zone_systems = [system for system in systems.get(key, []) if system.name not in mats]
+        ideal = [system for system in zone_systems if system.kind == IDEAL]
+        points, zone_systems = set_points.get(key), ideal[:1] or zone_systems
         if points is None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
             context.findings.no_effect(zone_systems, "a system without a thermostat", "it conditions nothing")
         elif points is not None and zone_systems and zone_systems[0].kind in (IDEAL, _TEMPLATE):
@@ -214,7 +227,7 @@ def _set_points(context: Context, item: IdfObject) -> SetPoints:
 
 @reads("ZoneHVAC:EquipmentConnections", "ZoneHVAC:EquipmentList", IDEAL, _TEMPLATE)
 def _systems(context: Context) -> dict[str, list[IdfObject]]:
-    """What heats, cools and ventilates each zone: its ideal loads alone, where it has them."""
+    """What heats, cools and ventilates each zone."""
     systems_of_zone: dict[str, list[IdfObject]] = {}
     for item in context.model.of("ZoneHVAC:EquipmentConnections"):
         equipment = context.model.named(
@@ -226,9 +239,8 @@ def _systems(context: Context) -> dict[str, list[IdfObject]]:
             kind = str(row.get("zone_equipment_object_type", ""))
             system = context.model.of_any_class(str(row.get("zone_equipment_name", "")), kind)
             systems += [] if system is None else [system]
-        ideal = [system for system in systems if system.kind == IDEAL]
         for zone in context.zones_of(item, "zone_name"):
-            systems_of_zone[zone.name.casefold()] = ideal[:1] or systems
+            systems_of_zone[zone.name.casefold()] = systems
     for item in context.model.of(_TEMPLATE):
         for zone in context.zones_of(item, "zone_name"):
             systems_of_zone[zone.name.casefold()] = [item]

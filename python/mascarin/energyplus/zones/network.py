@@ -159,17 +159,25 @@ _SMALL_DIFFERENCE: Final = 1e-3
 
 
 def _note_reference_air(context: Context, component: IdfObject) -> None:
-    """The coefficient of a crack is for air of its own conditions, where an object states them."""
-    name = component.text("reference_crack_conditions")
-    item = context.model.named(name, "AirflowNetwork:MultiZone:ReferenceCrackConditions") if name else None
+    """The coefficient of a crack is for air of its own conditions, where an object states them.
+
+    A crack that names none has those of the only object (Input Output Reference); of several, none.
+    """
+    name, kind = (
+        component.text("reference_crack_conditions"),
+        "AirflowNetwork:MultiZone:ReferenceCrackConditions",
+    )
+    stated_items = context.model.of(kind)
+    item = context.model.named(name, kind) if name else stated_items[0] if len(stated_items) == 1 else None
     if item is None:
         return
     usual, pressure = _REFERENCE_AIR
+    temperature = item.number("reference_temperature")
     stated = (
-        item.number("reference_temperature") or usual,
+        usual if temperature is None else temperature,
         item.number("reference_barometric_pressure") or pressure,
-        item.number("reference_humidity_ratio") or 0.0,
     )
+    item.fields.pass_over("reference_humidity_ratio")
     if abs(stated[0] - usual) > 1.0 or abs(stated[1] / pressure - 1.0) > 0.01:
         context.findings.approximated(
             component,

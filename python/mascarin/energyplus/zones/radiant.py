@@ -1,0 +1,223 @@
+"""Radiant systems in layers: electric mats in a plane of a construction, turned by the air of their zone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from mascarin.energyplus.envelope.glazings import construction_of
+from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
+from mascarin.energyplus.envelope.materials import layers_of
+from mascarin.energyplus.envelope.surfaces import Surfaces
+from mascarin.energyplus.model import geometry as g
+from mascarin.energyplus.model.context import Context, Section
+from mascarin.energyplus.model.handlers import reads
+from mascarin.energyplus.model.idf import IdfObject
+from mascarin.energyplus.model.schedules import fraction, temperature, year
+from mascarin.energyplus.model.year import combined
+from mascarin.energyplus.zones.zones import Zone
+
+MAT: Final = "ZoneHVAC:LowTemperatureRadiant:Electric"
+#: Classes that put a plane into a construction, which they name, or which they are.
+PLANE: Final = "ConstructionProperty:InternalHeatSource"
+_OLDER_PLANE: Final = "Construction:InternalSource"
+_GROUP: Final = "ZoneHVAC:LowTemperatureRadiant:SurfaceGroup"
+#: Narrowest throttling range of EnergyPlus, which takes it in place of a smaller one [K].
+_LEAST_RANGE: Final = 0.5
+#: Temperatures that turn a mat there: the air here.
+_OF_THE_ROOM: Final = ("operativetemperature", "meanradianttemperature")
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """What a radiant system lies in.
+
+    Attributes
+    ----------
+    surfaces : dict of str to IdfSurface
+        Surfaces of the file by name in small letters.
+    openings : list of IdfOpening
+        Windows and doors in them.
+    done : Surfaces
+        What has become of them.
+    """
+
+    surfaces: dict[str, IdfSurface]
+    openings: list[IdfOpening]
+    done: Surfaces
+
+
+class _NotCarried(Exception):
+    """Why a system is not carried over."""
+
+
+@reads(PLANE, _OLDER_PLANE)
+def describe_mats(
+    context: Context, zones: dict[str, Zone], systems: dict[str, list[IdfObject]], envelope: Envelope
+) -> set[str]:
+    """Enter the heat sources of the mats that can be described.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    systems : dict of str to list of IdfObject
+        Equipment of each zone.
+    envelope : Envelope
+        The surfaces.
+
+    Returns
+    -------
+    set of str
+        Names of the systems that are carried over.
+    """
+    carried = set()
+    for key, zone in zones.items():
+        for system in systems.get(key, []):
+            if system.kind == MAT and _entered(context, zone, system, envelope):
+                carried.add(system.name)
+    planes = context.model.of(PLANE)
+    for item in (*planes, *context.model.of(_OLDER_PLANE)):
+        # Both sides of a surface between zones state the plane: one of them is used.
+        for pattern in (
+            "construction_name",
+            "*_present_after_*",
+            "temperature_calculation_*",
+            "two_dimensional_*",
+            "tube_spacing",
+        ):
+            item.fields.pass_over(pattern)
+        if item.number("dimensions_for_the_ctf_calculation") == 2.0:
+            context.findings.approximated(
+                item, "heat between tubes in two dimensions", "a plane of one temperature in their place"
+            )
+    if planes and not carried:
+        context.findings.no_effect(
+            planes, "a plane in a construction", "nothing that is carried over releases heat in it"
+        )
+    return carried
+
+
+@reads(MAT)
+def _entered(context: Context, zone: Zone, system: IdfObject, envelope: Envelope) -> bool:
+    """Whether a mat is a heat source in all its surfaces; none of it is entered otherwise."""
+    try:
+        power = _power(system, zone)
+        thermostat = _thermostat(context, zone, system)
+        planes = [
+            (surface, share, _plane(context, surface, envelope))
+            for surface, share in _surfaces(context, system, envelope)
+        ]
+    except _NotCarried as reason:
+        context.findings.approximated(system, str(reason), "ideal heating in place of the mat")
+        return False
+    on = year(context, system, "availability_schedule_name")
+    schedule, _ = fraction(context, f"{system.name} on", combined(lambda value: float(value > 0.0), on))
+    for surface, share, (placed, layer) in planes:
+        openings = [opening for opening in envelope.openings if opening.base.item is surface.item]
+        area = g.area_of(surface.points) - sum(g.area_of(o.points) * o.copies for o in openings)
+        mat: Section = {"power": round(power * share / area, 6)}
+        if schedule is not None:
+            mat["schedule"] = schedule
+        name = context.names.of(
+            "heat_sources", f"{system.name} {surface.item.name}" if len(planes) > 1 else system.name
+        )
+        context.section("heat_sources")[name] = {
+            "surface": placed,
+            "after": layer,
+            "electric": mat,
+            "thermostat": thermostat,
+        }
+    return True
+
+
+def _power(system: IdfObject, zone: Zone) -> float:
+    """Design power. [W]"""
+    system.fields.pass_over("zone_name")
+    method = system.word("heating_design_capacity_method")
+    if method == "capacityperfloorarea":
+        per_area = system.number("heating_design_capacity_per_floor_area")
+        if per_area is not None:
+            return per_area * zone.floor
+    capacity = system.number("heating_design_capacity")
+    if method not in ("", "heatingdesigncapacity") or capacity is None:
+        raise _NotCarried("a mat that EnergyPlus sizes from design days")
+    return capacity
+
+
+def _thermostat(context: Context, zone: Zone, system: IdfObject) -> Section:
+    """Its control, with half of the power at the set point."""
+    kind = system.word("temperature_control_type")
+    if kind in _OF_THE_ROOM:
+        context.findings.approximated(system, f"a control by {kind}", "the air of the zone in its place")
+    elif kind not in ("", "meanairtemperature"):
+        raise _NotCarried(f"a mat that is turned by {kind}")
+    most = max(system.number("heating_throttling_range") or 0.0, _LEAST_RANGE)
+    # With 'zero', nothing is left at the set point; here it is where half of the power is.
+    moved = 0.5 * most if system.word("setpoint_control_type") == "zeroflowpower" else 0.0
+    points = combined(
+        lambda value: value - moved, year(context, system, "heating_setpoint_temperature_schedule_name")
+    )
+    setpoint = temperature(context, f"{system.name} set point", points)
+    return {
+        "zone": zone.name,
+        "setpoint": {"schedule": setpoint} if isinstance(setpoint, str) else setpoint,
+        "range": most,
+        "mode": "heating",
+    }
+
+
+@reads(_GROUP)
+def _surfaces(context: Context, system: IdfObject, envelope: Envelope) -> Iterator[tuple[IdfSurface, float]]:
+    """Surfaces of a system, each with its share of the power."""
+    name = system.word("surface_name_or_radiant_surface_group_name")
+    group = context.model.named(name, _GROUP)
+    rows = [(name, 1.0)]
+    if group is not None:
+        rows = [
+            (
+                str(row.get("surface_name", "")).strip().casefold(),
+                float(row.get("flow_fraction_for_surface", 0.0)),
+            )
+            for row in group.rows("surface_fractions")
+        ]
+    for key, share in rows:
+        surface = envelope.surfaces.get(key)
+        if surface is None:
+            raise _NotCarried(f"a surface '{key}', which is no surface of the file")
+        yield surface, share
+
+
+def _plane(context: Context, surface: IdfSurface, envelope: Envelope) -> tuple[str, str]:
+    """Surface of the description, and the layer behind whose inner side the plane is."""
+    key = surface.item.name.casefold()
+    placed = envelope.done.placed.get(key)
+    if placed is None:
+        raise _NotCarried(f"a plane in '{surface.item.name}', which is not carried over")
+    construction = construction_of(context, surface.item)
+    item = construction
+    if construction.kind != _OLDER_PLANE:
+        items = [
+            held
+            for held in context.model.of(PLANE)
+            if held.word("construction_name") == construction.name.casefold()
+        ]
+        if not items:
+            raise _NotCarried(f"a surface '{surface.item.name}' without a plane in its construction")
+        item = items[0]
+    number = int(
+        item.needed("thermal_source_present_after_layer_number", "source_present_after_layer_number")
+    )
+    entered = context.section("surfaces")[placed]
+    layers = context.section("constructions")[entered["construction"]]["layers"]
+    count = len(layers_of(context, construction))
+    if "adiabatic" in entered["outside"]:
+        raise _NotCarried(f"a plane in '{surface.item.name}', which is adiabatic")
+    if len(layers) != count or not 1 <= number < count:
+        raise _NotCarried(f"a plane after layer {number} of '{construction.name}'")
+    # From the other side, the layers run the other way.
+    layer = layers[count - number - 1 if key in envelope.done.reversed_names else number - 1]
+    return placed, layer.get("name", layer["material"])
