@@ -64,6 +64,7 @@ def _further(study: dict[str, Any]) -> dict[str, Any]:
         study["parameters"][extra] = estimate | {"stated": True}
     for sensor, white in zip(SENSORS, (True, False), strict=True):
         study["residuals"][sensor]["white"] = white
+    study["building"]["equipment"] = [["internal gain people of room", "80 W, schedule evening"]]
     return {
         "contradictions": [
             {"text": "room_air: the band contains 61 % of its own data", "kind": "coverage", "subject": "x"}

@@ -105,7 +105,7 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     # The terminal counts what the report counts.
     met, total = counted(said)
     report = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert f"Criteria met</span> <span class=\"fact-value\">{met} of {total}<" in report
+    assert f'Criteria met</span> <span class="fact-value">{met} of {total}<' in report
     # The folder came by mail, with a file in the place of the record; and no kept results.
     for damaged in (b"a,b\n1,2\n", before.replace(b'"weights":[', b'"weights":[9.0,', 1)):
         for file in (tmp_path / ".work").glob("*.npz"):

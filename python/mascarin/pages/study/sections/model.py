@@ -51,6 +51,7 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         ],
         "surfaces": [_surface(s) for s in building.surfaces],
         "site": [[text.plain_path(str(k)), text.typeset(str(v))] for k, v in building.site],
+        "equipment": [[text.plain_path(name), text.typeset(words)] for name, words in building.equipment],
         "choices": [
             *([text.plain_path(str(k)), text.choice(str(v))] for k, v in building.choices),
             *([["state at the start", text.typeset(study.start)]] if study.start else []),
