@@ -180,16 +180,18 @@ def heat_map(
 
 def _scale(chart: Chart, ends: tuple[float, float], y: float) -> None:
     """The shades of a map from the best to the worst value, with numbers below three of them."""
-    left, width = 60.0, 26.0
+    x_start, width = 60.0, 26.0
     for k in range(_SHADES):
         part = k / (_SHADES - 1)
         chart.svg.add(
-            "rect", x=left + width * k, y=y - 10.0, width=width, height=10.0, class_="heat",
+            "rect", x=x_start + width * k, y=y - 10.0, width=width, height=10.0, class_="heat",
             fill_opacity=f"{0.92 - 0.86 * part:.3f}",
         )  # fmt: skip
         if k % 4 == 0:
             value = ends[0] + part * (ends[1] - ends[0])
-            chart.svg.label(left + width * (k + 0.5), y + 13.0, text.significant(value, 4), "tick", "middle")
+            chart.svg.label(
+                x_start + width * (k + 0.5), y + 13.0, text.significant(value, 4), "tick", "middle"
+            )
 
 
 def _cell(chart: Chart, i: int, j: int, class_: str, shade: float | None) -> None:
