@@ -230,7 +230,7 @@ def table(rows: list[Row]) -> str:
     """The table: times, ratios to a single run and to an ensemble of Mascarin, required ratios, errors."""
     single = next(row.seconds for row in rows if row.name == "Mascarin, 900 s")
     member = next(row.seconds for row in rows if "one of" in row.name)
-    head = ("", "CPU s", "less start", "/ one run", "/ member", "asked", *cell.OUTPUTS)
+    head = ("program, step", "CPU s", "less start", "/ one run", "/ member", "asked", *cell.OUTPUTS)
     lines = []
     for row in rows:
         net = row.seconds if row.without_start is None else row.without_start

@@ -610,7 +610,7 @@ def main() -> None:
             print("  ".join(lines[-1]), file=sys.stderr, flush=True)
     head = [
         "building",
-        "",
+        "operation",
         "Mascarin",
         "load, compile",
         "run",

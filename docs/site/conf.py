@@ -67,6 +67,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "Mascarin"
 html_static_path = [str(HERE / "static")]
 html_css_files = ["site.css"]
+html_js_files = [("live.js", {"defer": "defer"})]
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sourcelink = False

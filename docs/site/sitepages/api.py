@@ -76,9 +76,27 @@ def _page(module: str, names: list[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _at_home(module: str, name: str) -> bool:
+    """Whether a package is where one of its names is defined, or the first of those that offer it.
+
+    Sphinx wants each object once; links lead there.
+    """
+    offered = [
+        package for package in PACKAGES if name in importlib.import_module(f"mascarin.{package}").__all__
+    ]
+    value = getattr(importlib.import_module(module), name)
+    same = [p for p in offered if getattr(importlib.import_module(f"mascarin.{p}"), name) is value]
+    if len(same) < 2:
+        return True
+    home = next((p for p in same if value.__module__.startswith(f"mascarin.{p}.")), same[0])
+    return module == f"mascarin.{home}"
+
+
 def _directive(module: str, name: str, title: str) -> list[str]:
     directive = {"Functions": "autofunction", "Classes": "autoclass", "Constants": "autodata"}[title]
     options = [":members:", ":exclude-members: model_config, model_post_init"] if title == "Classes" else []
+    if not _at_home(module, name):
+        options.append(":no-index:")
     if title == "Constants":
         options = [":no-value:"]
     body = "\n".join(

@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
+
+from sitepages import live_pages
 
 DOCS = Path(__file__).resolve().parents[2]
 ROOT = DOCS.parent
@@ -68,18 +71,21 @@ def site_text(text: str, *, from_root: bool = False) -> str:
     return _NAMED_FENCE.sub(captioned, _LINK.sub(moved, text))
 
 
-def assemble(source: Path) -> None:
+def assemble(source: Path, live: Sequence[str] = ()) -> None:
     """Write the pages of the repository below `source`.
 
     Parameters
     ----------
     source : Path
         Folder of the site's source; made anew.
+    live : sequence of str
+        Names of the live examples that the site has.
     """
     shutil.rmtree(source, ignore_errors=True)
     source.mkdir(parents=True)
     for page in sorted(DOCS.glob("*.md")):
-        (source / page.name).write_text(site_text(page.read_text(encoding="utf-8")), encoding="utf-8")
+        text = live_pages.shown(site_text(page.read_text(encoding="utf-8")), live)
+        (source / page.name).write_text(text, encoding="utf-8")
     for name in FROM_ROOT:
         text = site_text((ROOT / name).read_text(encoding="utf-8"), from_root=True)
         (source / name).write_text(text, encoding="utf-8")

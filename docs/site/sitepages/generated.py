@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from sitepages import api, assemble, commands, keys, laws, outputs
@@ -20,13 +21,15 @@ Made from the code when this site is built, so that it is complete and agrees wi
 """
 
 
-def write(source: Path) -> None:
+def write(source: Path, live: Sequence[str] = ()) -> None:
     """Assemble the pages of the repository and write the generated ones beside them.
 
     Parameters
     ----------
     source : Path
         Folder of the site's source; made anew.
+    live : sequence of str
+        Names of the live examples that the site has.
     """
     pages = {
         "reference": _INDEX,
@@ -36,7 +39,7 @@ def write(source: Path) -> None:
         "laws": laws.page(),
         **api.pages(),
     }
-    assemble.assemble(source)
+    assemble.assemble(source, live)
     for name, text in pages.items():
         path = source / f"{name}.md"
         path.parent.mkdir(exist_ok=True)

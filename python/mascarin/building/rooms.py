@@ -32,6 +32,35 @@ def rooms(building: Building) -> list[str]:
     return names or list(building.zones)
 
 
+def lived_in(building: Building) -> list[str]:
+    """Names of the rooms in which people live: those with a window, an internal gain, heating or cooling.
+
+    Where no room has any of them, all rooms.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Examples
+    --------
+    >>> from mascarin import load
+    >>> from mascarin.examples import FOLDER
+    >>> lived_in(load(FOLDER / "reunion_house" / "building.yaml"))
+    ['living', 'bedroom']
+    """
+    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    names = [
+        name
+        for name in rooms(building)
+        if name in lit
+        or building.zones[name].gains
+        or building.zones[name].heating is not None
+        or building.zones[name].cooling is not None
+    ]
+    return names or rooms(building)
+
+
 def _depth(building: Building, zone: str) -> float:
     """Volume over the largest surface of a zone [m]; infinite where one is not stated."""
     volume = building.zones[zone].volume

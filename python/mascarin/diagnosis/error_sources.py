@@ -229,7 +229,10 @@ def explain_missed_aims(
         elif at_most(floor, aim.limit):
             why = "the equations are sufficient, but the identification data do not determine these values"
         else:
-            why = "no parameter values reach the aim: the cause is in the equations or in the weather data"
+            why = (
+                "no parameter values reach the aim: the cause is in the equations, the weather data or the "
+                "sensor"
+            )
         sentences.append(
             f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, the aim is {aim.limit:g} "
             f"{unit}. With all {len(sources.all_adjusted.paths)} parameters adjusted to these days "

@@ -16,7 +16,7 @@ from mascarin.study.carried.validation import Validation
 from mascarin.study.context.storage import Workspace
 from mascarin.study.file.description import SensitivityPlan
 from mascarin.study.results.document.comparison import comparison
-from mascarin.study.results.document.errors import error_entries, error_tables, error_words
+from mascarin.study.results.document.errors import error_entries, error_tables, error_words, mixed_forms
 from mascarin.study.results.document.estimates import estimates, profile_entries
 from mascarin.study.results.document.header import header
 from mascarin.study.results.document.sensitivity import analyzed_hours, importance
@@ -134,7 +134,7 @@ def calibration(study: StudyContext, out: Path, *, progress: ProgressOption = Tr
                 contradictions=contradictions(found.contradictions),
                 band=interval_entries(study, intervals),
                 tables=[
-                    interval_table(study, intervals),
+                    interval_table(study, intervals, mixed_forms(found.combination)),
                     *error_tables(study, found.combination),
                     *_experiments(study, identified_entries(study, found)),
                 ],

@@ -185,6 +185,10 @@ class QualityEntry(ResultEntry):
     count: int = 0
     detail: str = ""
     masked: bool = False
+    """Whether they are left out of all comparisons."""
+    compared: bool = True
+    """Whether the column is that of a sensor; others are inputs of the model. Not known in files of earlier
+    versions."""
 
 
 class NoteEntry(ResultEntry):

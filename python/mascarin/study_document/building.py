@@ -93,6 +93,8 @@ class BuildingEntry(ResultEntry):
     doors: list[list[str]] = []
     """Pairs of zones that a door joins."""
     probes: list[ProbeEntry] = []
+    equipment: list[list[str]] = []
+    """Rows of name and value: windows and blinds, vents, air paths, ventilation, gains, loads, schedules."""
     choices: list[list[str]] = []
     """Rows of name and value of modeling choices."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import SkipValidation, ValidationError
@@ -205,7 +205,60 @@ class StudyDocument(ResultEntry):
         """One document with what some parts state; later parts replace earlier ones."""
         return cls(**{key: getattr(part, key) for part in parts for key in part.model_fields_set})
 
+    def without_repeated_periods(self) -> Self:
+        """Leave out periods that hold the same instants as one before them.
+
+        Where no other days are left, the blind days are those of the corroboration: what was compared on
+        them would count twice. All that shows or counts results takes them from here.
+
+        Returns
+        -------
+        StudyDocument
+            The same without the repetitions, in periods, metrics, criteria and aims; what is only about a
+            period that is left out names the one before it.
+
+        Examples
+        --------
+        >>> spans = [["2024-05-01T00:00", "2024-05-03T00:00"]]
+        >>> periods = {"corroboration": {"spans": spans}, "blind": {"spans": spans}}
+        >>> criteria = [{"period": "corroboration"}, {"period": "blind"}]
+        >>> document = StudyDocument.read({"periods": periods, "criteria": criteria})
+        >>> [criterion.period for criterion in document.without_repeated_periods().criteria]
+        ['corroboration']
+        """
+        name_of: dict[str, str] = {}
+        for key, period in self.periods.items():
+            same = (name for name in name_of.values() if self.periods[name].spans == period.spans)
+            name_of[key] = next(same, key)
+        repeated = {key for key, name in name_of.items() if key != name}
+        if not repeated:
+            return self
+        changed = {
+            "periods": {key: period for key, period in self.periods.items() if key not in repeated},
+            "sensors": {
+                sensor: {key: scores for key, scores in periods.items() if key not in repeated}
+                for sensor, periods in self.sensors.items()
+            },
+            "criteria": _once(self.criteria, name_of),
+            "aims": _once(self.aims, name_of),
+            "residuals": {
+                sensor: entry.model_copy(update={"period": name_of.get(entry.period or "", entry.period)})
+                for sensor, entry in self.residuals.items()
+            },
+            "shortfall": self.shortfall.model_copy(
+                update={"period": name_of.get(self.shortfall.period, self.shortfall.period)}
+            ),
+        }
+        return self.model_copy(update={key: value for key, value in changed.items() if self.states(key)})
+
     def metrics(self, sensor: str, period: str | None, model: str | None) -> MetricValues:
         """Metrics of a model; empty where there are none."""
         scores = self.sensors.get(sensor, {}).get(period or "")
         return NO_VALUES if scores is None else scores.models.get(model or "", NO_VALUES)
+
+
+def _once(limits: Sequence[CriterionEntry], name_of: Mapping[str, str]) -> list[CriterionEntry]:
+    """Limits with the periods that are shown, each once."""
+    renamed = [c.model_copy(update={"period": name_of.get(c.period, c.period)}) for c in limits]
+    keys = [(c.name, c.sensor, c.period, c.metric, c.model, c.limit) for c in renamed]
+    return [c for number, c in enumerate(renamed) if keys[number] not in keys[:number]]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from mascarin import cli
+from mascarin.pages.study.data.main_results import judged_criteria
+from mascarin.study_document.document import StudyDocument
 from study_support import BUILDING, STUDY, TRUTH, Bench, logger_table
 
 
@@ -96,9 +99,13 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     }  # fmt: skip
     record = next((tmp_path / ".work").glob("evaluations-*.jsonl"))
     before = record.read_bytes()
-    code, _, _ = run(capsys, "study", str(bench.study), "-o", str(tmp_path), "--no-figures")
+    code, _, said = run(capsys, "study", str(bench.study), "-o", str(tmp_path), "--no-figures")
     assert code == 0
     assert record.read_bytes() == before
+    # The terminal counts what the report counts.
+    met, total = counted(said)
+    report = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f'Criteria met</span> <span class="fact-value">{met} of {total}<' in report
     # The folder came by mail, with a file in the place of the record; and no kept results.
     for damaged in (b"a,b\n1,2\n", before.replace(b'"weights":[', b'"weights":[9.0,', 1)):
         for file in (tmp_path / ".work").glob("*.npz"):
@@ -135,6 +142,33 @@ def test_validate_compares_the_building_as_described(
     metrics = pd.read_csv(tmp_path / "out" / "tables" / "validation_metrics.csv")
     assert len(metrics) == 6
     assert set(metrics["model"]) == {"nominal"}
+
+
+def counted(said: str) -> tuple[int, int]:
+    """Criteria that the terminal says are met, and how many there are."""
+    found = re.search(r"criteria met: (\d+) of (\d+)", said)
+    assert found is not None
+    return int(found[1]), int(found[2])
+
+
+def test_where_no_other_days_are_left_their_criteria_count_once(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = bench.folder / "no_blind_days.yaml"
+    text = bench.study.read_text("utf-8")
+    all_others = text.replace('corroboration: ["2023-03-06 00:00", "2023-03-08 00:00"]',
+                              'corroboration: ["2023-03-06 00:00", "2023-03-10 00:00"]')  # fmt: skip
+    assert all_others != text
+    study.write_text(all_others, "utf-8")
+    code, printed, said = run(capsys, "validate", str(study), "--json")
+    assert code == 1
+    content = StudyDocument.read(json.loads(printed))
+    assert content.periods["blind"].spans == content.periods["corroboration"].spans
+    assert len(content.criteria) == 6
+    shown = content.without_repeated_periods()
+    assert counted(said) == (0, 4)
+    assert len(judged_criteria(shown)) == 4
+    assert said.count("missed: ") == 4
 
 
 def test_validate_ends_with_0_when_every_criterion_is_kept(

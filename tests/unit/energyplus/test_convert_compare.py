@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from datetime import date, datetime, timedelta
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -18,6 +18,9 @@ from mascarin.energyplus.comparison.compared import ALL
 from mascarin.errors import InputError
 from mascarin.simulation import simulate
 from mascarin.weather import Climate
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 SMALL = Path(__file__).resolve().parents[2] / "idf_small"
 AIR = "Zone Mean Air Temperature [C]"
@@ -251,3 +254,20 @@ def test_the_command_prints_writes_and_refuses(
     assert [month["month"] for month in held["rows"][0]["months"]] == [1, 2]
     assert main([*words[:4], "--report", str(page)]) == 2
     assert "found no --compare" in capsys.readouterr().err
+
+
+@pytest.mark.browser
+def test_axe_finds_nothing_in_the_page(
+    page: Page, model: Path, weather: Path, folder: Path, tmp_path: Path
+) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    file = tmp_path / "page.html"
+    words = ["convert", str(model), "-o", str(tmp_path / "room.yaml"), "--compare", str(folder)]
+    assert main([*words, "--weather", str(weather), "--report", str(file)]) == 0
+    page.goto(file.as_uri())
+    for width, scheme in ((1280, "light"), (390, "dark")):
+        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        page.set_viewport_size({"width": width, "height": 800})
+        assert [fault["id"] for fault in Axe().run(page).response["violations"]] == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width

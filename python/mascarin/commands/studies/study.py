@@ -57,7 +57,8 @@ def study(
         Page beside the report, model.html, in which the calibrated building runs: model; measured shows the
         measured values of the sensors, too; none writes no page.
     """
-    from mascarin.study.results.document.comparison import criterion_entry, run_warnings
+    from mascarin.pages.study.data.folder import read_document
+    from mascarin.study.results.document.comparison import run_warnings
 
     opened = _open(file, allow_outside)
     results = opened.run(out, figures=figures, page=page, progress=True)
@@ -67,9 +68,10 @@ def study(
     if results.sensitivity is not None:
         lines += [line.after("sensitivity analysis") for line in results.sensitivity.warnings]
     _print_warnings([*(contradiction.text for contradiction in results.contradictions), *lines])
-    _print_summary(opened, results, out)
-    verdicts = [criterion_entry(verdict, "fitted") for verdict in results.criteria["fitted"]]
-    return _exit_code(verdicts, lines, sound=all(entry.sound for entry in results.transfer.values()))
+    content = read_document(out)
+    _print_summary(opened, results, content, out)
+    sound = all(entry.sound for entry in results.transfer.values())
+    return _exit_code(_verdicts(content, "fitted"), lines, sound=sound)
 
 
 def sensitivity(
@@ -291,7 +293,8 @@ def _sound(content: StudyDocument) -> bool:
 
 
 def _verdicts(content: StudyDocument, model: str) -> list[CriterionEntry]:
-    return [criterion for criterion in content.criteria if criterion.model == model]
+    """Criteria of a model, counted as in the report: periods of the same days once."""
+    return [c for c in content.without_repeated_periods().criteria if c.model == model]
 
 
 def _exit_code(
@@ -311,12 +314,9 @@ def _exit_code(
     return exit_code(warnings=warnings, sound=sound, missed=len(missed))
 
 
-def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
-    """Print a summary on standard error."""
-    from mascarin.pages.study.data.series import read_json
-    from mascarin.study.context.storage import RUN
-    from mascarin.study_document.document import StudyDocument
-
+def _print_summary(opened: Study, results: StudyResults, content: StudyDocument, out: Path) -> None:
+    """Print a summary on standard error; what it counts are the entries of the report."""
+    shown = content.without_repeated_periods()
     count = len(opened.plan.sensors)
     lines = [f"{opened.plan.name}: {opened.plan.observed}, {count} sensor{'s' * (count != 1)}"]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
@@ -325,6 +325,7 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
             lines += [
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
+                if period in shown.periods
             ]
     for house in results.transfer.values():
         for sensor, spans in house.sensors.items():
@@ -335,9 +336,10 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
                 for model, m in (("described", both.described), ("calibrated", both.calibrated))
             ]
     lines += [f"{path} is {where}" for path, where in results.calibration.on_bound.items()]
-    if results.aims:
-        reached = sum(aim.passed for aim in results.aims)
-        lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")
+    if shown.aims:
+        reached = sum(aim.passed for aim in shown.aims)
+        missed = "; the report shows the others" if reached < len(shown.aims) else ""
+        lines.append(f"aims reached: {reached} of {len(shown.aims)}{missed}")
     if results.diagnosis.causes:
         lines.append("causes of the remaining error:")
         lines += [f"  {number}. {cause.text}" for number, cause in enumerate(results.diagnosis.causes, 1)]
@@ -348,7 +350,7 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     residual = results.fitted.results.energy.closure
     lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")
-    live = StudyDocument.read(read_json(out / RUN)).live
+    live = content.live
     if live.file:
         lines.append(f"the calibrated building runs in: {out / live.file}")
     elif live.refusal:

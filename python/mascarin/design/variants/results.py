@@ -99,14 +99,14 @@ class DesignResults:
         return values if self.inputs.objective(objective).least else -values
 
     def verdict(self, ranking: Ranking, k: int) -> str:
-        """Whether a compared design differs from the best one and the one before it, in words."""
+        """Whether a compared design is worse than the best one and the one before it, in words."""
         if k == ranking.order[0]:
             return "best"
         if ranking.tied[k]:
             return "tied with the best"
         if ranking.tied_before[k]:
             return f"tied with rank {list(ranking.order).index(k)}"
-        return "different" if ranking.samples > 1 else "different as described"
+        return "worse" if ranking.samples > 1 else "worse as described"
 
     def winners(self, climate: str = ALL) -> list[int]:
         """The best design and those tied with it, in the order of their means."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
@@ -15,6 +15,9 @@ from mascarin.figures import text
 from mascarin.figures.svg.chart import Array, Svg
 from mascarin.study_document.building import BuildingEntry, ConstructionEntry, LayerEntry, SurfaceEntry
 from mascarin.study_document.comparison import SensorEntry
+
+#: Class of the mark of a sensor.
+SENSOR: Final = "sensor-dot"
 
 
 def _polygons(building: BuildingEntry) -> list[tuple[SurfaceEntry, Array]]:
@@ -439,7 +442,7 @@ def _layer_sensors(
             x = _face_place(what, edges, [e.name for e in construction.layers])
         if x is not None:
             svg.line(x, top - 10.0, x, top + 26.0, "leader")
-            svg.add("circle", cx=x, cy=top + 26.0, r=3.2, class_="sensor-dot")
+            svg.add("circle", cx=x, cy=top + 26.0, r=3.2, class_=SENSOR)
             svg.label(x, top - 13.0, str(number), "sensor-name", "middle")
 
 

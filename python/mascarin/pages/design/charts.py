@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Outdoor air, in charts of temperatures.
 OUTDOORS: Final = "outdoor air"
+#: Shades of the scale of a map.
+_SHADES: Final = 9
 #: Classes of the lines of the reference and of designs, in their order.
 _LINES: Final = ("of-reference", "of-best", "of-other")
 
@@ -52,6 +54,41 @@ def intervals(ranking: Ranking, names: Sequence[str], title: str, unit: str) -> 
         f"{names[row]}: {text.significant(float(ranking.difference[k]))}" for row, k in enumerate(order)
     )
     return chart.markup(f"{title}. {said}")
+
+
+def beside_reference(values: Array, names: Sequence[str], reference: float, axis: str, title: str) -> Any:
+    """Values as distances from the reference, which is a line over all of them, the first at the top."""
+    with_reference = np.append(values, reference)
+    x = Axis.over(with_reference[np.isfinite(with_reference)])
+    margin = 14.0 + 6.2 * max((len(name) for name in names), default=0)
+    height = 52.0 + 22.0 * len(names)
+    chart = Chart(
+        x,
+        Axis(0.0, float(len(names))),
+        width=margin + 380.0,
+        height=height,
+        x_label=axis,
+        margin_left=margin,
+    )
+    if np.isfinite(reference):
+        line = chart.px(reference)
+        chart.svg.line(line, 14.0, line, height - 34.0, "zero of-reference")
+        # Beside the line, on the side that has more room.
+        side, anchor = (4.0, "start") if line < margin + 190.0 else (-4.0, "end")
+        chart.svg.label(line + side, 12.0, "reference", "tick", anchor)
+    for row, (name, value) in enumerate(zip(names, values, strict=True)):
+        y = chart.py(len(names) - row - 0.5)
+        chart.svg.label(margin - 8.0, y + 4.0, name, "tick", "end")
+        if not np.isfinite(value):
+            continue
+        if np.isfinite(reference):
+            low, high = sorted((chart.px(reference), chart.px(float(value))))
+            chart.svg.add("rect", x=low, y=y - 4.0, width=max(high - low, 0.5), height=8.0, class_="interval")
+        chart.svg.add("circle", cx=chart.px(float(value)), cy=y, r=3.5, class_="mark-apart")
+    said = "; ".join(
+        f"{name}: {text.significant(float(value))}" for name, value in zip(names, values, strict=True)
+    )
+    return chart.markup(f"{title}. {said}; reference: {text.significant(reference)}")
 
 
 def scatter(
@@ -96,6 +133,8 @@ def heat_map(
     names = list(columns)
     # Room for the inclined names, and for the label below them.
     bottom = 30.0 + 5.0 * max((len(name) for name in names), default=0)
+    scale = 34.0  # for the scale at the foot
+    bottom += scale
     height = 26.0 + bottom + 22.0 * len(rows)
     x = Axis(0.0, float(len(names)), (), ())
     chart = Chart(
@@ -128,14 +167,31 @@ def heat_map(
             text_anchor="end",
             transform=rotation,
         )
-    chart.svg.label(width - 8.0, height - 3.0, labels[0], "axis-label", "end")
+    chart.svg.label(width - 8.0, height - scale - 3.0, labels[0], "axis-label", "end")
     if np.isfinite(good).any():
+        _scale(chart, (low, high) if least else (-low, -high), height - 20.0)
         row, column = (int(k) for k in np.unravel_index(np.nanargmin(good), good.shape))
         _cell(chart, row, column, "cell-best", None)
         best = f"best {text.significant(float(values[row, column]))} at {names[column]}, {rows[row]}"
     else:
         best = "no value"
     return chart.markup(f"{title}; {best}")
+
+
+def _scale(chart: Chart, ends: tuple[float, float], y: float) -> None:
+    """The shades of a map from the best to the worst value, with numbers below three of them."""
+    x_start, width = 60.0, 26.0
+    for k in range(_SHADES):
+        part = k / (_SHADES - 1)
+        chart.svg.add(
+            "rect", x=x_start + width * k, y=y - 10.0, width=width, height=10.0, class_="heat",
+            fill_opacity=f"{0.92 - 0.86 * part:.3f}",
+        )  # fmt: skip
+        if k % 4 == 0:
+            value = ends[0] + part * (ends[1] - ends[0])
+            chart.svg.label(
+                x_start + width * (k + 0.5), y + 13.0, text.significant(value, 4), "tick", "middle"
+            )
 
 
 def _cell(chart: Chart, i: int, j: int, class_: str, shade: float | None) -> None:
@@ -222,7 +278,7 @@ def daily_fraction(detail: Detail, layer: str, title: str) -> Any:
     names = [str(detail.days[k])[5:] for k in firsts]
     x = Axis(0.0, float(count), tuple(map(float, firsts)), tuple(names))
     y = Axis(0.0, 1.0, (0.0, 0.5, 1.0), ("0", "0.5", "1"))
-    chart = Chart(x, y, width=460.0, height=130.0, y_label="liquid fraction")
+    chart = Chart(x, y, width=460.0, height=144.0, x_label="month-day", y_label="liquid fraction")
     for day in range(count):
         chart.bar(day + 0.1, day + 0.9, float(low[day]), float(high[day]), "model-day")
     full = int((high - low >= 0.5).sum())

@@ -13,14 +13,14 @@ from mascarin._io import atomic, units
 from mascarin.design.evaluation.reductions import BINS
 from mascarin.design.variants.details import REFERENCE, detail, grouped_gains, layers_of, zones_of
 from mascarin.design.variants.results import ALL
-from mascarin.design.variants.runs import UNDEFINED
 from mascarin.figures import text
 from mascarin.pages.design import charts
+from mascarin.pages.design.single_variables import single_variables
+from mascarin.pages.design.words import facts, reference_value, verdict
 from mascarin.pages.frame.template import environment, frame
 
 if TYPE_CHECKING:
     from mascarin.design.variants.details import Detail
-    from mascarin.design.variants.ranking import Ranking
     from mascarin.design.variants.results import DesignResults
     from mascarin.design.variants.variables import Choice
 
@@ -62,11 +62,13 @@ def render(results: DesignResults) -> str:
         HTML.
     """
     details = _details(results)
+    reference = reference_value(results, results.ranked_by, ALL)
     sections = [
         {"id": key, "title": title, "content": content}
         for key, title, content in (
             ("ranking", "Ranking", _rankings(results)),
             ("climates", "What it brings in each climate", _climates(results)),
+            ("single", "One variable at a time", single_variables(results, reference)),
             ("fronts", "Objectives against each other", _fronts(results)),
             ("maps", "Maps of the variables", _maps(results)),
             ("cycling", "How often the material really cycles", _cycling(results, details)),
@@ -86,97 +88,11 @@ def render(results: DesignResults) -> str:
             name=results.inputs.file.name,
             about=results.inputs.file.about,
             negligible=text.significant(100.0 * results.inputs.file.negligible),
-            verdict=_verdict(results),
-            facts=_facts(results),
+            verdict=verdict(results),
+            facts=facts(results),
             sections=sections,
         )
     )
-
-
-def _facts(results: DesignResults) -> list[tuple[str, str, str]]:
-    ranking = results.rankings[ALL]
-    name, unit = results.ranked_by, results.inputs.objective(results.ranked_by).unit
-    best = ranking.order[0]
-    reference = _reference(results, name, ALL)
-    facts = [
-        (name, text.with_unit(float(ranking.mean[best]), unit), "best design, mean of the climates"),
-        ("Designs", text.significant(len(results.designs), 7), f"in {len(results.inputs.sites)} climates"),
-        (
-            "Tied with the best",
-            str(int(ranking.tied.sum()) - 1),
-            f"of {len(ranking.order)} that were compared",
-        ),
-    ]
-    if np.isfinite(reference):
-        facts.insert(1, ("Reference", text.with_unit(reference, unit), "without the choices of this study"))
-    return facts
-
-
-def _verdict(results: DesignResults) -> list[str]:
-    """The answer in sentences."""
-    ranking, name = results.rankings[ALL], results.ranked_by
-    objective = results.inputs.objective(name)
-    order = ranking.order
-    best = results.best[order[0]]
-    mean = float(ranking.mean[order[0]])
-    said = [
-        f"Best for “{name}”: {results.label(best)}, {text.with_unit(mean, objective.unit)} as the mean of "
-        f"{'the climates' if len(results.inputs.sites) > 1 else 'the samples'}."
-    ]
-    reference = _reference(results, name, ALL)
-    if np.isfinite(reference) and reference:
-        change = (mean - reference) / abs(reference)
-        said.append(
-            f"The reference has {text.with_unit(reference, objective.unit)}: a change of "
-            f"{text.fixed(100.0 * change, 1, sign=True)} %."
-        )
-    tied = [results.best[k] for k in order[1:] if ranking.tied[k]]
-    said.append(_ties(results, ranking, tied))
-    for column in [key for key in results.nominal.columns if key.endswith(UNDEFINED)]:
-        worst = float(results.nominal[column].max())
-        if worst > 0.0:
-            said.append(
-                f"The index of “{column.removesuffix(UNDEFINED)}” has no value in up to "
-                f"{text.significant(worst)} h of a run, outside its validity; these hours do not count."
-            )
-    firsts = {results.best[ranked.order[0]] for climate, ranked in results.rankings.items() if climate != ALL}
-    if len(firsts) > 1:
-        said.append("No single design is first in all climates; the table below gives the first of each.")
-    said += [f"Warning: {line}." for line in results.warnings]
-    return said
-
-
-def _ties(results: DesignResults, ranking: Ranking, tied: Sequence[int]) -> str:
-    order = ranking.order
-    if results.inputs.file.uncertainty is None:
-        return (
-            "No uncertainty was given: the ranking is that of the building as described, and differences may "
-            "not hold."
-        )
-    if tied:
-        names = "; ".join(results.label(k) for k in tied[:4]) + ("; …" if len(tied) > 4 else "")
-        return f"{len(tied)} designs cannot be told from it over {ranking.samples} samples: {names}."
-    if len(order) < 2:
-        return "There is no other design."
-    second = order[1]
-    unit = results.inputs.objective(results.ranked_by).unit
-    relative = 100.0 * abs(float(ranking.difference[second])) / max(abs(float(ranking.mean[order[0]])), 1e-12)
-    share = text.fixed(100.0 * float(ranking.better[second]), 0)
-    return (
-        f"The second, {results.label(results.best[second])}, is different over {ranking.samples} samples, by "
-        f"{text.with_unit(abs(float(ranking.difference[second])), unit)} ({text.significant(relative, 2)} "
-        f"%); it is "
-        f"the better one in {share} % of the samples."
-    )
-
-
-def _reference(results: DesignResults, objective: str, climate: str) -> float:
-    values = [
-        results.reference[site.name].get(objective, np.nan)
-        for site in results.inputs.sites
-        if climate in (ALL, site.name)
-    ]
-    return float(np.mean(values))
 
 
 # ------------------------------------------------------------------ ranking
@@ -328,14 +244,9 @@ def _maps(results: DesignResults) -> list[dict[str, Any]]:
         labels = (_axis(across), _axis(down))
         columns = [_column(option.label, option.value, across) for option in across.options]
         rows = [option.label for option in down.options]
-        low, high = (
-            (float(f(grid)) for f in (np.nanmin, np.nanmax)) if np.isfinite(grid).any() else (np.nan, np.nan)
-        )
         maps.append(
             {
                 "title": title,
-                "low": text.significant(low),
-                "high": text.significant(high),
                 "drawing": charts.heat_map(columns, rows, grid, labels, title, least=objective.least),
             }
         )

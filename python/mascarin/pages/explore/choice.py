@@ -9,6 +9,7 @@ import numpy as np
 
 from mascarin._io import units
 from mascarin.building.base.wildcards import is_pattern, matching
+from mascarin.building.outputs.kinds import KINDS
 from mascarin.errors import InputError, SolverError
 from mascarin.figures import text
 
@@ -23,6 +24,50 @@ DEFAULT_SLIDERS: Final = 6
 MAX_SLIDERS: Final = 40
 #: Zones whose operative temperature is drawn without a choice.
 MAX_ZONES: Final = 6
+
+
+def labels(building: Building, names: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Names of curves for readers, and the quantity that those of one unit have in common.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    names : sequence of str
+        Outputs.
+
+    Returns
+    -------
+    dict of str to dict
+        By output ``label``, ``quantity`` (of the axis, empty where curves of its unit have several) and
+        ``unit``.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> labels(box(), ["room.operative_temperature"])["room.operative_temperature"]["label"]
+    'room'
+    """
+    outputs = {name: building.output(name) for name in names}
+    kinds: dict[str, set[str]] = {}
+    for output in outputs.values():
+        kinds.setdefault(output.unit, set()).add(output.kind)
+    readable = {}
+    for name, output in outputs.items():
+        alone = len(kinds[output.unit]) == 1
+        words = text.plain_path(name.rpartition(".")[0] or name) if alone else text.plain_path(name)
+        quantity = KINDS[output.kind].label if alone else "Temperature" if output.unit == "degC" else ""
+        readable[name] = {"label": words, "quantity": quantity, "unit": units.shown(output.unit)}
+    repeated = {entry["label"] for entry in readable.values() if _count(readable, entry) > 1}
+    for name, entry in readable.items():
+        if entry["label"] in repeated:
+            entry["label"] = text.plain_path(name)
+    return readable
+
+
+def _count(readable: Mapping[str, Mapping[str, str]], entry: Mapping[str, str]) -> int:
+    """How many curves of a unit have the label of one."""
+    return sum(e["label"] == entry["label"] and e["unit"] == entry["unit"] for e in readable.values())
 
 
 def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:

@@ -19,6 +19,8 @@
   // --- curves: one chart for each unit -----------------------------------------------------------------------
   let plots = [];
   const groups = new Map();
+  const labels = Object.fromEntries(data.curves.map((curve) => [curve.name, curve.label]));
+  const quantities = Object.fromEntries(data.curves.map((curve) => [curve.unit, curve.quantity]));
   for (const curve of data.curves) groups.set(curve.unit, [...(groups.get(curve.unit) || []), curve.name]);
   function columns(unit, names) {
     const found = [data.times];
@@ -34,13 +36,13 @@
       const lines = [Curves.time];
       names.forEach((name, k) => {
         const color = Curves.style(`--c${k % 8}`);
-        lines.push(Curves.line(name, color, unit, { width: 1.8 }), Curves.line("as described", color, unit, { dash: [4, 4], width: 1, class: "described" }));
+        lines.push(Curves.line(labels[name], color, unit, { width: 1.8 }), Curves.line("as described", color, unit, { dash: [4, 4], width: 1, class: "described" }));
       });
       if (unit === "°C") lines.push(Curves.line("outdoors", Curves.style("--soft"), unit, { width: 1, dash: [1, 3] }));
       const plot = new uPlot({
-        width: target.clientWidth, height: place ? 170 : narrow ? 210 : 320, tzDate: Curves.local, axes: Curves.axes(unit),
+        width: target.clientWidth, height: place ? 170 : narrow ? 210 : 320, tzDate: Curves.local, axes: Curves.axes([quantities[unit], unit].filter(Boolean).join(", ")),
         scales: { x: { time: true } }, cursor: { sync: { key: "explore" }, drag: { x: true, y: false } },
-        legend: { live: !narrow, show: !narrow || place === 0 }, series: lines,
+        legend: { live: !narrow, show: !narrow || place === 0 }, hooks: Curves.quiet, series: lines,
       }, columns(unit, names), target);
       return { plot, unit, names };
     });
@@ -54,15 +56,39 @@
     return made;
   };
   const number = (v) => Curves.shown(v, Math.abs(v) >= 99.95 ? 0 : 1);
+  // Zones whose hours are in the sum; the person decides which of them count.
+  const uncounted = new Set(data.uncounted);
+  const MEASURES = ["hot", "hot_degree_hours", "cold", "cold_degree_hours"];
+  function comfortRow(head, row, was) {
+    const made = cell("tr");
+    head.scope = "row";
+    made.append(head);
+    for (const key of MEASURES) made.append(cell("td", number(row[key]), "n"), cell("td", number(was[key]), "n"));
+    return made;
+  }
+  function zoneHead(zone) {
+    const head = cell("th"), label = cell("label"), box = document.createElement("input");
+    box.type = "checkbox";
+    box.checked = !uncounted.has(zone);
+    box.dataset.zone = zone;
+    box.addEventListener("change", () => {
+      if (box.checked) uncounted.delete(zone); else uncounted.add(zone);
+      fill();
+      document.querySelector(`#comfort input[data-zone="${CSS.escape(zone)}"]`).focus();
+    });
+    label.append(box, ` ${zone.replaceAll("_", " ")}`);
+    head.append(label);
+    return head;
+  }
+  function summed(rows) {
+    const counted = rows.filter(({ zone }) => !uncounted.has(zone));
+    return Object.fromEntries(MEASURES.map((key) => [key, counted.reduce((sum, row) => sum + row[key], 0)]));
+  }
   function fill() {
-    $("comfort").tBodies[0].replaceChildren(...now.comfort.map((row, k) => {
-      const made = cell("tr"), was = reference.comfort[k];
-      const head = cell("th", row.zone);
-      head.scope = "row";
-      made.append(head);
-      for (const key of ["hot", "hot_degree_hours", "cold", "cold_degree_hours"]) made.append(cell("td", number(row[key]), "n"), cell("td", number(was[key]), "n"));
-      return made;
-    }));
+    const rows = now.comfort.map((row, k) => comfortRow(zoneHead(row.zone), row, reference.comfort[k]));
+    const sum = comfortRow(cell("th", "sum of the ticked zones"), summed(now.comfort), summed(reference.comfort));
+    sum.className = "sum";
+    $("comfort").tBodies[0].replaceChildren(...rows, ...(rows.length > 1 ? [sum] : []));
     const most = Math.max(...[...now.energy, ...reference.energy].map(([, heat]) => Math.abs(heat)), 1e-9);
     const shown = now.energy.map((row, k) => [row, reference.energy[k]]).filter(([a, b]) => a[1] || b[1]);
     $("energy").tBodies[0].replaceChildren(...shown.map(([[flow, heat], [, was]]) => {

@@ -15,7 +15,7 @@ from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin.building import load
 from mascarin.building.files.yaml_text import text_of
-from mascarin.building.rooms import rooms
+from mascarin.building.rooms import lived_in, rooms
 from mascarin.errors import InputError
 from mascarin.pages.explore import choice
 from mascarin.pages.run.page import flow_words
@@ -161,15 +161,16 @@ class Session:
 
     def page(self) -> dict[str, Any]:
         """What the page needs once: sliders, times, curves, and the run of the building as it is."""
-        times = self.simulation.index[:: self._stride]
+        times, building = self.simulation.index[:: self._stride], self.simulation.building
         return {
             "sliders": [choice.slider(parameter) for parameter in self.sliders],
             # Local times, as if they were UTC.
             "times": [round(time.timestamp()) for time in times.tz_localize(None)],
             "curves": [
-                {"name": name, "unit": units.shown(self.simulation.building.output(name).unit)}
-                for name in self._curves
+                {"name": name, **words} for name, words in choice.labels(building, self._curves).items()
             ],
+            # Rooms that do not count in the sum of the comfort until someone ticks them: an attic.
+            "uncounted": [zone for zone in rooms(building) if zone not in lived_in(building)],
             "band": list(self.band),
             "reference": self.run({}),
             "outdoors": np.round(self.simulation.weather("air_temperature")[:: self._stride], 3).tolist(),

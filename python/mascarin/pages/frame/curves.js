@@ -31,6 +31,9 @@ const Curves = (() => {
     value: (_, v) => (v === null || v === undefined ? "–" : `${shown(v, 2)} ${unit}`), ...more,
   });
   const time = { label: "time", value: (_, t) => (t === null ? "–" : date(t)) };
+  // Where the cursor is in no curve, the legend has names without values.
+  const idle = (u) => u.root.classList.toggle("idle", u.legend.idx === null || u.legend.idx === undefined);
+  const quiet = { ready: [idle], setLegend: [idle] };
   const local = (t) => new Date(t * 1000);
-  return { axes, date, line, local, shown, style, time };
+  return { axes, date, line, local, quiet, shown, style, time };
 })();

@@ -120,16 +120,15 @@
       const lines = [Curves.time];
       names.forEach((name, k) => {
         const color = Curves.style(`--c${k % 8}`);
-        lines.push(Curves.line(name, color, unit, { width: 1.8 }), Curves.line(`${name}, as sent`, color, unit, { dash: [4, 4], width: 1, class: "described" }));
-        if (name in measured) lines.push(Curves.line(`${name}, measured`, color, unit, { dash: [1, 3], width: 1.8, class: "measured" }));
+        lines.push(Curves.line(outputs[name].label, color, unit, { width: 1.8 }), Curves.line(`${outputs[name].label}, as sent`, color, unit, { dash: [4, 4], width: 1, class: "described" }));
+        if (name in measured) lines.push(Curves.line(`${outputs[name].label}, measured`, color, unit, { dash: [1, 3], width: 1.8, class: "measured" }));
       });
       if (unit === "°C") lines.push(Curves.line("outdoors", Curves.style("--soft"), unit, { width: 1 }));
       const plot = new uPlot({
         width: target.clientWidth, height: number ? 170 : narrow ? 210 : 320, tzDate: Curves.local, axes: Curves.axes(label(unit, names)),
         scales: { x: { time: true } }, cursor: { sync: { key: "live" }, drag: { x: true, y: false } }, legend: { live: !narrow }, series: lines,
-        hooks: { setLegend: [(self) => self.root.classList.toggle("idle", self.legend.idx === null || self.legend.idx === undefined)] },
+        hooks: Curves.quiet,
       }, columns(unit, names), target);
-      plot.root.classList.add("idle");
       return { plot, unit, names };
     });
   }

@@ -232,6 +232,7 @@ class _Page:
         simulation = self._simulation
         compiled, times = simulation.compiled, simulation.index.tz_localize(None)
         seconds = times.to_numpy().astype("datetime64[s]").astype(np.int64)
+        words = choice.labels(simulation.building, self._curves)
         jumps = np.flatnonzero(np.diff(seconds) != simulation.step_seconds) + 1
         return {
             "alphabet": ALPHABET,
@@ -250,6 +251,7 @@ class _Page:
             "outputs": [
                 {
                     "name": name,
+                    "label": words[name]["label"] if name in words else name,
                     "quantity": KINDS[output.kind].label,
                     "unit": units.shown(output.unit),
                     "plain": output.unit,

@@ -15,7 +15,7 @@ from typing import Any, Final
 from mascarin._io import atomic
 from mascarin.errors import InputError
 from mascarin.pages.study.data.folder import read_folder
-from mascarin.pages.study.data.payload import check, tidy
+from mascarin.pages.study.data.payload import check
 from mascarin.pages.study.data.series import Column, Series
 from mascarin.pages.study.html import page
 from mascarin.study_document.document import StudyDocument
@@ -55,7 +55,7 @@ def render(study: StudyDocument | Mapping[str, Any], series: Series) -> str:
     """
     document = StudyDocument.read(study)
     check(document, series)
-    return page(tidy(document), series.thinned())
+    return page(document.without_repeated_periods(), series.thinned())
 
 
 def write_folder(out: Path) -> Path:

@@ -11,6 +11,8 @@ from typing import Any, Final
 from mascarin._io import units
 from mascarin.figures import colors, text
 from mascarin.pages.study.data.labels import (
+    band_name,
+    bands_stated,
     label_of,
     main_model,
     model_label,
@@ -78,6 +80,7 @@ def context(study: StudyDocument, series: Series) -> dict[str, Any]:
         "intro": study.intro,
         "looks": _looks(study, series),
         "observed": {"label": observed.label, "note": observed.note},
+        "sound": study.sound,
         "contradictions": [" ".join(note_words(study, entry)) for entry in study.contradictions],
         "facts": _facts(study),
         "headline": headline(study, series),
@@ -108,9 +111,14 @@ def _looks(study: StudyDocument, series: Series) -> dict[str, Any]:
     return {
         "main": {"label": main, "color": color_of.get(main, "")},
         "nominal": {"label": nominal, "color": color_of[nominal]} if nominal and model != "nominal" else None,
-        "band": any(key.startswith("band/") for key in series.columns),
+        "band": _band(study) if any(key.startswith("band/") for key in series.columns) else "",
         "uncertain": any(info.uncertainty for info in study.sensor_info.values()),
     }
+
+
+def _band(study: StudyDocument) -> str:
+    """The band in the legend."""
+    return band_name(study) if bands_stated(study) else f"{band_name(study)}, not to be used"
 
 
 def _created(raw: str | None) -> str:
@@ -127,7 +135,7 @@ def _facts(study: StudyDocument) -> list[dict[str, str]]:
     if judged:
         met = sum(1 for c in judged if c.passed)
         kind = "pass" if met == len(judged) else "fail"
-        facts.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
+        facts.append(_fact("Criteria met", f"{met} of {len(judged)}", _by(study), kind))
     facts += coverage_facts(study)
     facts += _errors(study)
     fitted = [p for p in study.parameters.values() if p.fitted is not None]
@@ -145,6 +153,11 @@ def _facts(study: StudyDocument) -> list[dict[str, str]]:
             )
         )
     return facts
+
+
+def _by(study: StudyDocument) -> str:
+    """Which model was judged."""
+    return f"by the {model_label(study, main_model(study))} model" if study.models else "by the model"
 
 
 def _fact(name: str, value: str, note: str, kind: str = "") -> dict[str, str]:

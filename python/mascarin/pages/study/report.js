@@ -59,7 +59,7 @@
       scales: { x: { time: true } }, bands,
       cursor: { sync: { key: "report" }, drag: { x: true, y: false }, points: { size: 6 } },
       legend: { live: true },
-      hooks: { drawClear: [tint], setScale: [(u, key) => key === "x" && follow(u)] },
+      hooks: { ...Curves.quiet, drawClear: [tint], setScale: [(u, key) => key === "x" && follow(u)] },
       series: [Curves.time, ...lines],
     }, values, target);
   }

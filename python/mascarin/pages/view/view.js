@@ -300,13 +300,21 @@
   $("show-labels").checked = few;
   $("show-labels").disabled = !few;
 
+  // Letters of the compass behind the building are hidden, as its sun path is.
+  const sight = new THREE.Raycaster(), towards = new THREE.Vector3();
+  function covered(where) {
+    sight.set(camera.position, towards.copy(where).sub(camera.position).normalize());
+    sight.far = camera.position.distanceTo(where);
+    return sight.intersectObjects(parts.filter(({ mesh }) => mesh.visible).map(({ mesh }) => mesh), false).length > 0;
+  }
+
   const projected = new THREE.Vector3();
   function place() {
     const wide = canvas.clientWidth, high = canvas.clientHeight;
     for (const { shown, place: where, className } of named) {
       projected.copy(where).project(camera);
       const on = className === "of-zone" ? $("show-labels").checked : $("show-sun").checked;
-      shown.hidden = !on || projected.z > 1;
+      shown.hidden = !on || projected.z > 1 || (className === "of-compass" && covered(where));
       const x = (projected.x + 1) / 2 * wide, y = (1 - projected.y) / 2 * high;
       shown.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }

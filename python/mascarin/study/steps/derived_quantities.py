@@ -39,6 +39,8 @@ _MOST: Final = 100
 _FEW_RUNS: Final = 32
 _SEED: Final = 17
 #: Title of the table of the report.
+#: Beginning of the names of the latent heat.
+LATENT: Final = "latent heat used per day"
 TITLE: Final = "Heat loss and storage of the calibrated building"
 
 
@@ -182,7 +184,7 @@ def latent_heat_used(
         if not np.isfinite(heats).all() or not any(heats):
             continue
         low, high = np.quantile(heats[1:], [tail, 1.0 - tail])
-        name = f"latent heat used per day, {layer.surface}"
+        name = f"{LATENT}, {layer.surface}"
         quantities.append(
             DerivedQuantity(name, "Wh", heats[0], min(float(low), heats[0]), max(float(high), heats[0]))
         )
@@ -237,14 +239,16 @@ def conductance_table(fit: Calibration) -> TableEntry | None:
 
 def derived_table(found: list[DerivedQuantity]) -> TableEntry:
     """The same as a table of the report."""
+    latent = any(one.name.startswith(LATENT) for one in found)
     return TableEntry(
         title=TITLE,
         caption=(
             "From the description with the estimates: laws by wind at 4 m/s, correlations of surfaces as in "
             "ISO 6946, infiltration, with that of pressure tests, at 4 m/s and 10 K; ventilation and latent "
-            "heat are left out. Solar apertures are those of windows at normal incidence and of opaque outer "
-            "surfaces, without shading; latent heat is the daily range of the liquid fraction, mean of all "
-            "days. The intervals are those of the calibration with the correlations of its parameters; "
+            "heat are left out of conductances. Solar apertures are those of windows at normal incidence and "
+            "of opaque outer surfaces, without shading. "
+            + ("Latent heat is the daily range of the liquid fraction, mean of all days. " if latent else "")
+            + "The intervals are those of the calibration with the correlations of its parameters; "
             "numbers that are not calibrated count as known."
         ),
         columns=["quantity", "value", "95 % low", "95 % high", "unit"],

@@ -28,9 +28,8 @@ _STEP: Final = 1e-3
 #: A coverage below this is mentioned in the notes. [-]
 _LOW_COVERAGE: Final = 0.85
 _SHARED: Final = (
-    "; it includes errors of sensors and model, numbers that are not estimated, the sky of other weather "
-    "where its radiation was not measured, and the spread between the forms of the model, and its middle is "
-    "the expected reading"
+    "; it includes errors of sensors and model, numbers that are not estimated{forms}, and, where its "
+    "radiation was not measured, the sky of other weather; its middle is the expected reading"
 )
 
 
@@ -104,8 +103,10 @@ def prediction_intervals(
     return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage, np.zeros_like(half))
 
 
-def interval_table(study: StudyContext, found: PredictionIntervals) -> TableEntry:
-    """Half-width and coverage of the intervals, as a table of the report."""
+def interval_table(study: StudyContext, found: PredictionIntervals, forms: int = 1) -> TableEntry:
+    """Half-width and coverage of the intervals, as a table of the report; forms of the model are counted."""
+    spread = f", the spread between the {forms} forms of the model" if forms > 1 else ""
+    shared = _SHARED.format(forms=spread) if found.center.any() else ""
     rows = []
     for s, name in enumerate(study.observation.names):
         sensor = study.plan.sensors[name]
@@ -124,7 +125,7 @@ def interval_table(study: StudyContext, found: PredictionIntervals) -> TableEntr
         caption=(
             f"{100.0 * found.confidence:g} % prediction interval of the fitted model. It combines the "
             "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
-            f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The "
+            f"of the model error in the identification period{shared}. The "
             "columns of the periods show the coverage: "
             f"the part of the measured values inside the interval. [%]{_doubt(found)}"
         ),

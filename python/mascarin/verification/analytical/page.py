@@ -51,7 +51,8 @@ def table(rows: Sequence[Check]) -> str:
     def cell(value: float | None) -> str:
         return "" if value is None else f"{value:.6g}"
 
-    head = "| case | quantity | unit | value | expected | min | max | |\n|---|---|---|---|---|---|---|---|\n"
+    names = ("case", "quantity", "unit", "value", "expected", "min", "max", "result")
+    head = f"| {' | '.join(names)} |\n|{'---|' * len(names)}\n"
     lines = [
         f"| {row.name} | {row.quantity} | {row.unit} | {cell(row.value)} | {cell(row.expected)} | "
         f"{cell(row.low)} | {cell(row.high)} | {sentence(row)} |"

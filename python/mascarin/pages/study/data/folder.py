@@ -52,12 +52,33 @@ def read_folder(out: Path) -> tuple[StudyDocument, Series]:
     InputError
         A file is missing or cannot be read.
     """
+    study = read_document(out)
+    table = out / "tables" / "series.csv"
+    return study, read_series(_open(table), str(table), study)
+
+
+def read_document(out: Path) -> StudyDocument:
+    """Read the results of a study without its series.
+
+    Parameters
+    ----------
+    out : Path
+        Folder with ``study.json``, and perhaps ``run.json`` with the facts of its run.
+
+    Returns
+    -------
+    StudyDocument
+        What both files have.
+
+    Raises
+    ------
+    InputError
+        A file is missing or cannot be read.
+    """
     content = read_json(out / "study.json")
     if (out / "run.json").exists():
         content |= read_json(out / "run.json")
-    study = StudyDocument.read(content, str(out / "study.json"))
-    table = out / "tables" / "series.csv"
-    return study, read_series(_open(table), str(table), study)
+    return StudyDocument.read(content, str(out / "study.json"))
 
 
 #: Local clocks may change between the first and the last stamp. [s]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import timedelta
 
 from mascarin.figures import text
@@ -69,6 +69,23 @@ def layout(study: StudyDocument, what: str) -> str:
     """The table of the publication with the same layout, as the end of a caption."""
     table = study.reference.tables.get(what)
     return f" (after {table} of {study.reference.label})" if table else ""
+
+
+def band_name(study: StudyDocument) -> str:
+    """The prediction bands by their confidence; "95 % prediction interval" where none is stated."""
+    shares = sorted({float(band.confidence) for band in study.band.values()}) or [0.95]
+    return f"{' and '.join(f'{100.0 * share:g}' for share in shares)}\u00a0% prediction interval"
+
+
+def bands_stated(study: StudyDocument) -> bool:
+    """Whether all prediction bands are to be used."""
+    return all(band.stated for band in study.band.values())
+
+
+def in_words(names: Sequence[str]) -> str:
+    """Names as a list in a sentence."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def is_published(entries: Mapping[str, ParameterEntry]) -> bool:

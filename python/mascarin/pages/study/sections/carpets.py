@@ -21,7 +21,13 @@ def content(study: StudyDocument, series: Series) -> dict[str, Any] | None:
     sensors = carpets(study, series)
     if not sensors:
         return None
-    return {"sensors": sensors, "scale": legend()}
+    pictures = sum(len(sensor.pictures) for sensor in sensors)
+    return {
+        "sensors": sensors,
+        "scale": legend(),
+        "several": pictures > 1,
+        "gaps": _gaps(study, series),
+    }
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,12 @@ def carpets(study: StudyDocument, series: Series) -> list[SensorCarpet]:
         unit = units.difference(unit_of(study, sensor))
         sensors.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
     return sensors
+
+
+def _gaps(study: StudyDocument, series: Series) -> bool:
+    """Whether an error has no value anywhere."""
+    compared = (series.columns.get(f"observed/{sensor}") for sensor in study.sensor_info)
+    return any(not np.isfinite(column.values).all() for column in compared if column is not None)
 
 
 def _own_carpet(series: Series, error: Array) -> Carpet:

@@ -7,6 +7,7 @@ from typing import Any
 from mascarin._io import units
 from mascarin.figures import text
 from mascarin.pages.study.data.labels import (
+    in_words,
     is_published,
     label_of,
     layout,
@@ -108,7 +109,9 @@ def _model_table(study: StudyDocument) -> dict[str, Any] | None:
             units.bracketed(label_of(study, sensor), units.difference(unit_of(study, sensor)))
             for sensor in sensors
         ]
-        return {"period": period_label(study, period), "labels": labels, "rows": rows}
+        missing = [model_label(study, m) for m in study.models if m not in models]
+        which = f"of all models but {in_words(missing)}" if missing else "of every model"
+        return {"period": period_label(study, period), "labels": labels, "rows": rows, "which": which}
     return None
 
 

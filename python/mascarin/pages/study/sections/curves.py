@@ -13,6 +13,8 @@ from mascarin._io.units import bracketed, shown
 from mascarin.figures import text
 from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.pages.study.data.labels import (
+    band_name,
+    bands_stated,
     label_of,
     main_model,
     model_label,
@@ -67,6 +69,8 @@ def content(study: StudyDocument, curves: Series) -> dict[str, Any] | None:
         "nominal": model_label(study, "nominal") if "nominal" in study.models else "",
         "uncertain": any(info.uncertainty for info in study.sensor_info.values()),
         "foreseen": any(key.startswith("band/") for key in curves.columns),
+        "band": band_name(study),
+        "stated": bands_stated(study),
         "step": text.significant(curves.step / 60.0),
         "timezone": study.timezone,
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any
+from typing import Any, get_args
 
 from mascarin._io import units
 from mascarin.figures import text
@@ -11,6 +11,7 @@ from mascarin.pages.study.data.labels import label_of
 from mascarin.pages.study.data.series import Series, moment
 from mascarin.study_document.analysis import QualityEntry
 from mascarin.study_document.document import StudyDocument
+from mascarin.tables.quality.defects import Defect
 
 TITLE = "Measured data"
 
@@ -48,6 +49,7 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         "periods": periods,
         "sensors": sensors,
         "examined": study.states("quality"),
+        "kinds": ", ".join(text.plain_path(kind) for kind in get_args(Defect)),
         "quality": [_quality(entry) for entry in study.quality],
     }
 
@@ -60,8 +62,17 @@ def _quality(entry: QualityEntry) -> dict[str, Any]:
         "end": _time(entry.end),
         "count": f"{entry.count:,}".replace(",", "\u202f"),
         "detail": entry.detail,
-        "masked": entry.masked,
+        "use": _use(entry),
     }
+
+
+def _use(entry: QualityEntry) -> str:
+    """What became of suspicious values in the comparison."""
+    if not entry.compared:
+        return "not compared"
+    if entry.kind == "missing":
+        return "no value"
+    return "excluded" if entry.masked else "included"
 
 
 def _time(raw: str | None) -> str:

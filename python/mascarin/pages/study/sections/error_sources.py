@@ -7,7 +7,15 @@ from typing import Any
 
 from mascarin._io import units
 from mascarin.figures import text
-from mascarin.pages.study.data.labels import label_of, note_words, parameter_label, period_label, unit_of
+from mascarin.pages.study.data.labels import (
+    in_words,
+    label_of,
+    model_label,
+    note_words,
+    parameter_label,
+    period_label,
+    unit_of,
+)
 from mascarin.pages.study.data.series import Series
 from mascarin.study_document.comparison import CriterionEntry
 from mascarin.study_document.document import StudyDocument
@@ -39,7 +47,18 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     wished = _aimed_scatter(aims, shortfall.period, sensors)
     distinct_units = {units.difference(unit_of(study, sensor)) for sensor in sensors}
     common = distinct_units.pop() if len(distinct_units) == 1 else ""
+    calibrated = {path for path, entry in study.parameters.items() if entry.fitted is not None}
+    changed = [step.path for step in shortfall.steps]
+    weak = [parameter_label(study, path) for path in changed if path in calibrated]
+    free = [parameter_label(study, path) for path in changed if path not in calibrated]
     return {
+        "model": model_label(study, next((aim.model for aim in aims if aim.model), "fitted")),
+        "weak": in_words(weak) if weak else "",
+        "weak_count": len(weak),
+        "free": in_words(free) if free else "",
+        "free_count": len(free),
+        "all": shortfall.all_parameters is not None,
+        "causes": bool(study.diagnosis.causes),
         "aims": _aims(study, aims),
         "met": sum(1 for aim in aims if aim.passed),
         "judged": len(aims),

@@ -26,8 +26,13 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         {"number": n, "label": label_of(study, key), "output": info.output}
         for n, (key, info) in enumerate(sensors.items(), start=1)
     ]
+    drawings = [building_drawings.layers(building, c, sensors) for c in building.constructions]
     return {
         "name": building.name,
+        "melting": any(layer.kind == "pcm" for c in building.constructions for layer in c.layers),
+        "marked": any(building_drawings.SENSOR in drawing for drawing in drawings),
+        "windows": bool(building.windows),
+        "doors": bool(building.doors),
         "view": building_drawings.view(building),
         "rooms": _rooms(study),
         "section": building_drawings.section(building, sensors),
@@ -35,10 +40,10 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         "layers": [
             {
                 "name": text.plain_path(c.name),
-                "drawing": building_drawings.layers(building, c, sensors),
+                "drawing": drawing,
                 "surfaces": _built_so(building, c.name),
             }
-            for c in building.constructions
+            for c, drawing in zip(building.constructions, drawings, strict=True)
         ],
         "zones": [
             {"name": text.plain_path(z.name), "volume": text.with_unit(z.volume, "m3")}
@@ -46,6 +51,7 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         ],
         "surfaces": [_surface(s) for s in building.surfaces],
         "site": [[text.plain_path(str(k)), text.typeset(str(v))] for k, v in building.site],
+        "equipment": [[text.plain_path(name), text.typeset(words)] for name, words in building.equipment],
         "choices": [
             *([text.plain_path(str(k)), text.choice(str(v))] for k, v in building.choices),
             *([["state at the start", text.typeset(study.start)]] if study.start else []),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 from markupsafe import Markup
@@ -29,6 +30,9 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     reference = study.reference
     return {
         "rows": [_row(study, path, entry, with_range=True) for path, entry in entries.items()],
+        "fixed": sum(entry.fitted is None for entry in entries.values()),
+        "stated": any(entry.stated and entry.low is not None for entry in entries.values()),
+        "unstated": _unstated(entries.values()),
         "referenced": referenced and not paper,
         "layout": layout(study, "parameters"),
         "reference": reference.label or "Publication",
@@ -39,6 +43,13 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         "coefficients": _coefficients(study),
         "published": _published(study),
     }
+
+
+def _unstated(entries: Iterable[ParameterEntry]) -> str:
+    """Why an interval is not stated."""
+    if all(entry.stated for entry in entries):
+        return ""
+    return "Intervals that are not stated would be too narrow: the model contradicts its data (head of page)."
 
 
 def _row(

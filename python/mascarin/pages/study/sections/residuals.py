@@ -11,7 +11,7 @@ from mascarin._io import units
 from mascarin.figures import colors, text
 from mascarin.figures.svg.axes import Figure, hour_marks
 from mascarin.figures.svg.chart import Axis, Chart
-from mascarin.pages.study.data.labels import label_of, period_label, unit_of
+from mascarin.pages.study.data.labels import in_words, label_of, period_label, unit_of
 from mascarin.pages.study.data.series import Series
 from mascarin.study_document.analysis import DailyCycleEntry, ResidualEntry
 from mascarin.study_document.document import StudyDocument
@@ -39,7 +39,41 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     if not sensors:
         return None
     keys = [{"color": colors.look(number).color, "label": name} for number, name in enumerate(drivers)]
-    return {"sensors": sensors, "keys": keys, "rows": _statistics(study)}
+    return {
+        "sensors": sensors,
+        "keys": keys,
+        "rows": _statistics(study),
+        "cycle": any(entry.daily_cycle is not None for entry in study.residuals.values()),
+        "judged": judged(study),
+    }
+
+
+def judged(study: StudyDocument) -> list[str]:
+    """Which residuals are white noise, and which follow the weather, in sentences.
+
+    Parameters
+    ----------
+    study : StudyDocument
+        The results.
+    """
+    sentences = []
+    for white, words in ((True, "stays inside its band"), (False, "leaves its band")):
+        names = [label_of(study, s) for s, entry in study.residuals.items() if entry.white is white]
+        if names:
+            sentences.append(f"The cumulative periodogram of {in_words(names)} {words}.")
+    follows = [label_of(study, s) for s, entry in study.residuals.items() if _follows(entry)]
+    if follows:
+        words = "residual of {} correlates" if len(follows) == 1 else "residuals of {} correlate"
+        sentences.append(f"The {words.format(in_words(follows))} with the weather.")
+    elif any(entry.correlation for entry in study.residuals.values()):
+        sentences.append("No residual correlates with the weather.")
+    return sentences
+
+
+def _follows(entry: ResidualEntry) -> bool:
+    """Whether a correlation with the climate is larger than that of white noise."""
+    band = float(entry.correlation_band or 0.0)
+    return any(abs(value) > band for value in entry.correlation.values() if value is not None)
 
 
 def _statistics(study: StudyDocument) -> list[dict[str, Any]]:

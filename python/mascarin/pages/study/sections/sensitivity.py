@@ -53,6 +53,10 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
     ]
     return {
         "index": _index(study),
+        "dots": any(row["identified"] for row in rows),
+        "calibrated": any(entry.fitted is not None for entry in study.parameters.values()),
+        "significant": any(float(entry.threshold) > _MIN_POWER for entry in study.spectra.values()),
+        "peaks": any(entry.peaks for entry in study.spectra.values()),
         "design": study.sensitivity_design,
         "outputs": [label_of(study, output) for output in outputs],
         "rows": rows,
@@ -69,8 +73,11 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
 
 def _index(study: StudyDocument) -> str:
     """Name of the index in the table."""
-    method = dict(row[:2] for row in study.sensitivity_design).get("method", "")
-    return "Relative squared elementary effect" if method == "morris" else "First-order index S1"
+    design = dict(row[:2] for row in study.sensitivity_design)
+    if "index" in design:
+        return f"{design['index'][:1].upper()}{design['index'][1:]}"
+    morris = design.get("method", "") == "morris"
+    return "Relative squared elementary effect" if morris else "First-order index S1"
 
 
 def _influential(

@@ -49,7 +49,8 @@ def content(study: StudyDocument, series: Series) -> dict[str, Any] | None:
         "live": live_words(study),
         "matrix": matrix,
         "parameters": listed,
-        "parameter_count": len(_calibrated(study)),
+        "parameter_title": _parameter_title(study, len(listed)),
+        "stated": any(entry.stated and entry.low is not None for entry in _calibrated(study).values()),
         "blind": curves.last_period(study, series),
         "sensitivity": _sensitivity(study),
         "energy": ledger_bars(study.ledger, narrow=True),
@@ -129,8 +130,8 @@ def next_steps(study: StudyDocument) -> list[str]:
     study : StudyDocument
         The results.
     """
-    steps = [*_causes(study), *_bounds(study), *_largest_miss(study), *_weak_parameter(study)]
-    return steps[:_STEPS]
+    steps = [*_unsound(study), *_causes(study), *_bounds(study), *_largest_miss(study)]
+    return [*steps, *_weak_parameter(study)][:_STEPS]
 
 
 def live_words(study: StudyDocument) -> Markup | None:
@@ -162,6 +163,13 @@ def live_words(study: StudyDocument) -> Markup | None:
         "sliders" if count > 1 else "a slider",
         parameters,
     )
+
+
+def _unsound(study: StudyDocument) -> list[str]:
+    """What to do about runs whose balance does not close."""
+    if study.sound:
+        return []
+    return ["Mend the run that is not sound before anything else: the remarks have its warnings."]
 
 
 def _causes(study: StudyDocument) -> list[str]:
@@ -284,6 +292,16 @@ def _parameters(study: StudyDocument) -> list[dict[str, str]]:
             }
         )
     return rows
+
+
+def _parameter_title(study: StudyDocument, listed: int) -> str:
+    """What the list of parameters is: without indices their order is that of the study."""
+    total = len(_calibrated(study))
+    if total <= listed:
+        return "Calibrated parameters"
+    if not study.sensitivity:
+        return f"The first {listed} of {total} calibrated parameters"
+    return f"The {listed} of {total} calibrated parameters that matter most"
 
 
 def _sensitivity(study: StudyDocument) -> Markup | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from mascarin.study.results.document.equipment import equipment
 from mascarin.study_document.building import (
     AssumptionEntry,
     BuildingEntry,
@@ -49,6 +50,7 @@ def building_entry(building: Building) -> BuildingEntry:
         ],
         surfaces=[_surface(name, surface) for name, surface in building.surfaces.items()],
         windows=[WindowEntry(name=name, surface=window.surface) for name, window in building.windows.items()],
+        equipment=equipment(building),
         doors=[list(path.between) for path in building.air_paths.values() if path.door is not None],
         probes=[
             ProbeEntry(name=name, surface=sensor.surface, depth=float(sensor.depth))

@@ -43,6 +43,11 @@ def error_tables(study: StudyContext, combination: Combination | None) -> list[T
     return [_table_of_forms(combination), *tables] if len(combination.forms) > 1 else tables
 
 
+def mixed_forms(combination: Combination | None) -> int:
+    """How many forms of the model the intervals of parameters and predictions mix."""
+    return 1 if combination is None else len(combination.kept)
+
+
 def error_words(study: StudyContext, combination: Combination | None) -> list[str]:
     """What the identification can tell of the form of the model, and errors that reach their limit."""
     if combination is None:
@@ -171,15 +176,17 @@ def _table_of_forms(combination: Combination) -> TableEntry:
 
 
 def _table_of_sensors(study: StudyContext, combination: Combination) -> TableEntry:
+    entries = _of_sensors(study, combination)
+    gains = any(name.endswith(" gain") for name in entries)
     return TableEntry(
         title="Errors of the sensors",
         caption=(
             "Estimated together with the parameters: what the readings of a sensor have in common beside the "
-            "model, with its standard uncertainty, beside the standard uncertainty that the study states. "
-            "A gain is a ratio."
+            "model, with its standard uncertainty, beside the standard uncertainty that the study states."
+            + (" A gain is a ratio." if gains else "")
         ),
         columns=["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
-        rows=[_row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, combination).items()],
+        rows=[_row_of_sensor(study, name, entry) for name, entry in entries.items()],
         uncertainty={"estimate": "standard uncertainty"},
         section="parameters",
     )

@@ -165,6 +165,7 @@ def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float)
 
 
 def _quality(study: StudyContext) -> list[QualityEntry]:
+    compared = {column for sensor in study.plan.sensors.values() for column in sensor.columns}
     return [
         QualityEntry(
             channel=stretch.channel,
@@ -174,6 +175,7 @@ def _quality(study: StudyContext) -> list[QualityEntry]:
             count=stretch.count,
             detail=stretch.detail,
             masked=study.inputs.leaves_out(stretch),
+            compared=stretch.channel in compared,
         )
         for stretch in study.quality
     ]

@@ -10,7 +10,7 @@ from mascarin.diagnosis.error_sources import explain_missed_aims
 from mascarin.diagnosis.hypotheses import WORDS
 from mascarin.study.results.document.coefficients import coefficients
 from mascarin.study.results.document.comparison import comparison, criterion_entry
-from mascarin.study.results.document.errors import error_entries, error_tables
+from mascarin.study.results.document.errors import error_entries, error_tables, mixed_forms
 from mascarin.study.results.document.estimates import (
     estimates,
     parameters,
@@ -114,7 +114,7 @@ def contradictions(statements: Iterable[Contradiction]) -> list[ContradictionEnt
 def _tables(findings: Findings) -> list[TableEntry]:
     study = findings.context
     tables = [
-        interval_table(study, findings.prediction_intervals),
+        interval_table(study, findings.prediction_intervals, mixed_forms(findings.combination)),
         *error_tables(study, findings.combination),
         transfer_table(study, findings.transfer) if findings.transfer else None,
         derived_table(findings.derived) if findings.derived else None,
@@ -160,8 +160,8 @@ def causes_table(diagnosis: Diagnosis) -> TableEntry:
             "Faults of sensors and of measured inputs, values outside of their ranges, laws and missing heat "
             "flows compete on equal terms, given the errors of the model. p: part of simulated records "
             "without any cause in which some candidate explains as much. Certainty: probability that it is "
-            "this one, if it is one of the candidates. Where it is not told, the remarks list what else it "
-            "may be."
+            "this one, if it is one of the candidates."
+            + (" Where it is not told, the remarks list what else it may be." if _untold(diagnosis) else "")
         ),
         columns=[
             "no.",
@@ -179,6 +179,11 @@ def causes_table(diagnosis: Diagnosis) -> TableEntry:
         significant=["p"],
         section="error_sources",
     )
+
+
+def _untold(diagnosis: Diagnosis) -> bool:
+    """Whether the residuals have a cause that the measurements do not name."""
+    return any(not cause.told and not math.isnan(cause.p) for cause in diagnosis.causes)
 
 
 def _notes(findings: Findings) -> list[NoteEntry]:

@@ -1,0 +1,29 @@
+"""Names for controls of the theme that have none, so that screen readers can say what they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+#: What folds the pages below a section in the table of contents: an arrow without words.
+_TOGGLE: Final = '<summary><span class="toctree-toggle"'
+_NAMED: Final = '<summary aria-label="Pages of this section"><span class="toctree-toggle"'
+
+
+def name_toggles(site: Path) -> int:
+    """Name the toggles of the table of contents in all pages.
+
+    Parameters
+    ----------
+    site : Path
+        Folder of the pages.
+
+    Returns
+    -------
+    int
+        In how many pages they were.
+    """
+    pages = [page for page in site.rglob("*.html") if _TOGGLE in page.read_text(encoding="utf-8")]
+    for page in pages:
+        page.write_text(page.read_text(encoding="utf-8").replace(_TOGGLE, _NAMED), encoding="utf-8")
+    return len(pages)

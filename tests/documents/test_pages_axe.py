@@ -1,0 +1,130 @@
+"""Every kind of page: names of controls, contrast, order of headings, landmarks, and no width that scrolls.
+
+The report, the page of Standard 140, the live page and the comparison with EnergyPlus have the same check in
+their own files.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+import design_support
+import mascarin as mc
+from mascarin import cli
+from mascarin.examples import FOLDER, box, box_climate
+from mascarin.pages.explore import Server, Session
+from mascarin.pages.explore.page import render as explore_page
+from mascarin.pages.run.page import Notes
+from mascarin.pages.run.page import render as run_page
+from mascarin.pages.view import write as write_view
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytestmark = pytest.mark.browser
+
+HOUSE: Final = FOLDER / "reunion_house" / "building.yaml"
+#: Width [px] and colors.
+LOOKS: Final = [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
+
+
+def accessible(page: Page, width: int, scheme: Any) -> list[str]:
+    """What axe finds in an open page, and a page that is wider than the screen."""
+    page.emulate_media(color_scheme=scheme)
+    page.set_viewport_size({"width": width, "height": 800})
+    page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
+    response = Axe().run(page).response
+    assert response["passes"]
+    faults = [f"{fault['id']}: {fault['nodes'][0]['target']}" for fault in response["violations"]]
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    return faults if wide <= width else [*faults, f"{wide} px wide on {width} px"]
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """A page of each kind that is a file."""
+    folder = tmp_path_factory.mktemp("pages")
+    write_view(mc.load(HOUSE), folder / "view.html")
+    notes = Notes(rooms=["room"], warnings=["zones.room: a warning"])
+    (folder / "run.html").write_text(run_page(mc.simulate(box(), box_climate(), step="1h"), notes), "utf-8")
+    study = folder / "study"
+    study.mkdir()
+    assert cli.main(["design", str(design_support.written(study)), "-o", str(folder / "designs")]) == 0
+    return {
+        "view": folder / "view.html",
+        "run": folder / "run.html",
+        "design": folder / "designs" / "report.html",
+    }
+
+
+@pytest.mark.parametrize(("width", "scheme"), LOOKS)
+@pytest.mark.parametrize("kind", ["view", "run", "design"])
+def test_axe_finds_nothing(page: Page, files: dict[str, Path], kind: str, width: int, scheme: str) -> None:
+    page.goto(files[kind].as_uri())
+    page.wait_for_load_state("load")
+    assert accessible(page, width, scheme) == []
+
+
+def test_axe_finds_nothing_in_suites(page: Page, tmp_path: Path, data_dir: Path) -> None:
+    assert data_dir.is_dir()
+    assert cli.main(["suites", "etna", "-o", str(tmp_path / "out")]) == 0
+    page.goto((tmp_path / "out" / "suites.html").as_uri())
+    for width, scheme in LOOKS:
+        assert accessible(page, width, scheme) == []
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    """Sliders of a house with a room that does not count at first."""
+    climate = mc.Climate.from_epw("shipped:tampa")
+    site = {"latitude": 27.97, "longitude": -82.53, "altitude": 6.0, "timezone": "UTC-5"}
+    plain = mc.load(HOUSE).to_dict()
+    house = mc.Building.from_dict({**plain, "site": {**plain["site"], **site}})
+    options = {"start": "07-01", "end": "07-03", "step": "30min"}
+    session = Session(house, climate, parameters=["surfaces.roof_*.outside.absorptance"], options=options)
+    made = Server(
+        lambda token: explore_page(session, token, tmp_path / "saved.yaml"),
+        {"/run": lambda content: session.run(content["values"], content["band"])},
+    )
+    thread = threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02})
+    thread.start()
+    yield made
+    made.shutdown()
+    made.server_close()
+    thread.join()
+
+
+def test_axe_finds_nothing_in_explore_and_its_sums_count_what_is_ticked(
+    browser: Browser, server: Server
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    page.goto(server.address)
+    page.wait_for_selector("body[data-ready]")
+    # Names for readers, and no values in the legend while the cursor is elsewhere.
+    legend = page.locator("#plots .u-legend th").all_inner_texts()
+    assert {"living", "bedroom", "attic", "outdoors", "as described"} <= set(legend)
+    values = page.locator("#plots .u-legend .u-value").all()
+    assert not any(value.is_visible() for value in values)
+    assert not page.locator("#plots .u-legend .u-series").first.is_visible()
+
+    def hours(row: str) -> float:
+        cells = page.locator(f"#comfort tr:has-text('{row}') td").all_inner_texts()
+        return float(cells[0].replace("−", "-"))
+
+    boxes = {zone: page.locator(f"#comfort input[data-zone='{zone}']") for zone in mc.load(HOUSE).zones}
+    ticked = {zone: box.is_checked() for zone, box in boxes.items()}
+    assert ticked == {"living": True, "bedroom": True, "attic": False}
+    assert hours("sum of the ticked") == pytest.approx(hours("living") + hours("bedroom"), abs=0.11)
+    boxes["attic"].check()
+    every = hours("living") + hours("bedroom") + hours("attic")
+    assert hours("sum of the ticked") == pytest.approx(every, abs=0.6)  # whole hours above 99.95
+    for width, scheme in LOOKS:
+        assert accessible(page, width, scheme) == []
+    context.close()
