@@ -49,11 +49,11 @@ def lived_in(building: Building) -> list[str]:
     >>> lived_in(load(FOLDER / "reunion_house" / "building.yaml"))
     ['living', 'bedroom']
     """
-    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    with_window = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
     names = [
         name
         for name in rooms(building)
-        if name in lit
+        if name in with_window
         or building.zones[name].gains
         or building.zones[name].heating is not None
         or building.zones[name].cooling is not None
