@@ -15,6 +15,8 @@ from mascarin.pages.study import render
 from mascarin.pages.study.data.series import Column, Series
 from mascarin.pages.study.figures.comparison_data import compared_sensors
 from mascarin.pages.study.page import context, coverage_facts
+from mascarin.pages.study.sections import data
+from mascarin.study_document.analysis import QualityEntry
 from mascarin.study_document.document import StudyDocument
 from test_report import Outline
 
@@ -148,3 +150,24 @@ def test_a_report_of_other_data_claims_nothing_of_an_example() -> None:
     words = " ".join(Outline(render(study | {"title": "Mine", "sources": []}, series)).text)
     for name in ("LGI", "Reunion", "Guichard", "the paper"):
         assert name not in words
+
+
+def test_suspicious_values_of_one_column_and_kind_share_a_row() -> None:
+    def entry(day: int, count: int, kind: str = "stuck", *, masked: bool = False) -> QualityEntry:
+        start, end = (f"2024-01-{day:02}T{hour:02}:00" for hour in (6, 8))
+        detail = f"{day} degC"
+        return QualityEntry(
+            channel="T", kind=kind, start=start, end=end, count=count, detail=detail, masked=masked
+        )
+
+    entries = [entry(1, 8), entry(3, 1020), entry(5, 9), entry(6, 4, "spike"), entry(7, 3, masked=True)]
+    study = StudyDocument(quality=entries)
+    content = data.content(study, Series("2024-01-01", 60.0))
+    assert content is not None
+    rows = [(r["kind"], r["start"], r["end"], r["count"], r["detail"], r["use"]) for r in content["quality"]]
+    longest = "3 times; the longest from 3 Jan 2024 06:00, 1\u202f020 values: 3 degC"
+    assert rows == [
+        ("stuck", "1 Jan 2024 06:00", "5 Jan 2024 08:00", "1\u202f037", longest, "included"),
+        ("spike", "6 Jan 2024 06:00", "6 Jan 2024 08:00", "4", "6 degC", "included"),
+        ("stuck", "7 Jan 2024 06:00", "7 Jan 2024 08:00", "3", "7 degC", "excluded"),
+    ]

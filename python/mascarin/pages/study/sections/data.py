@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any, get_args
 
@@ -50,20 +51,42 @@ def content(study: StudyDocument, _series: Series) -> dict[str, Any] | None:
         "sensors": sensors,
         "examined": study.states("quality"),
         "kinds": ", ".join(text.plain_path(kind) for kind in get_args(Defect)),
-        "quality": [_quality(entry) for entry in study.quality],
+        "quality": _quality(study.quality),
     }
 
 
-def _quality(entry: QualityEntry) -> dict[str, Any]:
-    return {
-        "channel": entry.channel,
-        "kind": text.plain_path(entry.kind),
-        "start": _time(entry.start),
-        "end": _time(entry.end),
-        "count": f"{entry.count:,}".replace(",", "\u202f"),
-        "detail": entry.detail,
-        "use": _use(entry),
-    }
+def _quality(entries: Sequence[QualityEntry]) -> list[dict[str, Any]]:
+    """One row for the suspicious values of one column, kind and use; the table of the results has all."""
+    groups: dict[tuple[str, str, str], list[QualityEntry]] = {}
+    for entry in entries:
+        groups.setdefault((entry.channel, entry.kind, _use(entry)), []).append(entry)
+    return [
+        {
+            "channel": channel,
+            "kind": text.plain_path(kind),
+            "start": _time(group[0].start),
+            "end": _time(group[-1].end),
+            "count": _count(sum(entry.count for entry in group)),
+            "detail": _detail(group),
+            "use": use,
+        }
+        for (channel, kind, use), group in groups.items()
+    ]
+
+
+def _detail(group: Sequence[QualityEntry]) -> str:
+    """What is known of suspicious values; of several stretches of them that of the longest."""
+    if len(group) == 1:
+        return group[0].detail
+    longest = max(group, key=lambda entry: entry.count)
+    return (
+        f"{len(group)} times; the longest from {_time(longest.start)}, {_count(longest.count)} values: "
+        f"{longest.detail}"
+    )
+
+
+def _count(number: int) -> str:
+    return f"{number:,}".replace(",", "\u202f")
 
 
 def _use(entry: QualityEntry) -> str:
