@@ -289,7 +289,7 @@ def _hysteresis(case: Numbers) -> str:
     }
     rows = [[label, f"{case['balance'][way]:+.3f} MJ/m2"] for way, label in ways.items()]
     most = ["at most stored between two states", f"{case['capacity']:.3f} MJ/m2"]
-    return page.table(["", "heat that went in and did not come out"], [*rows, most])
+    return page.table(["program", "heat that went in and did not come out"], [*rows, most])
 
 
 def _thin_sheet(case: Numbers) -> str:
@@ -304,7 +304,7 @@ def _thin_sheet(case: Numbers) -> str:
         ["air of the gap against Mascarin, rms", f"{case['apart']['gap air']:.2f} K"],
         ["air of the gap against Mascarin, largest hourly mean", f"{case['largest_gap']:.1f} K"],
     ]
-    return page.table(["", "EnergyPlus, finite differences everywhere, 3 min"], rows)
+    return page.table(["quantity", "EnergyPlus, finite differences everywhere, 3 min"], rows)
 
 
 def _grid(case: Numbers) -> str:
@@ -324,7 +324,7 @@ def _grid(case: Numbers) -> str:
     ]
     own = ["Mascarin", str(case["ours"]["nodes"]), "", f"{case['ours']['balance']:+.3f} MJ/m2"]
     return page.table(
-        ["", "nodes in 5.26 mm of PCM", "PCM top, rms", "went in and did not come out"], [own, *rows]
+        ["program", "nodes in 5.26 mm of PCM", "PCM top, rms", "went in and did not come out"], [own, *rows]
     )
 
 

@@ -126,7 +126,7 @@ def test_an_output_is_a_row_of_one_file() -> None:
 def package(copy: Path) -> Path:
     """The Python package of the copy with its engine; the folder to import from."""
     # A little optimised: unoptimised, a stage does not fit into the stack of Python's threads. Otherwise as
-    # the library for users, which also has less to compile.
+    # the library for a first try, which has less to compile.
     settings = {
         "OPT_LEVEL": "1",
         "CODEGEN_UNITS": "16",
@@ -134,7 +134,7 @@ def package(copy: Path) -> Path:
         "OVERFLOW_CHECKS": "false",
     }
     profile = {f"CARGO_PROFILE_DEV_{key}": value for key, value in settings.items()}
-    cargo(copy, "build", "--package", "mascarin-python", **profile)
+    cargo(copy, "build", "--package", "mascarin-python", "--no-default-features", **profile)
     library = next(
         TARGET / "debug" / name
         for name in ("lib_engine.so", "lib_engine.dylib", "_engine.dll")

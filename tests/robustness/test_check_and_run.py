@@ -25,6 +25,7 @@ from mascarin.errors import InputError, SolverError
 #: Refusals that depend on the period or the weather: check knows neither.
 OF_THE_PERIOD = (
     "at the end of the step from",
+    "in the step from",
     "climate: ",
     "measurements: ",
     "period: ",
