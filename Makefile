@@ -150,7 +150,7 @@ $(ENVIRONMENT): constraints.lock | $(PY)
 	@touch $@
 
 $(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
-	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop --release --quiet
+	PIP_QUIET=1 PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop --release --quiet
 	@touch $@
 
 # Of the profile of the engine's tests, on all cores, with fewer kinds of lanes: a run takes three times as long. `make build`
@@ -158,7 +158,7 @@ $(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
 FIRST_ENGINE := --profile tests --no-default-features
 $(FIRST): pyproject.toml constraints.lock $(RUST_SOURCES)
 	@$(MAKE) --no-print-directory --jobs=2 $(ENVIRONMENT) first-engine
-	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop $(FIRST_ENGINE) --quiet
+	PIP_QUIET=1 PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop $(FIRST_ENGINE) --quiet
 	@touch $@
 	@echo "The engine is built for a first try: 'make build' makes it three times as fast."
 
