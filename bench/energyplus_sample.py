@@ -36,7 +36,7 @@ from energyplus_small import WEATHER, Array
 import mascarin as mc
 from mascarin.energyplus import Conversion, convert
 from mascarin.energyplus.comparison.run_folder import TITLES, rms
-from mascarin.energyplus.comparison.series import read_series
+from mascarin.energyplus.comparison.series import may_lack_columns, read_series
 from mascarin.energyplus.writing import level_lines
 from mascarin.errors import InputError, MascarinError
 
@@ -96,7 +96,9 @@ def run_energyplus(file: Path, folder: Path, command: str, steps: int = STEPS) -
         )
     except subprocess.TimeoutExpired:
         (folder / "refused").write_text(f"EnergyPlus: longer than {LIMIT} s", encoding="utf-8")
-    for name in ("eso", "mtr", "mtd", "audit", "bnd", "shd", "mdd", "rdd", "dxf"):
+    table = folder / "eplusout.csv"
+    unread = ("mtr", "mtd", "audit", "bnd", "shd", "mdd", "rdd", "dxf")
+    for name in unread if table.is_file() and may_lack_columns(table) else ("eso", *unread):
         (folder / f"eplusout.{name}").unlink(missing_ok=True)
     return _refusal(folder)
 

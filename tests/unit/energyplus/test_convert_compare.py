@@ -126,6 +126,23 @@ def test_time_steps_and_the_record_of_a_run_say_the_same(model: Path, weather: P
         (folder / "eplusout.eso").write_text("\n".join([*record, "End of Data"]), encoding="utf-8")
 
 
+def test_a_full_table_is_not_taken_for_all_results(model: Path, weather: Path, folder: Path) -> None:
+    file = folder / "eplusout.csv"
+    lines = file.read_text(encoding="utf-8").splitlines()
+    more = 255 - lines[0].count(",")
+    heads = "".join(f",X{k}:Surface Inside Face Temperature [C](Hourly)" for k in range(more))
+    file.write_text(
+        "\n".join([lines[0] + heads, *(line + ",1" * more for line in lines[1:])]), encoding="utf-8"
+    )
+    conversion = convert(model, weather=weather)
+    with pytest.raises(InputError, match=r"255 columns of results, as many as ReadVarsESO writes"):
+        compare(conversion, folder, weather)
+    # What has all results is read in its place.
+    (folder / "eplusout.eso").write_text("no record", encoding="utf-8")
+    with pytest.raises(InputError, match="found no hourly .Zone Mean Air Temperature"):
+        compare(conversion, folder, weather)
+
+
 def test_design_days_before_the_run_period_are_passed_over(model: Path, weather: Path, folder: Path) -> None:
     file = folder / "eplusout.csv"
     head, *rows = file.read_text(encoding="utf-8").splitlines()

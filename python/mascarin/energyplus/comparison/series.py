@@ -24,6 +24,8 @@ _HEADER: Final = re.compile(
 _STAMP: Final = re.compile(r"^\s*(\d{1,2})/(\d{1,2})\s+(\d{1,2}):(\d{2}):\d{2}\s*$")
 _ENTRY: Final = re.compile(r"^(\d+),\d+,([^,]+),(.+ \[[^\]]*\]) !(Hourly|TimeStep|Zone TimeStep)\b")
 _HOUR: Final = 60
+#: Columns that ReadVarsESO writes beside the time unless it is called with ``unlimited``.
+MOST_COLUMNS: Final = 255
 #: Minutes before each month of a year of 365 days.
 _BEFORE: Final = np.cumsum([0, 31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30]) * 1440
 
@@ -76,10 +78,16 @@ def read_series(folder: Path, titles: frozenset[str]) -> list[RunPeriod]:
             "Run EnergyPlus with: energyplus -r -w EPW -d FOLDER MODEL"
         )
     table, record = folder / "eplusout.csv", folder / "eplusout.eso"
-    if table.is_file():
+    full = table.is_file() and may_lack_columns(table)
+    if table.is_file() and not full:
         return list(_of_table(require_regular(table), titles))
     if record.is_file():
         return list(_of_record(require_regular(record), titles))
+    if full:
+        raise InputError(
+            f"{table}: found {MOST_COLUMNS} columns of results, as many as ReadVarsESO writes; expected all "
+            "of them. Keep eplusout.eso beside it, which is read then, or run: ReadVarsESO NAME.rvi unlimited"
+        )
     raise InputError(
         f"{folder}: found neither eplusout.csv nor eplusout.eso; expected results of EnergyPlus. Run it by: "
         "energyplus -r -w EPW -d FOLDER MODEL"
@@ -87,6 +95,12 @@ def read_series(folder: Path, titles: frozenset[str]) -> list[RunPeriod]:
 
 
 # ------------------------------------------------------------------ eplusout.csv
+
+
+def may_lack_columns(table: Path) -> bool:
+    """Whether a table of ReadVarsESO is full, so that further columns may be left out without a word."""
+    with require_regular(table).open(encoding="latin-1") as lines:
+        return lines.readline().count(",") == MOST_COLUMNS
 
 
 def _of_table(file: Path, titles: frozenset[str]) -> Iterator[RunPeriod]:
