@@ -139,7 +139,7 @@ def test_a_full_table_is_not_taken_for_all_results(model: Path, weather: Path, f
         compare(conversion, folder, weather)
     # What has all results is read in its place.
     (folder / "eplusout.eso").write_text("no record", encoding="utf-8")
-    with pytest.raises(InputError, match="found no hourly .Zone Mean Air Temperature"):
+    with pytest.raises(InputError, match="found no hourly 'Zone Mean Air Temperature"):
         compare(conversion, folder, weather)
 
 
