@@ -169,11 +169,11 @@ def _fields(
     return {key: value for key, value in fields.items() if value is not None}
 
 
-def _fitted(value: Any, told: dict[str, Any]) -> Any:
+def _fitted(value: Any, schema: dict[str, Any]) -> Any:
     """A value with the words and kinds of numbers of the schema."""
-    kinds = told.get("anyOf", [told])
+    kinds = schema.get("anyOf", [schema])
     if isinstance(value, list):
-        inner = told.get("items", {}).get("properties", {})
+        inner = schema.get("items", {}).get("properties", {})
         return [
             {key: _fitted(part, inner.get(key, {})) for key, part in row.items() if part not in (None, "")}
             if isinstance(row, dict)
@@ -321,9 +321,9 @@ def main() -> None:
         parser.add_argument(key, type=Path)
     options = parser.parse_args()
     year = ((date(2017, 1, 1), date(2017, 12, 31)),)
-    made = prepared(options.model, options.weather, year, 4)
-    options.out.write_text(json.dumps(made.model, indent=1), encoding="utf-8")
-    print("\n".join(f"{number:5d} {key}: not in 25.2" for key, number in made.dropped.items()))
+    preparation = prepared(options.model, options.weather, year, 4)
+    options.out.write_text(json.dumps(preparation.model, indent=1), encoding="utf-8")
+    print("\n".join(f"{number:5d} {key}: not in 25.2" for key, number in preparation.dropped.items()))
 
 
 if __name__ == "__main__":

@@ -80,15 +80,15 @@ def run_energyplus(file: Path, folder: Path, command: str, steps: int = STEPS) -
         return _refusal(folder)
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        made = prepared(file, WEATHER, PERIODS, steps)
+        preparation = prepared(file, WEATHER, PERIODS, steps)
     except Exception as error:  # files that the parser does not read, or that lack a name
         (folder / "refused").write_text(f"not prepared: {type(error).__name__}: {error}", encoding="utf-8")
         return _refusal(folder)
-    if not made.model.get("Zone"):
+    if not preparation.model.get("Zone"):
         (folder / "refused").write_text("no zones", encoding="utf-8")
         return _refusal(folder)
-    model.write_text(json.dumps(made.model, indent=1), encoding="utf-8")
-    (folder / "dropped.json").write_text(json.dumps(made.dropped), encoding="utf-8")
+    model.write_text(json.dumps(preparation.model, indent=1), encoding="utf-8")
+    (folder / "dropped.json").write_text(json.dumps(preparation.dropped), encoding="utf-8")
     arguments = [*shlex.split(command), str(model), str(WEATHER), str(folder)]
     try:
         subprocess.run(  # noqa: S603 - the command of the user

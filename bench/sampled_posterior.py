@@ -92,9 +92,9 @@ def compare(path: Path) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
     if sys.argv[1] == "wall":
-        with tempfile.TemporaryDirectory() as made:
-            wall(Path(made))
-            compare(Path(made) / "study.yaml")
+        with tempfile.TemporaryDirectory() as folder:
+            wall(Path(folder))
+            compare(Path(folder) / "study.yaml")
     elif sys.argv[1] == "flexhouse":
         flexhouse(Path(sys.argv[2]), Path(sys.argv[3]))
         compare(Path(sys.argv[3]) / "study.yaml")

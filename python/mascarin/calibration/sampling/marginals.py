@@ -53,8 +53,8 @@ class Marginals:
         Examples
         --------
         >>> sample = np.random.default_rng(1).uniform(2.0, 4.0, (10000, 1))
-        >>> found = Marginals.of_sample(np.full(1, 2.0), np.full(1, 4.0), sample)
-        >>> bool(abs(found.first[0] - 1.0) < 0.05), found.values(np.zeros(1)).round(1)
+        >>> marginals = Marginals.of_sample(np.full(1, 2.0), np.full(1, 4.0), sample)
+        >>> bool(abs(marginals.first[0] - 1.0) < 0.05), marginals.values(np.zeros(1)).round(1)
         (True, array([3.]))
         """
         share = np.clip((sample - low) / (high - low), _NEAREST, 1.0 - _NEAREST)
