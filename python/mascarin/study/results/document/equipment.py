@@ -24,7 +24,8 @@ def equipment(building: Building) -> list[list[str]]:
     >>> equipment(load(FOLDER / "reunion_house" / "building.yaml"))[0]
     ['window jalousie_living_north', '3.6 m2 in living_north, glazing clear']
     """
-    return [list(row) for part in (_windows, _vents, _paths, _of_zones, _schedules) for row in part(building)]
+    parts = (_windows, _vents, _openings, _paths, _units, _of_zones, _heat_sources, _schedules)
+    return [list(row) for part in parts for row in part(building)]
 
 
 def _windows(building: Building) -> Iterator[tuple[str, str]]:
@@ -39,6 +40,23 @@ def _vents(building: Building) -> Iterator[tuple[str, str]]:
         where = f"between {' and '.join(vent.between)}" if vent.between else f"of {vent.zone} to outdoors"
         control = "" if vent.control is None else ", controlled"
         yield f"vent {name}", f"{_area(vent.area)}{where}{_schedule(vent.schedule)}{control}"
+
+
+def _openings(building: Building) -> Iterator[tuple[str, str]]:
+    for name, opening in building.openings.items():
+        yield f"opening {name}", f"of {opening.zone} to outdoors{_schedule(opening.schedule)}"
+
+
+def _units(building: Building) -> Iterator[tuple[str, str]]:
+    for name, unit in building.ventilation_units.items():
+        flows = (("supply to", unit.supply), ("exhaust from", unit.exhaust))
+        yield f"ventilation unit {name}", ", ".join(f"{way} {' and '.join(of)}" for way, of in flows if of)
+
+
+def _heat_sources(building: Building) -> Iterator[tuple[str, str]]:
+    for name, source in building.heat_sources.items():
+        means = "electric" if source.electric is not None else "water"
+        yield f"heat source {name}", f"{means}, in {source.surface} after {source.after}"
 
 
 def _paths(building: Building) -> Iterator[tuple[str, str]]:
