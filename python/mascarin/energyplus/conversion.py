@@ -130,7 +130,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     air = usual_temperatures(context, zones)
     describe_gains(context, zones, seasonal_temperatures(context, zones))
     describe_water(context, zones, air)
-    describe_air(context, zones, all_surfaces, inside)
+    describe_air(context, zones, all_surfaces, inside, air)
     by_name = {surface.item.name.casefold(): surface for surface in all_surfaces}
     describe_conditioning(context, zones, Envelope(by_name, inside, surfaces))
     describe_enclosures(context, _built(context), zones)
