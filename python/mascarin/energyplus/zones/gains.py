@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.context import Context, Vapour
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
@@ -147,6 +147,7 @@ def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
+    whole = combined(lambda presence, heat: count * presence * heat, present, activity)
     if share is None:
         power = combined(
             lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
@@ -156,11 +157,14 @@ def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
         context.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {used} is used, about 4 % less for each kelvin above it; moisture is left out",
+            f"that at {used} is used, about 4 % less for each kelvin above it"
+            + ("" if context.has_vapour else "; moisture is left out"),
         )
     else:
         sensible_share = share
         power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
+    latent = combined(lambda total, heat: max(total - heat, 0.0), whole, power)
+    context.vapour.append(Vapour(item, zone.name, latent))
     return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
 
 
@@ -209,9 +213,9 @@ def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Z
     level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
     latent, radiant, lost = (item.number(f"fraction_{part}") or 0.0 for part in ("latent", "radiant", "lost"))
     if latent > 0.0:
-        context.findings.approximated(
-            item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
-        )
+        context.vapour.append(Vapour(item, zone.name, combined(lambda share: level * share * latent, on)))
+        moisture = "a source of vapour" if context.has_vapour else "moisture is left out"
+        context.findings.approximated(item, f"{latent:.0%} latent heat", f"{moisture}: it heats nothing")
     remaining_share = max(1.0 - latent - lost, 0.0)
     power = combined(lambda share: level * share * remaining_share, on)
     return Heat(item, item.name, power, min(radiant / remaining_share, 1.0) if remaining_share > 0.0 else 0.0)
