@@ -48,7 +48,7 @@ def discharge(cold: float, warm: float, share: float = 1.0) -> float:
     2.0
     """
     low, high = cold + _ZERO, warm + _ZERO
-    density_factor = (2.0 / (1.0 + (high / low) ** (1.0 / 3.0))) ** 1.5
+    density_factor = math.pow(2.0 / (1.0 + math.cbrt(high / low)), 1.5)
     flow_factor = _FLOW_FACTORS[warm - cold > _LARGE_DIFFERENCE]
     density = _SITE_TEMPERATURE / low
     # 1 - rho_w/rho_c is dT/T of the warm zone; the door has the mean of both.
@@ -97,7 +97,7 @@ def describe_doors(context: Context, zones: dict[str, Zone], air: Mapping[str, f
         context.findings.approximated(
             item,
             "a flow that EnergyPlus changes at a difference of 11 K",
-            f"the factor {factor:g} at all times, that of {warm - cold:.1f} K between the usual temperatures: "
+            f"the factor {factor:g} at all times, that of {warm - cold:.1f} K between usual temperatures: "
             f"{'less' if factor < 1.0 else 'more'} air by a third on the other side of 11 K",
         )
 

@@ -142,6 +142,12 @@ def sensible(activity: float, air: float) -> float:
     return min(max(heat, 0.0), activity)
 
 
+def _slope(activity: float, air: float) -> float:
+    """Relative change of the sensible heat of a person for a kelvin. [1/K]"""
+    middle = sensible(activity, air)
+    return (sensible(activity, air + 0.5) - sensible(activity, air - 0.5)) / middle if middle > 0.0 else 0.0
+
+
 def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
@@ -153,11 +159,13 @@ def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
             lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
         )
         low, high = min(air.values), max(air.values)
+        slopes = (_slope(max(activity.mean(), 1.0), room) for room in (low, high))
+        change = " to ".join(dict.fromkeys(f"{100.0 * slope:+.0f}" for slope in slopes))
         used = f"{low:.1f} degC" if low == high else f"{low:.1f} to {high:.1f} degC, by season,"
         context.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {used} is used, about 4 % less for each kelvin above it"
+            f"that at {used} is used; in EnergyPlus it changes by {change} % for each kelvin of difference"
             + ("" if context.has_vapour else "; moisture is left out"),
         )
     else:

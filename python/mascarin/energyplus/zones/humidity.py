@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any, Final
 
 from mascarin.energyplus.model.context import Context, Section
@@ -22,7 +23,7 @@ _POINTS: Final = (0.0, 0.02, 0.05, *(round(0.1 * k, 1) for k in range(1, 8)), 0.
 #: depth).
 _USUAL: Final = (24.0, 0.45, 101325.0)
 _PERIODS: Final = (24 * 3600.0, 21 * 24 * 3600.0)
-#: Enthalpy of vapour by which EnergyPlus divides latent heat: at 0 degC [J/kg], and by temperature [J/(kg K)].
+#: Enthalpy of vapour by which EnergyPlus divides latent heat: at 0 degC [J/kg], by temperature [J/(kg K)].
 _ENTHALPY: Final = (2500940.0, 1858.95)
 #: Gas constant of dry air [J/(kg K)], and the temperature of standard air [K].
 _GAS, _STANDARD_AIR = 287.055, 288.15
@@ -90,16 +91,16 @@ def _materials(context: Context) -> tuple[Section, dict[str, float]]:
         if coating > 0.0:
             coatings[name] = coating
         shorter = (
-            f". Its layers of {1e3 * (surface + deep):.3g} mm are deeper than its thickness: depths are shorter "
-            "here, contents and resistance larger by as much, which stores and conducts the same"
+            f". Its layers of {1e3 * (surface + deep):.3g} mm are deeper than the material: depths are "
+            "shorter here, contents and resistance larger by as much: the same is stored and conducted"
             if surface + deep > thickness
             else ""
         )
         context.findings.approximated(
             item,
             "vapour in the skin of surfaces",
-            "carried over without its heat of sorption. A wall that is warmed gives off vapour here, and keeps "
-            f"it in EnergyPlus: 5 to 7 % relative humidity (docs/humidity.md){shorter}",
+            "carried over without its heat of sorption. A wall that is warmed gives off vapour here, and "
+            f"keeps it in EnergyPlus: 5 to 7 % relative humidity (docs/humidity.md){shorter}",
         )
     return held, coatings
 
@@ -118,14 +119,13 @@ def _thinnest(context: Context, material: str, thickness: float) -> float:
 def _within(thickness: float, sorption: Section, resistance: float, surface: float, deep: float) -> Section:
     """Sorption with layers that end at the thickness, as the engine ends them and EnergyPlus does not.
 
-    With depths of ``s d``, contents ``c/s`` and a resistance factor ``mu/s`` the stored vapour ``d c`` and the
-    resistances ``d mu`` are the same.
+    With depths of ``s d``, contents ``c/s`` and a resistance factor ``mu/s`` the stored vapour ``d c`` and
+    the resistances ``d mu`` are the same.
     """
     share = min(1.0, thickness / (surface + deep))
-    held = {
-        key: [round(content / share, 9) for content in value] if key == "contents" else value
-        for key, value in sorption.items()
-    }
+    held: Section = dict(sorption)
+    if "contents" in held:
+        held["contents"] = [round(content / share, 9) for content in held["contents"]]
     if "capacity" in held:
         held["capacity"] = round(held["capacity"] / share, 9)
     held |= {"vapour_resistance": round(resistance / share, 9), "depth": round(share * surface, 9)}
@@ -133,20 +133,22 @@ def _within(thickness: float, sorption: Section, resistance: float, surface: flo
 
 
 def _isotherm(item: IdfObject, density: float) -> Section | None:
-    """``u = a phi^b + c phi^d`` [kg/kg] as a straight line or a table [kg/m3]; None where it does not rise."""
+    """``u = a phi^b + c phi^d`` [kg/kg] as a line or a table [kg/m3]; None where it does not rise."""
     terms = [
         (item.number(f"moisture_equation_coefficient_{factor}") or 0.0,
          item.number(f"moisture_equation_coefficient_{power}") or 0.0)
         for factor, power in (("a", "b"), ("c", "d"))
     ]  # fmt: skip
     terms = [(factor, power) for factor, power in terms if factor != 0.0]
+    if any(power < 0.0 for _, power in terms):
+        return None
     if terms and all(power == 1.0 for _, power in terms):
         capacity = density * sum(factor for factor, _ in terms)
         return {"capacity": round(capacity, 9)} if capacity > 0.0 else None
     contents = [
         round(density * sum(factor * humidity**power for factor, power in terms), 9) for humidity in _POINTS
     ]
-    if any(after <= before for before, after in zip(contents, contents[1:], strict=False)):
+    if any(after <= before for before, after in pairwise(contents)):
         return None
     return {"humidities": list(_POINTS), "contents": contents}
 
@@ -164,7 +166,9 @@ def _depths(item: IdfObject, density: float, resistance: float) -> tuple[float, 
     depths = []
     for which, period in zip(("surface", "deep"), _PERIODS, strict=True):
         entered = item.number(f"{which}_layer_penetration_depth")
-        by_period = math.sqrt(permeability * full * period / (density * slope * math.pi)) if slope > 0 else 0.0
+        by_period = (
+            math.sqrt(permeability * full * period / (density * slope * math.pi)) if slope > 0 else 0.0
+        )
         depths.append(by_period if entered is None else entered)
     return depths[0], depths[1]
 
@@ -257,7 +261,9 @@ def _plants(context: Context) -> list[tuple[str, Section]]:
                 plants[key] = {"relative_humidity": _set_point(context, humidistat, which)}
             elif word == "constantsupplyhumidityratio":
                 context.findings.left_out(
-                    system, f"{key} by the humidity of the supply air", "other humidities, the same temperatures"
+                    system,
+                    f"{key} by the humidity of the supply air",
+                    "other humidities, the same temperatures",
                 )
         held.append((name, plants))
     return held
@@ -269,8 +275,8 @@ def _note_saturation(context: Context, system: IdfObject) -> None:
     context.findings.approximated(
         system,
         "supply air that is at most saturated",
-        f"in EnergyPlus it dries a damp zone to air saturated at {13.0 if coldest is None else coldest:g} degC "
-        "while it cools, which it does not here: up to 20 % more relative humidity in summer",
+        f"in EnergyPlus it dries a damp zone to air saturated at {13.0 if coldest is None else coldest:g} "
+        "degC while it cools, which it does not here: up to 20 % more relative humidity in summer",
     )
 
 
