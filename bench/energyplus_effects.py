@@ -339,11 +339,11 @@ def _foundation(model: Model) -> None:
 
 
 def _moisture(model: Model) -> None:
+    # Gypsum board with the depths of EnergyPlus itself.
     put(model, "MaterialProperty:MoisturePenetrationDepth:Settings", board={
-        "water_vapor_diffusion_resistance_factor": 8.0, "moisture_equation_coefficient_a": 0.02,
-        "moisture_equation_coefficient_b": 1.0, "moisture_equation_coefficient_c": 0.0,
-        "moisture_equation_coefficient_d": 1.0, "surface_layer_penetration_depth": 0.003,
-        "deep_layer_penetration_depth": 0.0, "coating_layer_thickness": 0.0,
+        "water_vapor_diffusion_resistance_factor": 6.0, "moisture_equation_coefficient_a": 0.0068,
+        "moisture_equation_coefficient_b": 0.939, "moisture_equation_coefficient_c": 0.0202,
+        "moisture_equation_coefficient_d": 12.2, "coating_layer_thickness": 0.0,
         "coating_layer_water_vapor_diffusion_resistance_factor": 0.0,
     })  # fmt: skip
     put(model, "SurfaceProperty:HeatTransferAlgorithm:Construction", vapour={

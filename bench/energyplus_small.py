@@ -40,8 +40,9 @@ LOADS = {
     "heating": "Zone Air System Sensible Heating Energy [J](Hourly)",
     "cooling": "Zone Air System Sensible Cooling Energy [J](Hourly)",
 }
-#: Resolution of the stored temperatures [K].
-STEP = 0.02
+HUMIDITY = "Zone Air Relative Humidity [%](Hourly)"
+#: Resolution of the stored temperatures [K], and of the relative humidities [%].
+STEP, HUMIDITY_STEP = 0.02, 0.1
 _MONTHS = np.repeat(np.arange(12), [24 * days for days in (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)])
 
 Array = npt.NDArray[np.float64]
@@ -57,10 +58,13 @@ class Zone:
         Hourly means of the air temperature. [degC]
     loads : dict of str to ndarray, shape (12,)
         Heating and cooling by month. [kWh]
+    humidity : ndarray, shape (8760,), or None
+        Hourly means of the relative humidity, where the model has vapour. [%]
     """
 
     air: Array
     loads: dict[str, Array]
+    humidity: Array | None = None
 
 
 def by_month(hourly: Array) -> Array:
@@ -80,10 +84,12 @@ def reference(name: str) -> dict[str, Zone]:
     for key, values in _stored().items():
         file, zone, quantity = key.split("|")
         if file == name and quantity == "air":
+            damp = _stored().get(f"{file}|{zone}|humidity")
             loads = {which: _stored().get(f"{file}|{zone}|{which}") for which in LOADS}
             zones[zone.casefold()] = Zone(
                 np.cumsum(values.astype(float)) * STEP,
                 {which: load / 100.0 for which, load in loads.items() if load is not None},
+                None if damp is None else np.cumsum(damp.astype(float)) * HUMIDITY_STEP,
             )
     return zones
 
@@ -116,6 +122,9 @@ def packed(name: str, table: pd.DataFrame) -> dict[str, npt.NDArray[np.int32]]:
             steps = np.rint(table[column].to_numpy() / STEP).astype(np.int32)
             small = np.diff(steps, prepend=0)
             stored[f"{name}|{zone}|air"] = small
+        if quantity == HUMIDITY:
+            tenths = np.rint(table[column].to_numpy() / HUMIDITY_STEP).astype(np.int32)
+            stored[f"{name}|{zone}|humidity"] = np.diff(tenths, prepend=0)
         for which, title in LOADS.items():
             if quantity == title and len(table) == 8760:
                 monthly = by_month(table[column].to_numpy() / 3.6e6)
@@ -135,6 +144,7 @@ def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict
     outputs = [f"{zone}.air_temperature" for zone in building.zones]
     for zone, described in building.zones.items():
         outputs += [f"{zone}.{which}_load" for which in described.loads]
+        outputs += [f"{zone}.relative_humidity"] if building.humidity is not None else []
     run = mc.simulate(
         building,
         _climate(),
@@ -162,6 +172,7 @@ def simulated(conversion: Conversion, *, start: str = "", end: str = "") -> dict
                 for which in LOADS
                 if f"{zone}.{which}_load" in hourly
             },
+            100.0 * hourly[f"{zone}.relative_humidity"] if building.humidity is not None else None,
         )
         for original, zone in conversion.names["zones"].items()
     }

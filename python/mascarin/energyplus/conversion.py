@@ -33,6 +33,7 @@ from mascarin.energyplus.zones.conditioning import (
 )
 from mascarin.energyplus.zones.enclosures import describe_enclosures
 from mascarin.energyplus.zones.gains import describe_gains
+from mascarin.energyplus.zones.humidity import describe_humidity
 from mascarin.energyplus.zones.radiant import Envelope
 from mascarin.energyplus.zones.water import describe_water
 from mascarin.energyplus.zones.zones import describe_zones
@@ -130,9 +131,10 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     air = usual_temperatures(context, zones)
     describe_gains(context, zones, seasonal_temperatures(context, zones))
     describe_water(context, zones, air)
-    describe_air(context, zones, all_surfaces, inside)
+    describe_air(context, zones, all_surfaces, inside, air)
     by_name = {surface.item.name.casefold(): surface for surface in all_surfaces}
     describe_conditioning(context, zones, Envelope(by_name, inside, surfaces))
+    describe_humidity(context, air)
     describe_enclosures(context, _built(context), zones)
     version = _version(context)
     start, end = _period(context)

@@ -66,7 +66,6 @@ _MISSING: Final = {
     "zonecooltower": "no cooling by towers",
     "zoneearthtube": "no air through earth tubes",
     "zonebaseboard": "no heat from baseboards",
-    "zonerefrigerationdoormixing": "no mixing through refrigeration doors",
     "indoorlivingwall": "no plants indoors",
     "materialproperty:heatandmoisturetransfer": "moisture is left out: heat alone is conducted",
     "materialproperty:moisturepenetrationdepth": "moisture is left out: heat alone is conducted",

@@ -70,7 +70,8 @@ def describe_surfaces(
     """
     done = Surfaces()
     by_name = {surface.item.name.casefold(): surface for surface in all_surfaces}
-    finite = _finite_differences(context)
+    solvers = _solvers(context)
+    context.moist[""] = _is_moist(solvers[""])
     for surface in all_surfaces:
         if surface.item.name.casefold() in done.reversed_names:
             continue
@@ -81,15 +82,16 @@ def describe_surfaces(
         if item.kind == "Construction:AirBoundary":
             layers = _air_boundary(context, surface, item)
         else:
-            solved = finite.get(surface.item.name.casefold(), finite.get(item.name.casefold(), finite[""]))
-            layers = construction(context, item, cut=cut, finite_differences=solved)
+            solver = solvers.get(surface.item.name.casefold(), solvers.get(item.name.casefold(), solvers[""]))
+            layers = construction(context, item, cut=cut, finite_differences=_is_finite(solver))
+            context.moist[name] = _is_moist(solver)
         shape, has_vertices = _shape(context, surface)
         section = {"construction": layers, **shape, "outside": outside, "inside": inside}
         if outside.get("zone") == inside["zone"]:
             section["internal_mass"] = True
         context.section("surfaces")[name] = section
         done.placed[surface.item.name.casefold()], done.has_vertices[name] = name, has_vertices
-    _masses(context, coefficients, finite[""])
+    _masses(context, coefficients, _is_finite(solvers[""]))
     return done
 
 
@@ -350,13 +352,13 @@ def _masses(context: Context, coefficients: ConvectionCoefficients, finite: bool
 
 
 @reads("HeatBalanceAlgorithm", *_ALGORITHMS)
-def _finite_differences(context: Context) -> dict[str, bool]:
-    """Whether EnergyPlus uses finite differences: by surface, by construction, and for the rest under ''."""
+def _solvers(context: Context) -> dict[str, str]:
+    """Algorithm of EnergyPlus for each surface or construction that names one, and for the rest under ''."""
     main = context.model.one("HeatBalanceAlgorithm")
     word = main.word("algorithm") if main is not None else ""
     if main is not None:
-        _moisture(context, main, word)
-    uses_finite_differences = {"": word.startswith("conductionfinite")}
+        _note_moisture(context, main, word)
+    solvers = {"": word}
     named: dict[str, tuple[IdfObject, str]] = {}
     for item in context.model.of("SurfaceProperty:HeatTransferAlgorithm"):
         named[item.word("surface_name")] = item, item.word("algorithm")
@@ -371,13 +373,28 @@ def _finite_differences(context: Context) -> dict[str, bool]:
             item, "an algorithm for a group of surfaces", "that of the building is used"
         )
     for key, (item, algorithm) in named.items():
-        _moisture(context, item, algorithm)
-        uses_finite_differences[key] = algorithm.startswith("conductionfinite")
-    return uses_finite_differences
+        _note_moisture(context, item, algorithm)
+        solvers[key] = algorithm
+    return solvers
 
 
-def _moisture(context: Context, item: IdfObject, algorithm: str) -> None:
-    if "moisture" in algorithm:
+def _is_finite(solver: str) -> bool:
+    return solver.startswith("conductionfinite")
+
+
+def _is_moist(solver: str) -> bool:
+    """Whether vapour goes into the skin of a surface (effective moisture penetration depth)."""
+    return solver.startswith("moisturepenetration")
+
+
+def _note_moisture(context: Context, item: IdfObject, algorithm: str) -> None:
+    if _is_moist(algorithm):
+        context.findings.approximated(
+            item,
+            f"moisture in walls by {algorithm}",
+            "a section 'humidity': vapour is carried over, its heat of sorption is not",
+        )
+    elif "moisture" in algorithm:
         context.findings.left_out(
             item,
             f"moisture in walls by {algorithm}",

@@ -82,6 +82,25 @@ class Names:
         return candidate
 
 
+@dataclass(frozen=True)
+class Vapour:
+    """A source of vapour in a zone.
+
+    Attributes
+    ----------
+    item : IdfObject
+        The object.
+    zone : str
+        Name of the zone in the description.
+    latent : Year
+        Latent heat. [W]
+    """
+
+    item: IdfObject
+    zone: str
+    latent: Year
+
+
 @dataclass
 class Context:
     """A conversion in progress.
@@ -104,6 +123,11 @@ class Context:
         Whole resistance of the materials without mass, which may be several layers. [m2 K/W]
     systems : dict of str to str
         Zone in the file by the name of its ideal loads system.
+    moist : dict of str to bool
+        Whether EnergyPlus solves vapour in the skin of a surface, by its name in the description; that of
+        surfaces that are not named under ``''``.
+    vapour : list of Vapour
+        Sources of vapour.
     special_days : dict of str to bool
         Whether the weather file has ``daylight saving`` and ``holidays``; empty without a weather file.
     """
@@ -116,6 +140,8 @@ class Context:
     shapes: dict[str, str] = field(default_factory=dict)
     resistances: dict[str, float] = field(default_factory=dict)
     systems: dict[str, str] = field(default_factory=dict)
+    moist: dict[str, bool] = field(default_factory=dict)
+    vapour: list[Vapour] = field(default_factory=list)
     special_days: dict[str, bool] = field(default_factory=dict)
 
     def section(self, name: str) -> Section:
@@ -129,6 +155,11 @@ class Context:
         if name not in SECTIONS:
             raise KeyError(f"{name}: expected one of {', '.join(SECTIONS)}")
         return self.sections.setdefault(name, {})
+
+    @property
+    def has_vapour(self) -> bool:
+        """Whether EnergyPlus solves vapour in the skin of any surface."""
+        return any(self.moist.values())
 
     def ordered(self) -> Section:
         """All sections that are not empty, in the order of the description."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from mascarin.energyplus.envelope.idf_surfaces import IdfOpening, IdfSurface
@@ -11,6 +11,7 @@ from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
+from mascarin.energyplus.zones.doors import COLD_DOORS, describe_doors
 from mascarin.energyplus.zones.draughts import Draught, conditioned, density_of, enter_draughts
 from mascarin.energyplus.zones.mixing import describe_mixing, design_flow, zones_of
 from mascarin.energyplus.zones.network import describe_network
@@ -21,6 +22,7 @@ SIMPLE: Final = (
     "ZoneInfiltration:DesignFlowRate", "ZoneInfiltration:EffectiveLeakageArea",
     "ZoneInfiltration:FlowCoefficient",
     "ZoneVentilation:DesignFlowRate", "ZoneVentilation:WindandStackOpenArea", "ZoneMixing", "ZoneCrossMixing",
+    COLD_DOORS,
 )  # fmt: skip
 #: Effectiveness of an opening for the wind where EnergyPlus finds it by direction: the middle of 0.3 and
 #: 0.55 (ASHRAE Handbook of Fundamentals 2017, ch. 16) [-].
@@ -31,9 +33,26 @@ _DISCHARGE, _CW = 0.65, 0.3
 
 @reads(*SIMPLE)
 def describe_air(
-    context: Context, zones: dict[str, Zone], surfaces: list[IdfSurface], openings: list[IdfOpening]
+    context: Context,
+    zones: dict[str, Zone],
+    surfaces: list[IdfSurface],
+    openings: list[IdfOpening],
+    air: Mapping[str, float],
 ) -> None:
-    """Enter infiltration, ventilation and mixing.
+    """Enter infiltration, ventilation, mixing and doors of cold rooms.
+
+    Parameters
+    ----------
+    context : Context
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    surfaces : list of IdfSurface
+        Walls, floors and roofs.
+    openings : list of IdfOpening
+        Windows and doors.
+    air : mapping of str to float
+        Usual temperature of each zone. [degC]
 
     Raises
     ------
@@ -51,6 +70,7 @@ def describe_air(
     for key, zone_draughts in draughts.items():
         enter_draughts(context, zones[key], zone_draughts)
     describe_mixing(context, zones)
+    describe_doors(context, zones, air)
 
 
 @reads("AirflowNetwork:SimulationControl", *SIMPLE)

@@ -365,14 +365,18 @@ def _outdoor_air(
         flow = _outdoor_flow(context, system, zone, zones)
     if flow <= 0.0:
         return
-    for key, word in (
-        ("demand_controlled_ventilation_type", "control by demand"),
-        ("outdoor_air_economizer_type", "an economizer"),
+    for key, word, effect in (
+        ("demand_controlled_ventilation_type", "control by demand", "other loads"),
+        # EnergyPlus 25.2: `mechanical_outdoor_air.idf` with a cooling set point of 24 degC, 2.4 changes per
+        # hour, has 1726 kWh of cooling, 1246 with an economizer of at most 0.3 m3/s, 1105 without limit.
+        (
+            "outdoor_air_economizer_type",
+            "an economizer",
+            "more cooling, by 28 to 36 % of it in a small room with 2.4 changes per hour",
+        ),
     ):
         if system.word(key) not in ("", "none", "noeconomizer"):
-            context.findings.left_out(
-                system, word, "the flow of outdoor air stays as designed: other cooling loads"
-            )
+            context.findings.left_out(system, word, f"the flow of outdoor air stays as designed: {effect}")
     recovered = 0.0
     if system.word("heat_recovery_type") not in ("", "none"):
         recovered = system.number("sensible_heat_recovery_effectiveness") or 0.0

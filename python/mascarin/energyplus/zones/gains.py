@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from mascarin.energyplus.model.context import Context
+from mascarin.energyplus.model.context import Context, Vapour
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
@@ -142,25 +142,37 @@ def sensible(activity: float, air: float) -> float:
     return min(max(heat, 0.0), activity)
 
 
+def _slope(activity: float, air: float) -> float:
+    """Relative change of the sensible heat of a person for a kelvin. [1/K]"""
+    middle = sensible(activity, air)
+    return (sensible(activity, air + 0.5) - sensible(activity, air - 0.5)) / middle if middle > 0.0 else 0.0
+
+
 def _people(context: Context, item: IdfObject, zone: Zone, air: Year) -> Heat:
     count = _number_of_people(context, item, zone)
     present = year(context, item, "number_of_people_schedule_name")
     activity = year(context, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
+    whole = combined(lambda presence, heat: count * presence * heat, present, activity)
     if share is None:
         power = combined(
             lambda presence, heat, room: count * presence * sensible(heat, room), present, activity, air
         )
         low, high = min(air.values), max(air.values)
+        slopes = (_slope(max(activity.mean(), 1.0), room) for room in (low, high))
+        change = " to ".join(dict.fromkeys(f"{100.0 * slope:+.0f}" for slope in slopes))
         used = f"{low:.1f} degC" if low == high else f"{low:.1f} to {high:.1f} degC, by season,"
         context.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {used} is used, about 4 % less for each kelvin above it; moisture is left out",
+            f"that at {used} is used; in EnergyPlus it changes by {change} % for each kelvin of difference"
+            + ("" if context.has_vapour else "; moisture is left out"),
         )
     else:
         sensible_share = share
         power = combined(lambda presence, heat: count * presence * heat * sensible_share, present, activity)
+    latent = combined(lambda total, heat: max(total - heat, 0.0), whole, power)
+    context.vapour.append(Vapour(item, zone.name, latent))
     return Heat(item, item.name, power, item.number("fraction_radiant") or 0.0)
 
 
@@ -209,9 +221,9 @@ def _equipment(context: Context, item: IdfObject, zone: Zone, zones: dict[str, Z
     level, on = _design_level(context, item, zone, zones), year(context, item, "schedule_name")
     latent, radiant, lost = (item.number(f"fraction_{part}") or 0.0 for part in ("latent", "radiant", "lost"))
     if latent > 0.0:
-        context.findings.approximated(
-            item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
-        )
+        context.vapour.append(Vapour(item, zone.name, combined(lambda share: level * share * latent, on)))
+        moisture = "a source of vapour" if context.has_vapour else "moisture is left out"
+        context.findings.approximated(item, f"{latent:.0%} latent heat", f"{moisture}: it heats nothing")
     remaining_share = max(1.0 - latent - lost, 0.0)
     power = combined(lambda share: level * share * remaining_share, on)
     return Heat(item, item.name, power, min(radiant / remaining_share, 1.0) if remaining_share > 0.0 else 0.0)

@@ -345,6 +345,9 @@ def _wind(context: Context, item: IdfObject, joint: Joint) -> dict[str, Any]:
     azimuth = g.azimuth_of(joint.points) % 360.0
     if control is None or control.word("wind_pressure_coefficient_type") != "input":
         return _by_shape(context, item, control, joint, azimuth)
+    # The shape of the building has no effect beside coefficients of the file.
+    for pattern in ("building_type", "azimuth_angle_of_long_axis*", "ratio_of_building_width*"):
+        control.fields.pass_over(pattern)
     node = context.model.named(item.text("external_node_name"), "AirflowNetwork:MultiZone:ExternalNode")
     if node is None:
         context.findings.left_out(item, "no external node", "no wind reaches it")

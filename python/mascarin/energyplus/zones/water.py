@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from datetime import date, timedelta
 from typing import Final
 
 from mascarin.energyplus.model.context import Context
 from mascarin.energyplus.model.handlers import reads
 from mascarin.energyplus.model.idf import IdfObject
 from mascarin.energyplus.model.schedules import fraction, year
-from mascarin.energyplus.model.year import Year, combined, constant
+from mascarin.energyplus.model.year import DAYS, Year, combined, constant, year_of
 from mascarin.energyplus.zones.zones import Zone
 
 _MIXED: Final = ("WaterHeater:Mixed", "ThermalStorage:ChilledWater:Mixed")
@@ -28,6 +29,8 @@ _SET_POINTS: Final = (
 _WATER: Final = (999.9, 4180.0)
 #: Temperature of the mains where the file says nothing, as in EnergyPlus [degC].
 _MAINS: Final = 10.0
+#: A year without a leap day, for the weeks of the temperature of the mains.
+_YEAR: Final = 2017
 #: Height over diameter of a tank whose height is not stated [-].
 _SLENDER: Final = 1.0
 
@@ -155,7 +158,52 @@ def _cold(context: Context, item: IdfObject) -> Year:
     if mains is not None and mains.word("calculation_method") == "schedule":
         return year(context, mains, "temperature_schedule_name")
     mean = None if mains is None else mains.number("annual_average_outdoor_air_temperature")
-    return constant(_MAINS if mean is None else mean)
+    if mains is None or mean is None or mains.word("calculation_method") != "correlation":
+        return constant(_MAINS)
+    swing = mains.number("maximum_difference_in_monthly_average_outdoor_air_temperatures") or 0.0
+    south = float(context.section("site").get("latitude", 0.0)) < 0.0
+    factor, shift = mains.number("temperature_multiplier"), mains.number("temperature_offset") or 0.0
+    factor = 1.0 if factor is None else factor
+    dates = [(date(_YEAR, 1, 1) + timedelta(days=min(day, 364))) for day in range(6, 371, 7)]
+    values = [
+        factor * mains_temperature(mean, swing, float(when.timetuple().tm_yday - 3), south=south) + shift
+        for when in dates
+    ]
+    return year_of(
+        [
+            (f"{when:%m-%d}", (((0, round(value, 2)),),) * len(DAYS))
+            for when, value in zip(dates, values, strict=True)
+        ]
+    )
+
+
+def mains_temperature(mean: float, swing: float, day: float, *, south: bool = False) -> float:
+    """Temperature of cold water by the outdoor air of the place. [degC]
+
+    The correlation of EnergyPlus (Engineering Reference, water mains temperatures), in degF: ``T = m + 6 +
+    r s/2 sin(0.986 (day - 15 - lag) - 90)`` with ``r = 0.4 + 0.01 (m - 44)`` and ``lag = 35 - (m - 44)``; not
+    below 0 degC. Hendron, Anderson, Christensen, Eastment & Reeves 2004, NREL/CP-550-36011.
+
+    Parameters
+    ----------
+    mean : float
+        Mean temperature of the outdoor air over the year. [degC]
+    swing : float
+        Difference of its warmest and coldest monthly means. [K]
+    day : float
+        Day of the year. [d]
+    south : bool, optional
+        Whether the place is south of the equator.
+
+    Examples
+    --------
+    >>> round(mains_temperature(10.0, 20.0, 48.0), 2), round(mains_temperature(10.0, 0.0, 48.0), 2)
+    (8.74, 13.33)
+    """
+    warm = 1.8 * mean + 32.0
+    ratio, lag = 0.4 + 0.01 * (warm - 44.0), 35.0 - (warm - 44.0)
+    angle = math.radians(0.986 * (day - 15.0 - lag) + (90.0 if south else -90.0))
+    return max((warm + 6.0 + 0.5 * 1.8 * swing * ratio * math.sin(angle) - 32.0) / 1.8, 0.0)
 
 
 def _enter(
